@@ -75,12 +75,8 @@ contains
          merge(0.0_dp, thickness, points%about_axis), point_of)
       points%hats = hats_of(points%segments, size(kept))
       points%initial_gap = initial_gaps(points, mesh%coordinates)
+      if (size(kept) > 0) call set_ends(mesh%coordinates, slave, master, points)
       allocate (points%master_node, mold=points%slave_node)
-      if (size(kept) > 0 .and. .not. master%closed) points%to_end = ends_beyond(mesh%coordinates( &
-         :, master%nodes([1, size(master%nodes)])), points)
-      if (size(kept) > 0 .and. .not. slave%closed) points%at_corner = master%closed .or. &
-         ends_apart(mesh%coordinates(:, slave%nodes([1, size(slave%nodes)])) - &
-         mesh%coordinates(:, master%nodes([1, size(master%nodes)])), points)
       do c = 1, size(kept)
          points%master_node(c) = master%nodes(minloc(norm2(mesh%coordinates(:, master%nodes) - &
             spread(points%position(:, c), 2, size(master%nodes)), dim=1), dim=1))
@@ -95,6 +91,20 @@ contains
             merge(-1.0_dp, 1.0_dp, chain%turned))
       end function line_of
    end subroutine set_mortar_points
+
+   !> How far the master goes on beyond the contact points, and where one face alone ends.
+   subroutine set_ends(coordinates, slave, master, points)
+      real(dp), intent(in) :: coordinates(:, :)         ! (2, nodes)
+      type(surface_chain_type), intent(in) :: slave, master
+      type(contact_points_type), intent(inout) :: points
+
+      associate (s => slave%nodes, m => master%nodes)
+         if (.not. master%closed) points%to_end = ends_beyond(coordinates(:, m([1, size(m)])), &
+            points)
+         if (.not. slave%closed) points%at_corner = master%closed .or. ends_apart(coordinates(:, &
+            s([1, size(s)])) - coordinates(:, m([1, size(m)])), points)
+      end associate
+   end subroutine set_ends
 
    !> The corner whose contact point takes a corner's integrals, its own or the neighbour with the
    !> larger part covered; 0 where nothing is covered. A corner that both faces end in, the tip of a

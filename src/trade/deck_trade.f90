@@ -43,7 +43,6 @@ contains
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(trade_type) :: trade
-      type(input_files_type) :: inputs
       type(error_type), allocatable :: error
       character(:), allocatable :: table
       integer :: i, other_pairing
@@ -59,18 +58,10 @@ contains
          status = error%status
          return
       end if
-      other_pairing = 0
-      if (all(simulation%bodies%interfaces%pairing == pairing_nodes)) then
-         other_pairing = pairing_surfaces
-      end if
-      if (any(model%contacts%pairing == pairing_surfaces)) other_pairing = pairing_nodes
-      if (size(model%contacts) == 0) other_pairing = 0
+      other_pairing = pairing_to_try(simulation, model)
       call simulation%release()
       table = command%folder//'/'//base_name(path)//'.trade.csv'
-      call inputs%add(path, deck%cards%files)
-      call inputs%check([string_type(table)], error)
-      if (.not. allocated(error)) call make_folder(command%folder, error)
-      if (.not. allocated(error)) call try_file(table, error)
+      call prepare_table(table, path, command, deck, error)
       if (.not. allocated(error)) call measure(path, command, other_pairing, model, trade, error)
       if (allocated(error)) then
          status = error%status
@@ -103,6 +94,32 @@ contains
       if (status /= 0) call print_error(path, 'the deck as written fails: '// &
          trade%rows(i)%reason)
    end subroutine trade_deck
+
+   !> Sees whether the table can be written.
+   !> Errors: a file of the deck is in its place, the folder or the file cannot be written.
+   subroutine prepare_table(table, path, command, deck, error)
+      character(*), intent(in) :: table, path
+      type(command_type), intent(in) :: command
+      type(read_deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      type(input_files_type) :: inputs
+
+      call inputs%add(path, deck%cards%files)
+      call inputs%check([string_type(table)], error)
+      if (.not. allocated(error)) call make_folder(command%folder, error)
+      if (.not. allocated(error)) call try_file(table, error)
+   end subroutine prepare_table
+
+   !> The pairing that the deck does not have, 0 where there is none.
+   pure integer function pairing_to_try(simulation, model) result(other)
+      type(simulation_type), intent(in) :: simulation
+      type(model_type), intent(in) :: model
+
+      other = 0
+      if (all(simulation%bodies%interfaces%pairing == pairing_nodes)) other = pairing_surfaces
+      if (any(model%contacts%pairing == pairing_surfaces)) other = pairing_nodes
+      if (size(model%contacts) == 0) other = 0
+   end function pairing_to_try
 
    !> Runs the grid level by level, then meshes with ever more levels at the contact faces, both as
    !> far as that is affordable, then the single variations.
