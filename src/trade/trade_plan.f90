@@ -38,12 +38,13 @@ contains
       integer, intent(in) :: level                !! refinements of that mesh
       integer, intent(in) :: contact_level        !! more of them at the contact faces
       type(trade_row_type), allocatable, intent(out) :: rows(:)
-      integer :: order, f
+      integer :: f, highest, order
 
       allocate (rows(0))
-      do order = 1, highest_order(model)
+      highest = highest_order(model)
+      do order = 1, highest
          do f = 1, size(factors)
-            associate (is_default => order == min(model%written_order, highest_order(model)))
+            associate (is_default => order == min(model%written_order, highest))
                if (contact_level > 0 .and. .not. (is_default .and. is_local(f))) cycle
                if (all(0.5_dp*factors(f)*model%steps%first_increment >= &
                   0.999_dp*model%steps%period)) cycle
