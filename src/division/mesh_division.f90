@@ -2,7 +2,7 @@
 !> shape functions. Where an element on one side of a side is divided and the one on the other is
 !> not, the new nodes of that side hang (hanging_nodes).
 module mesh_division
-   use element_kinds, only: element_corner_count, element_node_count, kind_count, quad4, &
+   use element_kinds, only: element_node_count, kind_count, quad4, &
       quad8, quad8_reduced, triangle6
    use element_sides, only: element_sides_type, find_sides
    use hanging_nodes, only: coarse_side, fine_sides, hanging_count, nodes_between

@@ -1,6 +1,6 @@
 !> *REFINE with a surface or a set.
 module deck_builder_refinement
-   use card_parameters, only: has_parameter, lacks_parameter, parameter_place, take_parameter
+   use card_parameters, only: has_parameter, parameter_place, take_parameter
    use cards, only: cards_type, keyword_card_type
    use deck_builder_options, only: take_levels
    use deck_context, only: need_element_set, need_named
