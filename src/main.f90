@@ -6,8 +6,9 @@ program thercon
       command_version, read_command, usage
    use batch, only: run_batch
    use deck_check, only: check_deck
+   use deck_files, only: results_of
    use deck_outcomes, only: deck_outcome_type
-   use deck_run, only: results_of, run_deck
+   use deck_run, only: run_deck
    use deck_trade, only: trade_deck
    use errors, only: error_type, status_deck
    use file_calls, only: check_printed, print_text, survive_file_limits

@@ -70,7 +70,6 @@ module accuracy_rounds
       logical :: goes_on = .false.                           !! whether another round follows
       character(:), allocatable :: reason                    !! why none does; empty where it is
       !! reached
-      integer :: checks_passed = 0, checks_failed = 0        !! *VERIFY checks, judged in round 1
       type(demand_type), allocatable :: demands(:)
       type(accuracy_round_type), allocatable :: rounds(:)    !! the last is the present one
       real(dp), allocatable :: largest(:)                    !! (demands) largest scale so far
@@ -99,7 +98,6 @@ contains
 
       if (.not. allocated(self%courses)) allocate (self%courses(steps))
       self%is_on = allocated(request%targets)
-      self%goes_on = .false.
       if (.not. self%is_on) return
       if (.not. allocated(self%demands)) then
          allocate (self%demands(0), self%rounds(0))
@@ -119,7 +117,7 @@ contains
    subroutine drop_round(self)
       class(accuracy_rounds_type), intent(inout) :: self
 
-      if (self%is_on) self%rounds = self%rounds(:size(self%rounds) - 1)
+      self%rounds = self%rounds(:size(self%rounds) - 1)
    end subroutine drop_round
 
    !> Adds the target of one interface or of all.

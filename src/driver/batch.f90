@@ -5,13 +5,13 @@ module batch
    use batch_table, only: print_batch, table_name, write_batch
    use clock, only: wall_seconds
    use command_line, only: command_type
+   use deck_files, only: base_name, input_files_type, outputs_of, results_of
    use deck_outcomes, only: deck_outcome_type
    use deck_reader, only: files_of_deck
-   use deck_run, only: base_name, outputs_of, results_of, run_deck
+   use deck_run, only: run_deck
    use errors, only: error_type, status_deck, status_internal, status_interrupted
    use file_calls, only: is_stream, make_folder
    use file_identities, only: file_identity_type, identity_of
-   use input_files, only: input_files_type
    use interruption, only: catch_signals, caught_signal, caught_times
    use kinds, only: dp
    use messages, only: pass_on, print_error, print_line

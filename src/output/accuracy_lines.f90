@@ -6,12 +6,13 @@ module accuracy_lines
    use contact_quantities, only: estimated
    use kinds, only: dp
    use model, only: unit_labels_type
+   use run_summaries, only: accuracy_words_type
    use summary, only: words_of
    use text, only: append, counted, digits_above, few_digits, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private
-   public :: add_targets, add_rounds, missed_words
+   public :: told_of_rounds
 
    integer, parameter :: name_width = 30   !! least columns of interface and quantity
    integer, parameter :: most_named = 3    !! targets in one line
@@ -19,48 +20,43 @@ module accuracy_lines
 
 contains
 
-   !> Adds the verdict, then a line for each target, and what holds for several of them; no line
-   !> where nothing is requested.
-   subroutine add_targets(accuracy, interfaces, labels, lines)
+   !> All that is told of the rounds; nothing where no accuracy is requested.
+   function told_of_rounds(accuracy, has_checks, interfaces, labels) result(words)
       type(accuracy_rounds_type), intent(in) :: accuracy
+      logical, intent(in) :: has_checks                      !! whether the deck has *VERIFY checks
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(unit_labels_type), intent(in) :: labels           !! units of the deck
-      type(string_type), allocatable, intent(inout) :: lines(:)
+      type(accuracy_words_type) :: words
       character(:), allocatable :: name
-      integer :: d
-
-      if (.not. accuracy%is_on) return
-      if (size(accuracy%rounds) == 0) then
-         call append(lines, 'requested accuracy not reached: round 1 did not come to its end')
-         return
-      end if
-      call append(lines, verdict(accuracy))
-      do d = 1, size(accuracy%demands)
-         name = demand_name(accuracy, d, interfaces)
-         name = name//repeat(' ', max(name_width - len(name), 0))
-         call append(lines, name//' '//target_words(accuracy, d, labels))
-      end do
-      if (any([(is_of_more(accuracy, d), d=1, size(accuracy%demands))])) call append(lines, &
-         '% of an edge: of the closed length; of a small value: of a part of the largest so far')
-      if (size(accuracy%rounds) > 1 .and. accuracy%checks_passed + &
-         accuracy%checks_failed > 0) call append(lines, &
-         'the *VERIFY checks were judged in round 1, on the deck as written')
-   end subroutine add_targets
-
-   !> Adds the table of the rounds; no line where there is none.
-   subroutine add_rounds(accuracy, lines)
-      type(accuracy_rounds_type), intent(in) :: accuracy
-      type(string_type), allocatable, intent(inout) :: lines(:)
       integer :: i
 
+      allocate (words%targets(0), words%rounds(0))
+      words%missed = ''
       if (.not. accuracy%is_on) return
-      if (size(accuracy%rounds) == 0) return
-      call append(lines, '   round   CPU seconds    unknowns    elements  increments  '// &
+      if (size(accuracy%rounds) == 0) then
+         call append(words%targets, &
+            'requested accuracy not reached: round 1 did not come to its end')
+         return
+      end if
+      call append(words%targets, verdict(accuracy))
+      do i = 1, size(accuracy%demands)
+         name = demand_name(accuracy, i, interfaces)
+         name = name//repeat(' ', max(name_width - len(name), 0))
+         call append(words%targets, name//' '//target_words(accuracy, i, labels))
+      end do
+      if (any([(is_of_more(accuracy, i), i=1, size(accuracy%demands))])) call append( &
+         words%targets, &
+         '% of an edge: of the closed length; of a small value: of a part of the largest so far')
+      if (size(accuracy%rounds) > 1 .and. has_checks) call append(words%targets, &
+         'the *VERIFY checks were judged in round 1, on the deck as written')
+      words%missed = missed_words(accuracy, interfaces)
+      if (accuracy%goes_on) words%later_round = size(accuracy%rounds) + 1
+      call append(words%rounds, '   round   CPU seconds    unknowns    elements  increments  '// &
          'largest bound/target')
       do i = 1, size(accuracy%rounds)
-         call append(lines, round_words(i, accuracy%rounds(i)))
+         call append(words%rounds, round_words(i, accuracy%rounds(i)))
       end do
-   end subroutine add_rounds
+   end function told_of_rounds
 
    !> Whether the per cent told of a target are not those of its value.
    pure logical function is_of_more(accuracy, d)
@@ -95,13 +91,11 @@ contains
    !> The verdict and the targets that are not met, in one line; nothing where all are.
    function missed_words(accuracy, interfaces) result(words)
       type(accuracy_rounds_type), intent(in) :: accuracy
-      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(contact_points_type), intent(in) :: interfaces(:)
       character(:), allocatable :: words
       integer :: d, missed
 
       words = ''
-      if (.not. accuracy%is_on) return
-      if (size(accuracy%rounds) == 0) return
       missed = 0
       associate (last => accuracy%rounds(size(accuracy%rounds)))
          do d = 1, size(accuracy%demands)

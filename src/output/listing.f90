@@ -4,8 +4,6 @@
 !> The summary is known at the end only: its lines are blank until then, and written over. A draft
 !> is kept in memory until it is whole; then it takes the place of what the file holds.
 module listing
-   use accuracy_lines, only: add_rounds, add_targets, missed_words
-   use accuracy_rounds, only: accuracy_rounds_type
    use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
@@ -16,7 +14,7 @@ module listing
       print_increment, print_interface, print_interface_errors
    use listing_tables, only: print_contact_table, print_iterations, print_requested, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
-   use model, only: model_type, unit_labels_type
+   use model, only: model_type
    use open_files, only: append_to_file, close_descriptor, empty_file, lock_file, open_in_memory, &
       overwrite_in_file, unlock_file
    use printed_text, only: printed_text_type
@@ -243,14 +241,18 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: lines(:), warnings(:)
       character(:), allocatable :: block
-      integer :: i, later_round
+      integer :: i
 
       if (size(verifier%outcomes) > 0) call print_verdicts(self%text%unit, model%verifications, &
          verifier%outcomes)
       do i = 1, size(interfaces)
          call self%diagrams(i)%print(self%text%unit, interfaces(i))
       end do
-      call print_accuracy(self%text%unit, run%accuracy, interfaces, model%units)
+      call print_list(self%text%unit, 'REQUESTED ACCURACY', run%accuracy%targets)
+      if (size(run%accuracy%rounds) > 0) write (self%text%unit, '()')
+      do i = 1, size(run%accuracy%rounds)
+         write (self%text%unit, '(2x, a)') run%accuracy%rounds(i)%value
+      end do
       call print_unapproached(self%text%unit, model%mesh%node_number, interfaces, self%summary)
       warnings = model%warnings
       do i = 1, size(self%warnings)
@@ -263,10 +265,8 @@ contains
       call write_text(self, error)
       if (allocated(error)) return
       allocate (lines(0))
-      later_round = 0
-      if (run%accuracy%goes_on) later_round = size(run%accuracy%rounds) + 1
       call append(lines, ending(allocated(self%failure), self%summary%increment, &
-         run%verify_failed, missed_words(run%accuracy, interfaces) /= '', later_round))
+         run%verify_failed, run%accuracy%missed /= '', run%accuracy%later_round))
       call append(lines, checks(verifier, run))
       if (size(warnings) == 0) call append(lines, 'no warnings')
       if (size(warnings) > 0) call append(lines, counted(size(warnings), 'warning')// &
@@ -321,25 +321,6 @@ contains
          call print_wrapped(self%text%unit, '   ', 'warning: '//record%warnings(i)%words())
       end do
    end subroutine print_warnings
-
-   !> Prints the targets of a requested accuracy, then the table of its rounds.
-   subroutine print_accuracy(unit, accuracy, interfaces, labels)
-      integer, intent(in) :: unit
-      type(accuracy_rounds_type), intent(in) :: accuracy
-      type(contact_points_type), intent(in) :: interfaces(:)
-      type(unit_labels_type), intent(in) :: labels
-      type(string_type), allocatable :: rounds(:), targets(:)
-      integer :: i
-
-      allocate (rounds(0), targets(0))
-      call add_targets(accuracy, interfaces, labels, targets)
-      call print_list(unit, 'REQUESTED ACCURACY', targets)
-      call add_rounds(accuracy, rounds)
-      if (size(rounds) > 0) write (unit, '()')
-      do i = 1, size(rounds)
-         write (unit, '(2x, a)') rounds(i)%value
-      end do
-   end subroutine print_accuracy
 
    !> Prints the contact points of each interface that never came nearer than they were.
    subroutine print_unapproached(unit, node_number, interfaces, summary)

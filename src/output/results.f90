@@ -6,6 +6,7 @@
 !> end, and in between whenever that costs less than a tenth of the time, or an increment was long.
 !> The first publishing replaces the files of an earlier run. A draft publishes its end only.
 module results
+   use accuracy_rounds, only: accuracy_rounds_type
    use contact_definitions, only: pairing_name
    use contact_grid, only: contact_grid_type
    use contact_points, only: contact_points_type
@@ -156,7 +157,7 @@ contains
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
       if ((record%last_of_step .or. is_due) .and. .not. (ends_run .or. self%is_draft)) then
-         call publish(self, model, interfaces, run, error, ends_run)
+         call publish(self, model, interfaces, run, error)
       else if (waiting_bytes(self) > memory_limit) then
          call flush_all(self, model, interfaces)
          call self%file%check(error)
@@ -172,11 +173,12 @@ contains
    !> Publishes what is left and ends HDF5. Without any accepted increment the files of an earlier
    !> run stay, but for `.cvg`, which then holds the iterations that failed.
    !> Error: status_internal, when a file cannot be written.
-   subroutine finish(self, model, interfaces, run, failed, error)
+   subroutine finish(self, model, interfaces, run, accuracy, failed, error)
       class(results_type), intent(inout) :: self          !! the writer
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run           !! the whole run
+      type(accuracy_rounds_type), intent(in) :: accuracy
       type(iteration_record_type), intent(in) :: failed(:) !! passes of the increment that failed
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
@@ -184,7 +186,7 @@ contains
       call self%convergence%append(failed)
       call self%passes%add_iterations(failed)
       if (self%accepted > 0) then
-         call publish(self, model, interfaces, run, error, ends_run=.true.)
+         call publish(self, model, interfaces, run, error, accuracy)
       else
          call self%passes%empty(error)
          if (.not. allocated(error)) call self%passes%write_waiting(error)
@@ -249,13 +251,13 @@ contains
       end do
    end function waiting_bytes
 
-   subroutine publish(self, model, interfaces, run, error, ends_run)
+   subroutine publish(self, model, interfaces, run, error, accuracy)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error
-      logical, intent(in) :: ends_run
+      type(accuracy_rounds_type), intent(in), optional :: accuracy   ! at the end of the run
       type(run_summary_type) :: until_now
       real(dp) :: since
       logical :: is_first
@@ -266,7 +268,8 @@ contains
       until_now = run
       until_now%seconds_write = run%seconds_write + (wall_seconds() - since)
       call write_run(self%file%content, until_now, model)
-      if (ends_run) call write_accuracy(self%file%content, run%accuracy, interfaces, model%units)
+      if (present(accuracy)) call write_accuracy(self%file%content, accuracy, interfaces, &
+         model%units)
       call self%file%close(error)
       if (allocated(error)) return
       call publish_contact(self, model, interfaces, error)

@@ -5,7 +5,8 @@
 !> is whole. Until then nothing of it is in the files.
 module run_output
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use accuracy_lines, only: add_rounds, add_targets
+   use accuracy_lines, only: told_of_rounds
+   use accuracy_rounds, only: accuracy_rounds_type
    use contact_points, only: contact_points_type
    use errors, only: error_type
    use kinds, only: dp
@@ -28,7 +29,8 @@ module run_output
    !> The output of one run.
    type :: run_output_type
       private
-      type(run_summary_type), public :: run                    !! the caller keeps it up to date
+      !> The caller keeps it up to date; of a later round it holds the checks of the first
+      type(run_summary_type), public :: run
       type(results_type) :: results                            !! result file, `.sta`, `.cvg`
       type(listing_type) :: listing                            !! `.lst`
       type(verifier_type) :: verifier                          !! *VERIFY cards
@@ -154,7 +156,6 @@ contains
       character(*), intent(in) :: reason                     !! what went wrong, one sentence
       type(increment_record_type), intent(in) :: record      !! attempts and passes; empty for none
 
-      call self%run%accuracy%drop_round()
       if (self%kept_round > 0) then
          call self%progress%clear()
          call self%results%give_up()
@@ -169,27 +170,26 @@ contains
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
    !> verdicts.
    !> Error: status_internal, when a file cannot be written.
-   subroutine finish(self, model, interfaces, cards, error)
+   subroutine finish(self, model, interfaces, cards, accuracy, error)
       class(run_output_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), intent(in) :: cards(:)           !! card images as read
+      type(accuracy_rounds_type), intent(in) :: accuracy  !! rounds of a requested accuracy
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: warnings(:)
       real(dp) :: since
       integer :: counts(3)
 
       since = wall_seconds()
-      associate (accuracy => self%run%accuracy)
-         if (size(self%verifier%outcomes) > 0) then
-            counts = self%verifier%counts()
-            accuracy%checks_passed = counts(1)
-            accuracy%checks_failed = counts(2)
-         end if
-         self%run%verify_passed = accuracy%checks_passed
-         self%run%verify_failed = accuracy%checks_failed
-      end associate
-      call self%results%finish(model, interfaces, self%run, self%failed, error)
+      if (size(self%verifier%outcomes) > 0) then
+         counts = self%verifier%counts()
+         self%run%verify_passed = counts(1)
+         self%run%verify_failed = counts(2)
+      end if
+      self%run%accuracy = told_of_rounds(accuracy, self%run%verify_passed + &
+         self%run%verify_failed > 0, interfaces, model%units)
+      call self%results%finish(model, interfaces, self%run, accuracy, self%failed, error)
       if (allocated(error)) then
          call self%break_off(error%message)
          return
@@ -200,7 +200,7 @@ contains
       warnings = self%judgement%warnings(model, interfaces)
       call self%listing%warn(warnings)
       call self%listing%finish(model, interfaces, cards, self%verifier, self%run, error)
-      if (.not. self%run%accuracy%goes_on) call print_warnings(self, warnings)
+      if (self%run%accuracy%later_round == 0) call print_warnings(self, warnings)
    end subroutine finish
 
    !> Ends the listing with the reason why the other files could not be written.
@@ -230,18 +230,19 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable :: lines(:)
-      type(string_type), allocatable :: targets(:)
       integer :: i
 
-      allocate (lines(0), targets(0))
+      allocate (lines(0))
       call self%listing%summary%add_lines(model, interfaces, lines)
-      call add_targets(self%run%accuracy, interfaces, model%units, targets)
-      do i = 1, size(targets)
-         ! The verdict is the first one.
-         if (i > 1) targets(i)%value = '   '//targets(i)%value
-         call append(lines, targets(i)%value)
-      end do
-      call add_rounds(self%run%accuracy, lines)
+      associate (targets => self%run%accuracy%targets, rounds => self%run%accuracy%rounds)
+         do i = 1, size(targets)
+            ! The verdict is the first one.
+            call append(lines, repeat(' ', merge(0, 3, i == 1))//targets(i)%value)
+         end do
+         do i = 1, size(rounds)
+            call append(lines, rounds(i)%value)
+         end do
+      end associate
    end function summary_lines
 
    !> One line for each *VERIFY card that failed, and one for all that could not be judged.

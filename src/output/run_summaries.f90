@@ -1,7 +1,6 @@
 !> A run as a whole: what it models, its sizes, its times, in one table. The listing,
 !> `thercon check` and the attributes of `/run` in the result file read this table.
 module run_summaries
-   use accuracy_rounds, only: accuracy_rounds_type
    use hanging_nodes, only: hanging_count
    use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp, long
@@ -11,7 +10,7 @@ module run_summaries
    use text, only: string_type, to_text
    implicit none
    private
-   public :: run_summary_type, run_entry_type, run_entries, write_run, or_blank
+   public :: run_summary_type, accuracy_words_type, run_entry_type, run_entries, write_run, or_blank
    public :: in_listing, in_check, in_times
 
    ! Where an entry is told.
@@ -22,6 +21,14 @@ module run_summaries
    integer, parameter :: in_times = 4     !! in the listing's section SECONDS
 
    integer, parameter :: format_version = 1   !! of the result file; grows where old readers fail
+
+   !> A requested accuracy, as listing and terminal tell it.
+   type :: accuracy_words_type
+      type(string_type), allocatable :: targets(:)  !! verdict, a line for each target, and remarks
+      type(string_type), allocatable :: rounds(:)   !! table of the rounds
+      character(:), allocatable :: missed   !! verdict and targets not met; empty where all are
+      integer :: later_round = 0            !! round that follows, 0 for none
+   end type accuracy_words_type
 
    !> One run. The caller of the output layer keeps it up to date.
    type :: run_summary_type
@@ -38,7 +45,7 @@ module run_summaries
       real(dp) :: seconds_write = 0.0_dp         !! writing; the output layer adds to it [s]
       integer :: verify_passed = 0               !! *VERIFY checks that passed
       integer :: verify_failed = 0               !! *VERIFY checks that failed
-      type(accuracy_rounds_type) :: accuracy     !! rounds of a requested accuracy
+      type(accuracy_words_type) :: accuracy      !! a requested accuracy, once a round ended
    end type run_summary_type
 
    !> A fact about a run.

@@ -1,61 +1,75 @@
-!> One deck to its results.
+!> One deck to its results, and the end of a run that comes early: by a signal, an error or a lack
+!> of memory.
 module deck_run
-   use accuracy_lines, only: missed_words
-   use accuracy_rounds, only: accuracy_rounds_type
-   use batch_table, only: table_name
+   use adaptive_rounds, only: adaptive_rounds_type, round_solver_type
    use blas_lapack, only: reserve_blas_memory
    use clock, only: wall_seconds
    use command_line, only: command_type
+   use deck_files, only: input_files_type, outputs_of, results_of
    use deck_outcomes, only: deck_outcome_type
    use deck_preparation, only: not_a_deck, prepare_deck, read_deck_type
-   use error_estimator, only: error_estimator_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
    use increments, only: simulation_type
-   use input_files, only: input_files_type
-   use interruption, only: end_after_grace, end_at_once, end_by_increments
+   use interruption, only: caught_signal, end_after_grace, end_at_once, end_by_increments, &
+      run_end_type
    use kinds, only: dp
+   use load_histories, only: step_clock_type
    use messages, only: print_error
    use model, only: model_type
    use records, only: increment_record_type
    use run_description, only: describe_run
-   use run_ending, only: check_signals, prepare_end, report_failure, run_type, say_when
-   use run_output, only: paths_written, run_output_type
-   use text, only: append, string_type
+   use run_output, only: run_output_type
+   use text, only: append, string_type, to_text
+   use utf8, only: printable
    use variations, only: variation_type
    implicit none
    private
-   public :: run_deck, base_name, results_of, outputs_of
+   public :: run_deck
 
-   !> What goes from one round to the next.
-   type :: rounds_type
-      type(read_deck_type) :: deck
-      type(accuracy_rounds_type) :: accuracy
-      type(variation_type), allocatable :: variation   !! of the deck; unallocated in the first one
-      integer :: lock = -1                             !! as run_output_type's reserve
-   end type rounds_type
+   !> The run of a deck, round by round. Held by value, the copying and freeing of all that it
+   !> points to, which nothing calls, would be most of the code of this module.
+   type, extends(round_solver_type) :: deck_run_type
+      character(:), allocatable :: path       !! the deck as given
+      type(command_type) :: command           !! options of the command line
+      type(read_deck_type), pointer :: deck => null()
+      type(deck_outcome_type), pointer :: outcome => null()
+      integer :: lock = -1                    !! as run_output_type's reserve
+      type(run_end_type) :: end               !! of an increment that takes too long
+      ! Of the present round.
+      type(model_type), pointer :: model => null()
+      type(simulation_type), pointer :: simulation => null()
+      type(run_output_type), pointer :: output => null()
+      logical :: is_written = .true.          !! whether the output went well
+   contains
+      procedure :: solve_round
+      procedure :: take
+   end type deck_run_type
 
 contains
 
    !> Solves one deck, with a requested accuracy in rounds. What goes wrong is printed on stderr and
    !> recorded in the outcome.
    subroutine run_deck(path, command, outcome)
-      character(*), intent(in) :: path                  !! the deck as given
-      type(command_type), intent(in) :: command         !! options of the command line
-      type(deck_outcome_type), intent(inout) :: outcome !! how it ended
-      type(rounds_type) :: rounds
+      character(*), intent(in) :: path                          !! the deck as given
+      type(command_type), intent(in) :: command                 !! options of the command line
+      type(deck_outcome_type), intent(inout), target :: outcome !! how it ended
+      type(read_deck_type), target :: deck
+      type(adaptive_rounds_type) :: rounds
+      type(deck_run_type) :: self
       type(error_type), allocatable :: error
       real(dp) :: since
 
       since = wall_seconds()
+      self%path = path
+      self%command = command
+      self%deck => deck
+      self%outcome => outcome
       outcome%path = path
-      call reserve_blas_memory()
       allocate (outcome%failed_checks(0))
-      do
-         call run_round(path, command, rounds, outcome)
-         if (outcome%status /= status_ok .or. .not. rounds%accuracy%goes_on) exit
-      end do
+      call reserve_blas_memory()
+      call rounds%solve(self)
       if (size(outcome%failed_checks) > 0) then
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
          call outcome%fail(error)
@@ -65,96 +79,86 @@ contains
 
    !> Solves a deck as it is written, or as the variation of a later round has it. The files of the
    !> round before stay until a later one is whole.
-   subroutine run_round(path, command, rounds, outcome)
-      character(*), intent(in) :: path
-      type(command_type), intent(in) :: command
-      type(rounds_type), intent(inout) :: rounds
-      type(deck_outcome_type), intent(inout) :: outcome
-      type(run_type) :: self
-      type(model_type), target :: model
-      type(simulation_type), target :: simulation
-      type(run_output_type), target :: output
+   subroutine solve_round(self, rounds)
+      class(deck_run_type), intent(inout) :: self
+      type(adaptive_rounds_type), intent(inout) :: rounds
       type(error_type), allocatable :: error
       real(dp) :: since
 
-      self%model => model
-      self%simulation => simulation
-      self%output => output
       since = wall_seconds()
-      call cpu_time(self%cpu_start)
-      self%path = path
-      self%command = command
-      if (allocated(rounds%variation)) self%output%kept_round = size(rounds%accuracy%rounds)
-      call outcome%begin(self%output%kept_round > 0)
-      if (outcome%keeps_round .and. .not. command%quiet) call self%end%prepare_summary( &
-         outcome%round_summary(results_of(path, command)))
-      call prepare_end(self, end_at_once)
-      call begin_round(self, rounds, outcome)
-      if (outcome%status == status_ok .and. allocated(self%model%steps)) then
-         self%output%run%seconds_read = wall_seconds() - since - &
-            self%simulation%seconds%assemble - self%simulation%seconds%reduce
-         call describe_run(path, self%model, self%simulation, self%output%run)
-         self%output%run%accuracy = rounds%accuracy
-         call solve_deck(self, rounds%deck%cards%images, outcome, error)
-         rounds%accuracy = self%output%run%accuracy
-         if (allocated(error)) call report_failure(self, error, outcome, is_told=.false.)
-         ! Of a run that could not go on for want of a file or of memory a check says nothing.
-         if (outcome%status /= status_internal) call take_checks(self, outcome)
-         if (rounds%accuracy%goes_on) then
-            if (.not. allocated(rounds%variation)) allocate (rounds%variation)
-            call self%indicators%add_to(rounds%variation)
+      allocate (self%model, self%simulation, self%output)
+      associate (outcome => self%outcome, model => self%model, simulation => self%simulation, &
+         output => self%output)
+         if (allocated(rounds%variation)) output%kept_round = size(rounds%accuracy%rounds)
+         call outcome%begin(output%kept_round > 0)
+         if (outcome%keeps_round .and. .not. self%command%quiet) call self%end%prepare_summary( &
+            outcome%round_summary(results_of(self%path, self%command)))
+         call prepare_end(self, end_at_once)
+         call begin_round(self, rounds%variation)
+         if (outcome%status == status_ok .and. allocated(model%steps)) then
+            output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
+               simulation%seconds%reduce
+            output%run%verify_passed = outcome%verify_passed
+            output%run%verify_failed = outcome%verify_failed
+            call describe_run(self%path, model, simulation, output%run)
+            call solve_deck(self, rounds, error)
+            if (allocated(error)) call report_failure(self, error, is_told=.false.)
+            ! Of a run that could not go on for want of a file or of memory a check says nothing.
+            if (outcome%status /= status_internal) call take_checks(self)
          end if
-      end if
-      call self%output%close(outcome%status == status_ok .and. rounds%accuracy%goes_on)
-      call self%simulation%release()
-   end subroutine run_round
+         associate (goes_on => rounds%accuracy%goes_on)
+            goes_on = goes_on .and. outcome%status == status_ok
+            call output%close(keeps_lock=goes_on)
+         end associate
+         call simulation%release()
+      end associate
+      deallocate (self%model, self%simulation, self%output)
+   end subroutine solve_round
 
    !> All that comes before the first increment. A first round touches no file before its deck is
    !> found sound; a later one can say in the listing what ends it.
-   subroutine begin_round(self, rounds, outcome)
-      type(run_type), intent(inout) :: self
-      type(rounds_type), intent(inout) :: rounds
-      type(deck_outcome_type), intent(inout) :: outcome
+   subroutine begin_round(self, variation)
+      type(deck_run_type), intent(inout) :: self
+      type(variation_type), intent(in), optional :: variation
       type(input_files_type) :: inputs
       type(error_type), allocatable :: error
       logical :: is_told
 
       is_told = .false.
       associate (is_later => self%output%kept_round > 0)
-         if (is_later) call reserve_files(self, rounds%lock, error)
+         if (is_later) call reserve_files(self, error)
          if (.not. allocated(error)) then
-            call prepare_deck(self%path, self%command, rounds%deck, self%model, &
-               self%simulation, error, rounds%variation)
+            call prepare_deck(self%path, self%command, self%deck, self%model, self%simulation, &
+               error, variation)
             is_told = allocated(error)
          end if
          if (.not. (allocated(error) .or. allocated(self%model%steps))) then
-            outcome%reason = not_a_deck
+            self%outcome%reason = not_a_deck
             return
          end if
          if (.not. (allocated(error) .or. is_later)) then
-            call inputs%add(self%path, rounds%deck%cards%files)
+            call inputs%add(self%path, self%deck%cards%files)
             call inputs%check(outputs_of(self%path, self%command), error)
          end if
-         if (.not. (allocated(error) .or. is_later)) call reserve_files(self, rounds%lock, error)
+         if (.not. (allocated(error) .or. is_later)) call reserve_files(self, error)
          if (.not. allocated(error)) call reduce_bodies(self, error)
          if (.not. allocated(error)) return
          if (is_later) call self%output%fail(error%message, increment_record_type())
       end associate
-      call report_failure(self, error, outcome, is_told)
+      call report_failure(self, error, is_told)
    end subroutine begin_round
 
    !> Sees to it that results can be written before anything is solved.
    !> Error: as run_output_type's reserve.
-   subroutine reserve_files(self, lock, error)
-      type(run_type), intent(inout) :: self
-      integer, intent(inout) :: lock                !! as run_output_type's reserve
+   subroutine reserve_files(self, error)
+      type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
 
       self%output%run%deck_path = self%path
       call make_folder(self%command%folder, error)
       if (allocated(error)) return
       call self%end%hold(.true.)
-      call self%output%reserve(results_of(self%path, self%command), lock, error)
+      call self%output%reserve(results_of(self%path, self%command), self%lock, error)
       call prepare_end(self, end_at_once)
       call self%end%hold(.false.)
    end subroutine reserve_files
@@ -162,7 +166,7 @@ contains
    !> What the first step needs before its first increment.
    !> Error: as simulation_type's reduce.
    subroutine reduce_bodies(self, error)
-      type(run_type), intent(inout) :: self
+      type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
 
       associate (progress => self%output%progress)
@@ -176,31 +180,30 @@ contains
    end subroutine reduce_bodies
 
    !> All increments, with their output.
-   subroutine solve_deck(self, cards, outcome, error)
-      type(run_type), intent(inout) :: self
-      type(string_type), intent(in) :: cards(:)     !! card images as read
-      type(deck_outcome_type), intent(inout) :: outcome
+   subroutine solve_deck(self, rounds, error)
+      type(deck_run_type), intent(inout) :: self
+      type(adaptive_rounds_type), intent(inout) :: rounds
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
-      type(error_estimator_type) :: estimator
       type(increment_record_type) :: record
-      logical :: is_written
 
-      associate (model => self%model, simulation => self%simulation, output => self%output, &
-         interfaces => self%simulation%bodies%interfaces, points => self%simulation%recovery%points)
+      associate (model => self%model, output => self%output, outcome => self%outcome, &
+         cards => self%deck%cards%images, interfaces => self%simulation%bodies%interfaces)
          call self%end%hold(.true.)
-         call output%start(model, interfaces, points%node, points%element_points, cards, error)
+         associate (points => self%simulation%recovery%points)
+            call output%start(model, interfaces, points%node, points%element_points, cards, error)
+         end associate
          if (allocated(error)) return
          call outcome%note_files(output%written())
          call prepare_end(self, end_at_once)
          call self%end%hold(.false.)
-         call solve_increments(self, estimator, outcome, record, is_written, error)
-         call estimator%release()
+         self%is_written = .true.
+         call begin_increment(self, error)
+         call rounds%solve_increments(model, self%simulation, self, record, error)
          ! What is written now is no longer cut short.
          call self%end%hold(.true.)
          call prepare_end(self, end_by_increments)
-         if (.not. allocated(error)) call judge_round(self)
-         if (.not. is_written) then
+         if (.not. self%is_written) then
             call output%break_off(error%message)
             return
          end if
@@ -215,7 +218,7 @@ contains
             call outcome%note(record, output%accepted(), output%written())
             if (output%kept_round > 0) return
          end if
-         call output%finish(model, interfaces, cards, output_error)
+         call output%finish(model, interfaces, cards, rounds%accuracy, output_error)
          if (output%kept_round == 0) then
             outcome%keeps_round = .false.
             outcome%increments = output%accepted()
@@ -229,130 +232,160 @@ contains
       end associate
    end subroutine solve_deck
 
-   !> Solves increment after increment, each with its output.
-   !> Errors: as simulation_type's advance and run_output_type's accept; status_interrupted.
-   subroutine solve_increments(self, estimator, outcome, record, is_written, error)
-      type(run_type), intent(inout) :: self
-      type(error_estimator_type), intent(inout) :: estimator   !! fresh
-      type(deck_outcome_type), intent(inout) :: outcome
-      type(increment_record_type), intent(out) :: record    !! the last; empty after a signal
-      logical, intent(out) :: is_written                    !! whether the output went well
+   !> A signal ends the run between two increments.
+   !> Error: status_interrupted.
+   subroutine begin_increment(self, error)
+      type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
 
-      is_written = .true.
-      associate (model => self%model, simulation => self%simulation, output => self%output)
-         call estimator%start(model, simulation)
-         call output%run%accuracy%begin_round(model%accuracy, size(model%contacts), &
-            size(model%steps))
-         call self%indicators%start(model)
-         do while (.not. simulation%finished(model))
-            call prepare_end(self, end_after_grace)
-            call check_signals(self, error)
-            if (.not. allocated(error)) then
-               call output%progress%begin_increment(simulation%control%increments + 1, &
-                  simulation%control%planned(model))
-               call estimator%begin_increment(simulation)
-               call simulation%advance(model, record, error)
-               output%run%seconds = simulation%seconds
-               output%run%sizes = simulation%sizes
-               if (allocated(error)) then
-                  if (error%status == status_interrupted) call check_signals(self, error)
-               end if
-            end if
-            if (allocated(error)) then
-               if (error%status == status_interrupted) record = increment_record_type()
-               return
-            end if
-            call estimator%end_increment(model, simulation, record, &
-               output%run%accuracy%courses)
-            call output%run%accuracy%follow(simulation%bodies%interfaces, record)
-            if (output%run%accuracy%is_on .and. record%last_of_step) call self%indicators%take( &
-               model, simulation%bodies%interfaces, output%run%accuracy, record)
+      call prepare_end(self, end_after_grace)
+      call check_signals(self, error)
+      if (.not. allocated(error)) call self%output%progress%begin_increment( &
+         self%simulation%control%increments + 1, self%simulation%control%planned(self%model))
+   end subroutine begin_increment
+
+   !> Writes an increment; of one that a signal ends nothing is written.
+   !> Errors: as run_output_type's accept; status_interrupted.
+   subroutine take(self, simulation, record, error)
+      class(deck_run_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), allocatable, intent(inout) :: error
+
+      associate (output => self%output, outcome => self%outcome, &
+         tolerance => self%model%steps(simulation%control%step)%fixed_point%tolerance)
+         output%run%seconds = simulation%seconds
+         output%run%sizes = simulation%sizes
+         if (allocated(error)) then
+            if (error%status == status_interrupted) call check_signals(self, error)
+         else
             call self%end%hold(.true.)
-            associate (tolerance => model%steps(record%step)%fixed_point%tolerance)
-               if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
-            end associate
-            call output%accept(record, model, simulation%bodies%interfaces, error)
+            if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
+            call output%accept(record, self%model, simulation%bodies%interfaces, error)
             call outcome%note(record, output%accepted(), output%written())
-            is_written = .not. allocated(error)
+            self%is_written = .not. allocated(error)
             if (allocated(error)) return
             call self%end%hold(.false.)
-         end do
+            if (.not. simulation%finished(self%model)) call begin_increment(self, error)
+         end if
+         if (allocated(error)) then
+            if (error%status == status_interrupted) record = increment_record_type()
+         end if
       end associate
-   end subroutine solve_increments
-
-   !> Judges whether a requested accuracy is reached, or another round follows.
-   subroutine judge_round(self)
-      type(run_type), intent(inout) :: self
-      real(dp) :: now
-
-      associate (accuracy => self%output%run%accuracy, run => self%output%run)
-         if (.not. accuracy%is_on) return
-         associate (round => accuracy%rounds(size(accuracy%rounds)), sizes => run%sizes)
-            round%unknowns = sizes%equations_thermal + sizes%equations_mechanical + &
-               sizes%contact_unknowns
-            round%elements = size(self%model%mesh%element_kind)
-            call cpu_time(now)
-            round%cpu_seconds = now - self%cpu_start
-         end associate
-         call accuracy%conclude(self%model%accuracy%rounds, self%indicators%asks_for_nothing())
-      end associate
-   end subroutine judge_round
+   end subroutine take
 
    !> Takes which checks of the deck failed, and which targets were missed.
-   subroutine take_checks(self, outcome)
-      type(run_type), intent(in) :: self
-      type(deck_outcome_type), intent(inout) :: outcome
-      character(:), allocatable :: missed
+   subroutine take_checks(self)
+      type(deck_run_type), intent(inout) :: self
       ! gfortran never frees the components of a function's result within an array constructor.
       type(string_type), allocatable :: failed(:)
 
-      associate (output => self%output)
-         failed = output%failed_checks(self%model)
+      associate (run => self%output%run, outcome => self%outcome)
+         failed = self%output%failed_checks(self%model)
          outcome%failed_checks = [outcome%failed_checks, failed]
-         ! Later rounds tell the verdicts of the first one, unless they end early.
-         outcome%verify_passed = max(outcome%verify_passed, output%run%verify_passed)
-         outcome%verify_failed = max(outcome%verify_failed, output%run%verify_failed)
-         if (outcome%status /= status_ok .or. output%run%accuracy%goes_on) return
-         missed = missed_words(output%run%accuracy, self%simulation%bodies%interfaces)
-         if (missed /= '') call append(outcome%failed_checks, self%path//': error: '//missed)
+         ! A later round has the verdicts of the first one, unless it ends early.
+         outcome%verify_passed = max(outcome%verify_passed, run%verify_passed)
+         outcome%verify_failed = max(outcome%verify_failed, run%verify_failed)
+         if (outcome%status /= status_ok .or. run%accuracy%later_round > 0) return
+         if (run%accuracy%missed /= '') call append(outcome%failed_checks, self%path// &
+            ': error: '//run%accuracy%missed)
       end associate
    end subroutine take_checks
 
-   !> Path of a deck's results without extension.
-   pure function results_of(path, command) result(results)
-      character(*), intent(in) :: path           !! the deck as given
-      type(command_type), intent(in) :: command
-      character(:), allocatable :: results       !! such as DIR/b for a/b.inp
+   !> Prepares the end of the run from here on: within an increment that takes too long after a
+   !> signal, or where there is no memory left.
+   subroutine prepare_end(self, when)
+      type(deck_run_type), intent(inout) :: self
+      integer, intent(in) :: when   ! one of the end_* constants
 
-      results = command%folder//'/'//base_name(path)
-   end function results_of
-
-   !> Paths of all files that a deck writes, and of the table that a batch writes beside them: no
-   !> deck may be lost to a batch of others either.
-   pure function outputs_of(path, command) result(outputs)
-      character(*), intent(in) :: path           !! the deck as given
-      type(command_type), intent(in) :: command
-      type(string_type), allocatable :: outputs(:)
-
-      outputs = paths_written(results_of(path, command))
-      call append(outputs, command%folder//'/'//table_name)
-   end function outputs_of
-
-   !> Name of a deck's results: its file name without folder and extension, or stdin where it is
-   !> read from an open file, which has a number only.
-   pure function base_name(path) result(name)
-      character(*), intent(in) :: path           !! the deck as given
-      character(:), allocatable :: name          !! such as b for a/b.inp
-      integer :: dot
-
-      if (index(path, '/dev/fd/') == 1 .or. index(path, '/proc/self/fd/') == 1) then
-         name = 'stdin'
-         return
+      self%end%when = when
+      self%end%shows_progress = self%output%progress%is_on_line()
+      self%end%deck = printable(self%path)
+      self%end%where = where_words(self)
+      self%end%listing = self%output%listing_path()
+      self%end%working = self%output%working_path()
+      self%end%kept = self%output%kept()
+      self%end%holds = kept_words(self)
+      ! Increments that wait for their publication are lost with the process.
+      if (self%output%kept_round == 0 .and. self%output%published() < self%output%accepted()) then
+         self%end%holds = '; the results hold those up to number '// &
+            to_text(self%output%published())
       end if
-      name = path(index(path, '/', back=.true.) + 1:)
-      dot = index(name, '.', back=.true.)
-      if (dot > 1) name = name(:dot - 1)
-   end function base_name
+      call self%end%prepare()
+   end subroutine prepare_end
+
+   !> Puts the increment that was tried before what went wrong.
+   subroutine say_when(self, error)
+      type(deck_run_type), intent(in) :: self
+      type(error_type), intent(inout) :: error   ! receives it in its message
+      type(step_clock_type) :: clock
+
+      clock = self%simulation%control%next_instant(self%model)
+      error%message = 'increment '//to_text(self%simulation%control%increments + 1)//' (time '// &
+         to_text(clock%total_time)//'): '//error%message
+   end subroutine say_when
+
+   !> A signal ends the run between two increments.
+   !> Error: status_interrupted.
+   subroutine check_signals(self, error)
+      type(deck_run_type), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      if (caught_signal() /= '') call set_error(error, status_interrupted, 'ended by '// &
+         caught_signal()//where_words(self))
+   end subroutine check_signals
+
+   !> In which later round and behind which increment a run ends.
+   function where_words(self) result(words)
+      type(deck_run_type), intent(in) :: self
+      character(:), allocatable :: words   ! with a blank before them
+
+      words = ''
+      if (self%output%kept_round > 0) words = ' in round '//to_text(self%output%kept_round + 1)
+      associate (control => self%simulation%control)
+         if (control%increments > 0) then
+            words = words//' after increment '//to_text(control%increments)//' (time '// &
+               to_text(control%step_start + control%step_time)//')'
+         else
+            words = words//' before the first increment'
+         end if
+      end associate
+   end function where_words
+
+   !> Where a later round ends early: which round the files are of.
+   pure function kept_words(self) result(words)
+      type(deck_run_type), intent(in) :: self
+      character(:), allocatable :: words   ! with a semicolon before them
+
+      words = ''
+      associate (kept_round => self%output%kept_round)
+         if (kept_round > 0 .and. self%output%published() == 0) words = &
+            '; the results are those of round '//to_text(kept_round)
+      end associate
+   end function kept_words
+
+   !> Prints why a run ended early. That a later round did is no mistake of the deck.
+   subroutine report_failure(self, error, is_told)
+      type(deck_run_type), intent(inout) :: self
+      type(error_type), intent(inout) :: error           ! in: what went wrong; out: as in outcome
+      logical, intent(in) :: is_told                     ! whether the reason is printed already
+      character(:), allocatable :: words
+
+      words = error%message
+      if (error%status == status_no_convergence) words = words//'; the listing shows the iterations'
+      associate (kept_round => self%output%kept_round)
+         if (kept_round > 0) then
+            if (error%status /= status_interrupted) words = ': '//words
+            if (is_told) words = ' cannot begin'
+            if (error%status /= status_interrupted) words = 'round '//to_text(kept_round + 1)//words
+            words = words//kept_words(self)
+            error%message = error%message//kept_words(self)
+            if (error%status == status_deck) error%status = status_no_convergence
+         end if
+         call self%outcome%fail(error)
+         call self%output%progress%clear()
+         if (kept_round > 0 .or. .not. is_told) call print_error(self%path, words)
+      end associate
+   end subroutine report_failure
 
 end module deck_run

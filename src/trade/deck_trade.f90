@@ -3,12 +3,11 @@ module deck_trade
    use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: command_type
    use contact_definitions, only: pairing_nodes, pairing_surfaces
+   use deck_files, only: base_name, input_files_type
    use deck_preparation, only: prepare_deck, read_deck_type
-   use deck_run, only: base_name
    use errors, only: error_type, status_deck, status_interrupted
    use file_calls, only: is_stream, make_folder, try_file
    use increments, only: simulation_type
-   use input_files, only: input_files_type
    use kinds, only: dp
    use messages, only: print_error, print_line
    use model, only: model_type

@@ -26,7 +26,7 @@ STAGES = {
     "reducing": ({"deck_run"}, {"increments:reduce"}),
     "iterating": ({"increments"}, {"increment_solution:solve_points"}),
     "recovering": ({"increments"}, {"increment_solution:recover_fields", "increment_records"}),
-    "estimating errors": ({"deck_run"}, ESTIMATES),
+    "estimating errors": ({"adaptive_rounds"}, ESTIMATES),
     "writing": ({"deck_run"}, OUTPUT),
 }
 

@@ -1,11 +1,15 @@
-!> Files that decks are read from, which no file that is written may replace.
-module input_files
+!> Files of decks: those that a run writes, and those that decks are read from, which no file that
+!> is written may replace.
+module deck_files
+   use batch_table, only: table_name
+   use command_line, only: command_type
    use errors, only: error_type, set_error, status_deck
    use file_identities, only: file_identity_type, identity_of, is_working_file, real_path_of
+   use run_output, only: paths_written
    use text, only: append, string_type
    implicit none
    private
-   public :: input_files_type
+   public :: input_files_type, base_name, results_of, outputs_of
 
    !> The files of one deck or more.
    type :: input_files_type
@@ -18,6 +22,42 @@ module input_files
    end type input_files_type
 
 contains
+
+   !> Path of a deck's results without extension.
+   pure function results_of(path, command) result(results)
+      character(*), intent(in) :: path           !! the deck as given
+      type(command_type), intent(in) :: command
+      character(:), allocatable :: results       !! such as DIR/b for a/b.inp
+
+      results = command%folder//'/'//base_name(path)
+   end function results_of
+
+   !> Paths of all files that a deck writes, and of the table that a batch writes beside them: no
+   !> deck may be lost to a batch of others either.
+   pure function outputs_of(path, command) result(outputs)
+      character(*), intent(in) :: path           !! the deck as given
+      type(command_type), intent(in) :: command
+      type(string_type), allocatable :: outputs(:)
+
+      outputs = paths_written(results_of(path, command))
+      call append(outputs, command%folder//'/'//table_name)
+   end function outputs_of
+
+   !> Name of a deck's results: its file name without folder and extension, or stdin where it is
+   !> read from an open file, which has a number only.
+   pure function base_name(path) result(name)
+      character(*), intent(in) :: path           !! the deck as given
+      character(:), allocatable :: name          !! such as b for a/b.inp
+      integer :: dot
+
+      if (index(path, '/dev/fd/') == 1 .or. index(path, '/proc/self/fd/') == 1) then
+         name = 'stdin'
+         return
+      end if
+      name = path(index(path, '/', back=.true.) + 1:)
+      dot = index(name, '.', back=.true.)
+      if (dot > 1) name = name(:dot - 1)
+   end function base_name
 
    !> Adds the files of a deck.
    subroutine add(self, deck, paths)
@@ -70,4 +110,4 @@ contains
       end do
    end function first_cleared
 
-end module input_files
+end module deck_files
