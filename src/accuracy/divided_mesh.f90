@@ -167,7 +167,6 @@ contains
          return
       end if
       call self%run%loads%prepare(self%model)
-      call self%run%bodies%points%enter_step(self%model, 1)
       self%initial = make_initial_state(self%model, self%run%bodies)
       self%run%state = self%initial
    end subroutine prepare

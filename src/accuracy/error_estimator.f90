@@ -198,7 +198,6 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(interface_errors_type), intent(inout) :: errors(:)
       real(dp) :: doubled(size(estimated), size(errors))
-      logical :: has_friction(size(simulation%bodies%points%friction))
       integer :: i, peak
 
       if (.not. self%doubled%is_led) return
@@ -207,13 +206,14 @@ contains
          call quantities_of_state(simulation%bodies, self%doubled%state, doubled)
       end if
       peak = find_quantity(estimated, 'peak_pressure')
-      has_friction = simulation%bodies%points%has_friction()
       do i = 1, size(errors)
          errors(i)%increment = of_doubled_increments*abs(errors(i)%value - doubled(:, i))
-         associate (start => simulation%bodies%points%interface_start)
-            if (simulation%bodies%interfaces(i)%pairing == pairing_surfaces .and. &
-               any(has_friction(start(i):start(i + 1) - 1))) errors(i)%increment(peak) = &
-               of_doubled_in_peak*abs(errors(i)%value(peak) - doubled(peak, i))
+         associate (bodies => simulation%bodies, start => simulation%bodies%points%interface_start)
+            if (bodies%interfaces(i)%pairing == pairing_surfaces .and. &
+               any(bodies%laws%friction(start(i):start(i + 1) - 1)%coefficient > 0.0_dp)) then
+               errors(i)%increment(peak) = of_doubled_in_peak*abs(errors(i)%value(peak) - &
+                  doubled(peak, i))
+            end if
          end associate
       end do
    end subroutine bound_increments

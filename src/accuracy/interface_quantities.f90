@@ -63,10 +63,11 @@ contains
             first = points%interface_start(i)
             last = points%interface_start(i + 1) - 1
             values(:, i) = quantities_of(bodies%interfaces(i), contact_of( &
-               bodies%interfaces(i), points%friction(first), contact%contact_state(first:last), &
-               contact%gap(first:last), contact%force(first:last), &
-               contact%shear_force(first:last), heat_across(points%weight(first:last), &
-               state%carrying(first:last), state%jump(first:last))))
+               bodies%interfaces(i), bodies%laws%friction(first), &
+               contact%contact_state(first:last), contact%gap(first:last), &
+               contact%force(first:last), contact%shear_force(first:last), &
+               heat_across(points%weight(first:last), state%carrying(first:last), &
+               state%jump(first:last))))
          end do
       end associate
    end subroutine quantities_of_state

@@ -1,18 +1,16 @@
 !> The contact points of all interfaces in one row, as the solution works on them, and beside them
 !> the points of all ties, the nodes that hang and the equations of the deck.
 module all_contact_points
-   use conductance_laws, only: conductance_law_type, is_constant, varies_with_temperature
-   use contact_definitions, only: is_removed, latest_friction
+   use conductance_laws, only: is_constant, varies_with_temperature
    use contact_pairs, only: make_contact_points
    use contact_points, only: contact_points_type
    use equations, only: equation_type
    use errors, only: error_type
-   use friction_laws, only: friction_law_type, unlimited
    use hanging_nodes, only: hanging_rows
    use kinds, only: dp
    use model, only: model_type
    use sum_lists, only: sum_list_type
-   use temperature_laws, only: face_temperatures_type, law_at, law_jumps
+   use temperature_laws, only: law_jumps
    use tie_points, only: joined_ties, make_tie_points, tie_points_type
    use transforms, only: partner_type
    implicit none
@@ -32,15 +30,7 @@ module all_contact_points
       type(sum_list_type) :: mean
       real(dp), allocatable :: weight(:)                      !! (m) tributary areas [length^2]
       real(dp), allocatable :: initial_gap(:)                 !! (m) h [length]
-      type(friction_law_type), allocatable :: friction(:)     !! (m) laws of friction
       real(dp), allocatable :: normal(:, :), tangent(:, :)    !! (2, m) unit vectors
-      type(conductance_law_type), allocatable :: law(:)       !! (m) conductance laws
-      !> (m) whether the interface is removed: its contact points are open whatever their gaps, and
-      !> have neither friction nor conductance
-      logical, allocatable :: removed(:)
-      !> (2, m) unit vectors along which supports hold both nodes, while they leave one of them free
-      !> across; else 0
-      real(dp), allocatable :: held_direction(:, :)
       logical, allocatable :: cuts_hats(:) !! (interfaces) whether the edge of contact cuts hats
       !> nodes of both faces of these interfaces; unallocated where there are none
       integer, allocatable :: cut_nodes(:)
@@ -49,21 +39,14 @@ module all_contact_points
       type(equation_type), allocatable :: equations(:)        !! equations of the deck
       type(partner_type), allocatable :: partners(:)          !! nodes with axes of their own
    contains
-      procedure :: enter_step
       procedure :: jumps
       procedure :: vary_with_temperature
       procedure :: means
-      procedure :: laws_at
-      procedure :: laws_of
       procedure :: relative
-      procedure :: add_heat
       procedure :: add_forces
       procedure :: nodes_of
       procedure :: means_of
       procedure :: turns
-      procedure :: is_held
-      procedure :: has_friction
-      procedure :: largest_friction
    end type all_contact_points_type
 
 contains
@@ -119,9 +102,8 @@ contains
          row%interface_start(i + 1) = row%interface_start(i) + size(interfaces(i)%slave_node)
       end do
       m = row%interface_start(size(interfaces) + 1) - 1
-      allocate (row%slave(m), row%master(m), row%weight(m), row%initial_gap(m), row%friction(m), &
-         row%normal(2, m), row%tangent(2, m), row%law(m), row%removed(m))
-      allocate (row%held_direction(2, m), source=0.0_dp)
+      allocate (row%slave(m), row%master(m), row%weight(m), row%initial_gap(m), row%normal(2, m), &
+         row%tangent(2, m))
       call row%difference%reserve(m, 2*m)
       if (any([(interfaces(i)%across%count > 0, i=1, size(interfaces))])) then
          call row%along%reserve(m, 2*m)
@@ -148,14 +130,15 @@ contains
             end do
          end if
       end do
-      call row%enter_step(model, 0)
-      if (any(varies_with_temperature(row%law))) row%mean = means_of_faces(interfaces)
+      if (any(varies_with_temperature(model%interactions(model%contacts%interaction)%law))) then
+         row%mean = means_of_faces(interfaces)
+      end if
       row%ties = joined_ties(model%mesh, model%ties, of_ties)
       row%hanging = hanging_rows(model%mesh)
       allocate (row%equations(0), row%partners(0))
       if (allocated(model%partners)) row%partners = model%partners
       if (allocated(model%equations)) row%equations = model%equations
-      call find_cut_faces(interfaces, row)
+      call find_cut_faces(model, interfaces, row)
    end function joined_points
 
    !> The mean of slave's and master's value at all contact points.
@@ -177,7 +160,8 @@ contains
 
    !> Hats are cut of mortar points whose conductance varies without a jump, where it follows from
    !> gap and pressure alone: the means of the faces (gap_temperatures) go by jumps of whole hats.
-   pure subroutine find_cut_faces(interfaces, row)
+   pure subroutine find_cut_faces(model, interfaces, row)
+      type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(all_contact_points_type), intent(inout) :: row
       integer, allocatable :: nodes(:)
@@ -189,7 +173,7 @@ contains
       do i = 1, size(interfaces)
          if (.not. allocated(interfaces(i)%segments)) cycle
          if (size(interfaces(i)%slave_node) < 2) cycle
-         associate (law => row%law(row%interface_start(i)))
+         associate (law => model%interactions(model%contacts(i)%interaction)%law)
             row%cuts_hats(i) = .not. (law_jumps(law) .or. is_constant(law))
          end associate
          if (.not. row%cuts_hats(i)) cycle
@@ -199,64 +183,12 @@ contains
       if (size(nodes) > 0) row%cut_nodes = nodes
    end subroutine find_cut_faces
 
-   !> Takes the laws of a step.
-   pure subroutine enter_step(self, model, step)
-      class(all_contact_points_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: step                  !! index of the step, 0 before the first
-      integer :: first, i, last
-
-      do i = 1, size(self%interface_start) - 1
-         first = self%interface_start(i)
-         last = self%interface_start(i + 1) - 1
-         associate (interaction => model%interactions(model%contacts(i)%interaction))
-            self%friction(first:last) = interaction%friction
-            self%law(first:last) = interaction%law
-            self%removed(first:last) = .false.
-            if (step == 0) cycle
-            self%friction(first:last) = latest_friction(model%steps(:step)%changes, &
-               model%contacts(i)%interaction, interaction%friction)
-            if (.not. is_removed(model%steps(:step)%changes, i)) cycle
-         end associate
-         self%friction(first:last) = friction_law_type()
-         self%law(first:last) = conductance_law_type()
-         self%removed(first:last) = .true.
-      end do
-   end subroutine enter_step
-
    !> Whether the normal turns along the face of some contact point.
    pure logical function turns(self)
       class(all_contact_points_type), intent(in) :: self
 
       turns = allocated(self%across%start)
    end function turns
-
-   !> Whether supports hold a contact point along a direction.
-   elemental logical function is_held(self, k)
-      class(all_contact_points_type), intent(in) :: self
-      integer, intent(in) :: k                     !! a contact point
-
-      is_held = norm2(self%held_direction(:, k)) > 0.0_dp
-   end function is_held
-
-   !> Where friction acts.
-   pure function has_friction(self)
-      class(all_contact_points_type), intent(in) :: self
-      logical :: has_friction(size(self%friction))         !! (m)
-
-      has_friction = self%friction%coefficient > 0.0_dp
-   end function has_friction
-
-   !> Largest friction forces whatever the pressure; none at contact points of weight 0, over which
-   !> no traction acts.
-   pure function largest_friction(self) result(force)
-      class(all_contact_points_type), intent(in) :: self
-      real(dp) :: force(size(self%friction))               !! (m) [force]
-
-      force = unlimited
-      where (self%friction%largest_shear < unlimited .and. self%weight > 0.0_dp) &
-         force = self%friction%largest_shear*self%weight
-   end function largest_friction
 
    !> Slave's value less master's of a field, at every contact point.
    pure function jumps(self, field)
@@ -275,45 +207,16 @@ contains
       vary_with_temperature = allocated(self%mean%start)
    end function vary_with_temperature
 
-   !> Mean of slave's and master's value of a field, at every contact point.
+   !> Mean of slave's and master's value of a field, at every contact point; 0 where no law asks for
+   !> it.
    pure function means(self, field)
       class(all_contact_points_type), intent(in) :: self
       real(dp), intent(in) :: field(:)             !! (nodes)
       real(dp) :: means(size(self%slave))          !! (m)
 
       means = 0.0_dp
-      call self%mean%add_totals(field, means)
+      if (self%vary_with_temperature()) call self%mean%add_totals(field, means)
    end function means
-
-   !> The conductance laws at given temperatures of the faces.
-   pure function laws_at(self, faces) result(laws)
-      class(all_contact_points_type), intent(in) :: self
-      type(face_temperatures_type), intent(in) :: faces(:)      !! (m)
-      type(conductance_law_type), allocatable :: laws(:)        !! (m)
-      integer :: k
-
-      allocate (laws(size(faces)))
-      do k = 1, size(faces)
-         laws(k) = law_at(self%law(k), faces(k))
-      end do
-   end function laws_at
-
-   !> The conductance laws at the temperatures of a field whose jumps are known.
-   pure function laws_of(self, temperature, jump) result(laws)
-      class(all_contact_points_type), intent(in) :: self
-      real(dp), intent(in) :: temperature(:)                    !! (nodes)
-      real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta
-      type(conductance_law_type), allocatable :: laws(:)        !! (m)
-      real(dp) :: mean(size(jump))
-      integer :: k
-
-      if (.not. self%vary_with_temperature()) then
-         laws = self%law
-         return
-      end if
-      mean = self%means(temperature)
-      laws = self%laws_at([(face_temperatures_type(mean(k), jump(k)), k=1, size(jump))])
-   end function laws_of
 
    !> Slave's displacement less master's, at every contact point, in the directions of its normal:
    !> the mean of displacements that are turned with the face.
@@ -334,15 +237,6 @@ contains
       call self%across%add_totals(displacement(2::2), across(2, :))
       relative = relative + reshape([across(2, :), -across(1, :)], shape(across), order=[2, 1])
    end function relative
-
-   !> Adds what leaves the slave's nodes through the contact points, and enters the master's.
-   pure subroutine add_heat(self, heat, rates)
-      class(all_contact_points_type), intent(in) :: self
-      real(dp), intent(in) :: heat(:)              !! (m) heat from slave to master [power]
-      real(dp), intent(inout) :: rates(:)          !! (nodes) [power]
-
-      call self%difference%add_shares(heat, rates)
-   end subroutine add_heat
 
    !> Adds the nodal forces of forces on the slave at the contact points, and of their opposites on
    !> the master.

@@ -2,7 +2,7 @@
 !> fields, against what the reduced system says crosses the contacts.
 module balances
    use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
-   use friction_laws, only: friction_bound
+   use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    use all_contact_points, only: all_contact_points_type
    implicit none
@@ -28,7 +28,7 @@ contains
       real(dp) :: residual(size(conducted)) !! (nodes) zero where not prescribed [power]
 
       residual = conducted - load
-      call points%add_heat(contact_heat, residual)
+      call points%difference%add_shares(contact_heat, residual)
    end function heat_residual
 
    !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces
@@ -85,24 +85,24 @@ contains
    !> the recovered displacements, relative to the largest displacement and force. Where a row is
    !> supported on one body, the traction is taken from the other; where on both, the reduced
    !> system's is.
-   pure function contact_violation(positions, residual, supported, points, state, &
-      friction_acts, scales) result(violation)
-      !> (2, m) gaps and tangential positions by these displacements [length]
+   pure function contact_violation(positions, residual, supported, points, state, friction, &
+      scales) result(violation)
+      !> (2, m) gaps, 0 where an interface is removed, and tangential positions by these
+      !> displacements [length]
       real(dp), intent(in) :: positions(:, :)
       !> (2 nodes) as from force_residual, without the forces of ties [force]
       real(dp), intent(in) :: residual(:)
       logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
       type(all_contact_points_type), intent(in) :: points
       type(contact_state_type), intent(in) :: state  !! the state that is checked
-      logical, intent(in) :: friction_acts(:) !! (m) whether the tangent is an unknown with friction
+      !> (m) of nodal forces, none where the tangent is no unknown
+      type(friction_law_type), intent(in) :: friction(:)
       type(scales_type), intent(in) :: scales
       real(dp) :: violation                          !! relative
       real(dp) :: force(2), gap, normal_force, shear_force, slip, cone
-      real(dp) :: largest(size(points%slave))
       integer :: c, k, slave_dof, master_dof
 
       violation = 0.0_dp
-      largest = points%largest_friction()
       do k = 1, size(points%slave)
          ! A node may be in several contact points: what they leave over goes to each of them.
          force = state%shear_force(k)*points%tangent(:, k) - state%force(k)*points%normal(:, k)
@@ -119,15 +119,14 @@ contains
          slip = (positions(2, k) - state%reference(k))/scales%length
          normal_force = -dot_product(force, points%normal(:, k))/scales%force
          shear_force = dot_product(force, points%tangent(:, k))/scales%force
-         cone = friction_bound(points%friction(k)%coefficient, largest(k), &
+         cone = friction_bound(friction(k)%coefficient, friction(k)%largest_shear, &
             normal_force*scales%force)/scales%force
          if (state%contact_state(k) == contact_open) then
-            if (points%removed(k)) gap = 0.0_dp
             violation = max(violation, -gap, abs(normal_force), abs(shear_force))
             cycle
          end if
          violation = max(violation, abs(gap), -normal_force)
-         if (.not. friction_acts(k)) cycle
+         if (friction(k)%coefficient <= 0.0_dp) cycle
          if (state%contact_state(k) == contact_slip) then
             violation = max(violation, abs(abs(shear_force) - cone))
             violation = max(violation, min(slip*sign(1.0_dp, shear_force), abs(shear_force)))

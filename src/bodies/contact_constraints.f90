@@ -17,7 +17,7 @@ module contact_constraints
    use kinds, only: dp
    use linear_constraints, only: linear_constraints_type, node_stiffness
    use all_contact_points, only: all_contact_points_type
-   use held_points, only: over_constrained
+   use held_points, only: held_directions, over_constrained
    use sparse_matrix, only: sparse_matrix_type
    use sum_lists, only: sum_list_type
    use tie_constraints, only: add_ties, most_rows
@@ -37,10 +37,12 @@ contains
    !> Constraints of the displacements; the normal ones, and with friction the tangential ones, are
    !> on the tail.
    !> Error: a contact point whose normal motion is prescribed on both nodes.
-   subroutine constrain_displacements(used, held, points, slave_leads, constraints, error)
+   subroutine constrain_displacements(used, held, points, has_friction, slave_leads, &
+      constraints, error)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
-      type(all_contact_points_type), intent(in) :: points !! contact points, their held axes found
+      type(all_contact_points_type), intent(in) :: points !! contact points
+      logical, intent(in) :: has_friction(:)        !! (m)
       !> (m) whether the slave is to lead where neither node is prescribed; else the master does
       logical, intent(in) :: slave_leads(:)
       type(linear_constraints_type), intent(out) :: constraints
@@ -53,6 +55,7 @@ contains
          return
       end if
       rows = displacement_rows(held, points, slave_leads)
+      rows%on_tail(2::2) = has_friction
       call eliminate(rows, in_use(used, points%equations, .false.), constraints)
    end subroutine constrain_displacements
 
@@ -62,16 +65,17 @@ contains
       type(all_contact_points_type), intent(in) :: points !! as above
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(constraint_rows_type) :: rows
+      real(dp) :: directions(2, size(slave_leads))
       integer :: k
 
+      directions = held_directions(points, held)
       call begin_rows(held, 2, points, rows)
       call add_equations(points%equations, .false., rows)
       call add_ties(points%ties, held, rows)
       do k = 1, size(points%slave)
-         rows%on_tail(2*k - 1:2*k) = [.true., points%friction(k)%coefficient > 0.0_dp]
          associate (n => points%normal(:, k), t => points%tangent(:, k), &
-            across => abs(points%held_direction([2, 1], k)))
-            if (points%is_held(k)) then
+            across => abs(directions([2, 1], k)))
+            if (any(across > 0.0_dp)) then
                call relate(points, k, maxloc(across, dim=1), n, [1.0_dp], slave_leads, rows)
             else
                call relate(points, k, 1, [1.0_dp, 0.0_dp], [n(1), t(1)], slave_leads, rows)
@@ -105,7 +109,6 @@ contains
       call begin_rows(held, 1, points, rows)
       call add_equations(points%equations, .true., rows)
       call add_ties(points%ties, held, rows)
-      rows%on_tail = .true.
       if (allocated(points%cut_nodes)) then
          allocate (rows%dof_on_tail(size(held)), source=.false.)
          rows%dof_on_tail(points%cut_nodes) = .true.
@@ -164,7 +167,8 @@ contains
       introduced = components*size(points%slave)
       most = count(held) + components*points%hanging%count + size(points%equations) + &
          most_rows(points%ties, components) + introduced
-      allocate (rows%on_tail(introduced), rows%origin(most), rows%choice(most))
+      allocate (rows%on_tail(introduced), source=.true.)
+      allocate (rows%origin(most), rows%choice(most))
       call rows%reserve(most, 2*count(held) + components*(introduced + &
          size(points%difference%value)*merge(2, 1, points%turns())))
       do dof = 1, size(held)

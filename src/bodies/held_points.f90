@@ -6,7 +6,7 @@ module held_points
    use kinds, only: dp
    implicit none
    private
-   public :: find_held_directions, over_constrained, normal_supports, free_part
+   public :: held_directions, over_constrained, normal_supports, free_part
    public :: tangential_positions
 
    !> Component of a unit vector that is rounding: two axes are one, or the normal motion of a
@@ -15,17 +15,20 @@ module held_points
 
 contains
 
-   !> Finds the directions along which supports hold contact points: all nodes, or the two opposite
-   !> ones if it is nearer to their tangent, as at the end of a line of symmetry.
-   pure subroutine find_held_directions(points, held)
-      type(all_contact_points_type), intent(inout) :: points !! all contact points
-      logical, intent(in) :: held(:)                        !! (2 nodes) prescribed displacements
+   !> Directions along which supports hold contact points: all nodes, or the two opposite ones if it
+   !> is nearer to their tangent, as at the end of a line of symmetry.
+   pure function held_directions(points, held) result(directions)
+      type(all_contact_points_type), intent(in) :: points !! all contact points
+      logical, intent(in) :: held(:)                      !! (2 nodes) prescribed displacements
+      !> (2, m) unit vectors along which both nodes are held, while one of them is free across; 0
+      !> where there are none
+      real(dp) :: directions(2, size(points%slave))
       real(dp) :: axes(2, 2)
       logical :: all_held(2)
       integer :: k
 
       do k = 1, size(points%slave)
-         associate (direction => points%held_direction(:, k))
+         associate (direction => directions(:, k))
             direction = 0.0_dp
             call find_shared_axes(points, held, k, axes, all_held)
             if (all(all_held)) cycle
@@ -36,7 +39,7 @@ contains
             end if
          end associate
       end do
-   end subroutine find_held_directions
+   end function held_directions
 
    !> Contact points whose normal motion is prescribed: their nodes are held along both axes, or
    !> along the one that is their normal.
@@ -161,8 +164,9 @@ contains
    !> Positions of the slave along the tangents, relative to the master. A held contact point slides
    !> only as its supports do: while it is open, the position counts that it would have if it closed
    !> with the supports where they are.
-   pure function tangential_positions(points, displacement) result(position)
+   pure function tangential_positions(points, directions, displacement) result(position)
       type(all_contact_points_type), intent(in) :: points !! all contact points
+      real(dp), intent(in) :: directions(:, :)     !! (2, m) as from held_directions
       real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
       real(dp) :: position(size(points%slave))     !! (m) [length]
       real(dp) :: relative(2, size(position))
@@ -170,9 +174,9 @@ contains
 
       relative = points%relative(displacement)
       do k = 1, size(position)
-         associate (d => points%held_direction(:, k), n => points%normal(:, k), &
+         associate (d => directions(:, k), n => points%normal(:, k), &
             t => points%tangent(:, k))
-            if (points%is_held(k)) then
+            if (norm2(d) > 0.0_dp) then
                position(k) = (dot_product(d, relative(:, k)) - &
                   points%initial_gap(k)*dot_product(d, n))/dot_product(d, t)
             else

@@ -3,6 +3,7 @@
 !> (heat_reduction).
 module reduced_bodies
    use contact_constraints, only: constrain_displacements, constrain_temperatures
+   use contact_laws, only: contact_laws_type, laws_of_step
    use conductance_laws, only: is_constant
    use contact_points, only: contact_points_type
    use element_kinds, only: element_node_count
@@ -14,7 +15,7 @@ module reduced_bodies
    use mesh, only: extent_of
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type, joined_points, match_surfaces, match_tie
-   use held_points, only: find_held_directions
+   use held_points, only: held_directions
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
@@ -33,12 +34,14 @@ module reduced_bodies
       type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the order of the deck
       type(contact_points_type), allocatable :: ties(:)       !! points of the ties likewise
       type(all_contact_points_type) :: points                 !! all their contact points
+      type(contact_laws_type) :: laws                         !! theirs in the step
+      !> (2, m) along which the supports hold contact points, as from held_directions
+      real(dp), allocatable :: held_direction(:, :)
       type(field_problem_type) :: thermal                     !! heat, (3.3)
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       real(dp), allocatable :: initial_force(:)               !! (2 nodes) of stresses, or none
       type(equilibrium_reduction_type) :: equilibrium         !! the partial solution of (2.4)
-      real(dp), allocatable :: initial_temperature(:)         !! (nodes) [temperature]
       real(dp) :: largest_expansion = 0.0_dp !! of all bodies [1/temperature]
       real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
@@ -60,7 +63,8 @@ module reduced_bodies
 
 contains
 
-   !> Matches the surfaces, unless the caller has already put their points in place.
+   !> Matches the surfaces, unless the caller has already put their points in place; with the laws
+   !> of the first step.
    !> Errors: as make_contact_points and make_tie_points.
    subroutine prepare(self, model, error)
       class(reduced_bodies_type), intent(inout) :: self !! empty
@@ -83,7 +87,7 @@ contains
          end do
       end if
       self%points = joined_points(self%interfaces, self%ties, model)
-      self%initial_temperature = model%initial_temperature
+      self%laws = laws_of_step(model, self%points%interface_start, self%points%weight, 1)
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
@@ -100,12 +104,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: heat, mechanics
 
-      call self%points%enter_step(model, step)
+      self%laws = laws_of_step(model, self%points%interface_start, self%points%weight, step)
       associate (held => loads%displacement%active, held_temperature => loads%temperature%active, &
-         has_friction => self%points%has_friction())
+         has_friction => self%laws%friction%coefficient > 0.0_dp)
          mechanics = solves_mechanics(model%steps(step)%analysis)
          heat = solves_heat(model%steps(step)%analysis)
-         self%is_coupled = heat .and. mechanics .and. .not. all(is_constant(self%points%law))
+         self%is_coupled = heat .and. mechanics .and. .not. all(is_constant(self%laws%conductance))
          if (mechanics .and. allocated(self%held)) mechanics = any(self%held .neqv. held) .or. &
             any(self%has_friction .neqv. has_friction)
          if (heat .and. allocated(self%held_temperature)) then
@@ -134,7 +138,7 @@ contains
       type(joint_type), allocatable :: of_equations(:), of_ties(:)
 
       if (mechanics) then
-         call find_held_directions(self%points, held)
+         self%held_direction = held_directions(self%points, held)
          of_ties = joints_of(self%points%ties)
          of_equations = joints_of(self%points%equations)
          call unsupported_motions(model%mesh, held, [of_ties, of_equations], self%rigid)
@@ -142,7 +146,8 @@ contains
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) then
             call constrain_displacements(used, held, points, &
-               slave_is_stiffer(model, points, .true.), self%mechanical%map, error)
+               self%laws%friction%coefficient > 0.0_dp, slave_is_stiffer(model, points, .true.), &
+               self%mechanical%map, error)
             if (allocated(error)) return
             call self%mechanical%finish_numbering()
          end if

@@ -11,7 +11,7 @@
 module redundant_points
    use all_contact_points, only: all_contact_points_type
    use constraint_rows, only: constraint_rows_type, of_contact, row_origin_type
-   use held_points, only: free_part
+   use held_points, only: free_part, held_directions
    use kinds, only: dp
    use row_origins, only: dependent_rows
    implicit none
@@ -27,17 +27,19 @@ contains
 
    !> A contact point of one interface whose normal force, or friction force, supports leave
    !> undetermined beside those of the others; 0 where there is none.
-   pure integer function first_redundant(points, first, last, held) result(found)
+   pure integer function first_redundant(points, first, last, held, has_friction) result(found)
       type(all_contact_points_type), intent(in) :: points !! all contact points
       integer, intent(in) :: first, last                  !! those of the interface
       logical, intent(in) :: held(:)                      !! (2 nodes) prescribed displacements
+      logical, intent(in) :: has_friction(:)              !! (m)
+      logical :: slides(size(has_friction))
       integer :: k
 
       found = redundant_along(points, [(k, k=first, last)], points%normal, held)
       if (found > 0) return
-      found = redundant_along(points, pack([(k, k=first, last)], &
-         points%friction(first:last)%coefficient > 0.0_dp .and. &
-         .not. [(points%is_held(k), k=first, last)]), points%tangent, held)
+      slides = has_friction .and. .not. norm2(held_directions(points, held), dim=1) > 0.0_dp
+      found = redundant_along(points, pack([(k, k=first, last)], slides(first:last)), &
+         points%tangent, held)
    end function first_redundant
 
    !> The same of some contact points in given directions. Those whose own node is free come first;

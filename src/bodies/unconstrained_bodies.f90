@@ -3,6 +3,7 @@
 module unconstrained_bodies
    use mesh_bodies, only: body_name
    use conductance_laws, only: law_none
+   use contact_laws, only: contact_laws_type
    use contact_states, only: contact_open, contact_slip, contact_stick
    use dense, only: null_space
    use kinds, only: dp
@@ -22,9 +23,10 @@ contains
 
    !> Bodies that neither supports nor contact could ever constrain: all contact points that are not
    !> removed count as closed, those with friction as stuck. One message a body.
-   subroutine unconstrained_in_step(model, points, held, messages)
+   subroutine unconstrained_in_step(model, points, laws, held, messages)
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(contact_laws_type), intent(in) :: laws   !! theirs in the step
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
       type(string_type), allocatable, intent(out) :: messages(:)
       type(free_motion_type), allocatable :: motions(:)
@@ -33,8 +35,8 @@ contains
       logical :: is_first, is_last
 
       call free_motions(model, points, held, &
-         merge(contact_open, merge(contact_stick, contact_slip, points%has_friction()), &
-         points%removed), motions)
+         merge(contact_open, merge(contact_stick, contact_slip, laws%friction%coefficient > &
+         0.0_dp), laws%removed), motions)
       allocate (messages(0))
       n = size(motions)
       do i = 1, n
@@ -59,9 +61,10 @@ contains
 
    !> Bodies that the supports and the contact points in these states leave free, to be added to a
    !> message, such as '; body 2 (...) is free to slide along x'; empty where all are constrained.
-   function unconstrained_now(model, points, held, contact_state) result(words)
+   function unconstrained_now(model, points, has_friction, held, contact_state) result(words)
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points !! all contact points
+      logical, intent(in) :: has_friction(:)        !! (m)
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
       integer, intent(in) :: contact_state(:)     !! (m) contact_open, contact_slip or contact_stick
       character(:), allocatable :: words
@@ -71,7 +74,7 @@ contains
 
       call free_motions(model, points, held, contact_state, motions)
       stuck = merge(contact_stick, contact_state, contact_state == contact_slip .and. &
-         points%has_friction())
+         has_friction)
       call free_motions(model, points, held, stuck, welded)
       words = ''
       last = 0
@@ -148,16 +151,18 @@ contains
 
    !> Bodies whose temperature nothing can ever determine: contact points count as conducting where
    !> one side of their law is given. One message a body.
-   subroutine undetermined_in_step(model, points, held, step, messages)
+   subroutine undetermined_in_step(model, points, laws, held, step, messages)
       type(model_type), intent(in) :: model
       type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(contact_laws_type), intent(in) :: laws   !! theirs in the step
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
       integer, intent(in) :: step                   !! the step, for its films
       type(string_type), allocatable, intent(out) :: messages(:)
       integer :: i
 
       call find_undetermined(model, points, with_source(model, held, step), held, &
-         points%law%open_kind /= law_none .or. points%law%closed_kind /= law_none, messages)
+         laws%conductance%open_kind /= law_none .or. laws%conductance%closed_kind /= law_none, &
+         messages)
       do i = 1, size(messages)
          messages(i)%value = messages(i)%value//': no *BOUNDARY on dof 11, no *FILM and no '// &
             'contact that conducts heat fixes it'

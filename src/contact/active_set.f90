@@ -15,7 +15,6 @@ module active_set
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
-   use friction_laws, only: friction_law_type
    use idle_points, only: find_idle_points
    use kinds, only: dp
    use lemke_path, only: follow_lemke_path
@@ -240,8 +239,7 @@ contains
          response = response_type(state%gap(k), state%force(k), state%shear_force(k), &
             work%slip(system, state, k))
          call next_contact_state(next(1, k), next(2, k), response, &
-            friction_law_type(work%friction(k), work%largest_shear(k)), &
-            system%tangent(k) > 0, rounding, excess(k))
+            work%friction(k), system%tangent(k) > 0, rounding, excess(k))
       end do
    end subroutine judge
 

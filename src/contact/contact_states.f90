@@ -77,17 +77,16 @@ contains
    end function with_cap
 
    !> Friction force on the slave at a contact point that slips.
-   elemental function slip_force(direction, friction, largest, force) result(shear_force)
+   elemental function slip_force(direction, friction, force) result(shear_force)
       integer, intent(in) :: direction       !! as in the state
-      real(dp), intent(in) :: friction       !! mu [-]
-      real(dp), intent(in) :: largest        !! largest friction [force]
+      type(friction_law_type), intent(in) :: friction   !! of nodal forces
       real(dp), intent(in) :: force          !! positive in compression [force]
       real(dp) :: shear_force                !! [force]
 
       if (is_capped(direction)) then
-         shear_force = sign(largest, real(direction, dp))
+         shear_force = sign(friction%largest_shear, real(direction, dp))
       else
-         shear_force = direction*friction*force
+         shear_force = direction*friction%coefficient*force
       end if
    end function slip_force
 
@@ -110,7 +109,7 @@ contains
       integer, intent(inout) :: contact_state !! contact_open, contact_slip or contact_stick
       integer, intent(inout) :: direction   !! of friction on the slave, as in contact_state_type
       type(response_type), intent(in) :: response
-      type(friction_law_type), intent(in) :: friction   !! with the largest force for a shear
+      type(friction_law_type), intent(in) :: friction   !! of nodal forces
       logical, intent(in) :: has_tangent    !! whether the contact point can move along its tangent
       type(rounding_type), intent(in) :: rounding
       real(dp), intent(out) :: excess       !! violation of the present condition, 0 for none

@@ -8,6 +8,7 @@ module contact_workspace
    use contact_system, only: contact_rows_type, contact_system_type, rows_of
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
+   use friction_laws, only: friction_law_type
    use kinds, only: dp
    use unconstrained_motions, only: free_motions, is_driven
    implicit none
@@ -28,8 +29,7 @@ module contact_workspace
    !> Data of the increment, and the factors for the active set of the last solution.
    type :: contact_workspace_type
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
-      real(dp), allocatable :: friction(:)        !! (m) mu [-]
-      real(dp), allocatable :: largest_shear(:)   !! (m) largest friction [force]
+      type(friction_law_type), allocatable :: friction(:)   !! (m) of nodal forces
       logical, allocatable :: removed(:)          !! (m) open whatever the gap
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
       !> Largest sum of the terms that make a force of the last solution, S d - c, without their
@@ -73,17 +73,15 @@ module contact_workspace
 contains
 
    !> A workspace for contact points with these gaps and laws, on which nothing acts.
-   pure function new_workspace(system, initial_gap, friction, largest_shear, removed) result(work)
+   pure function new_workspace(system, initial_gap, friction, removed) result(work)
       type(contact_system_type), intent(in) :: system  !! the reduced system
       real(dp), intent(in) :: initial_gap(:)           !! (m) h [length]
-      real(dp), intent(in) :: friction(:)              !! (m) mu [-]
-      real(dp), intent(in) :: largest_shear(:)         !! (m) largest friction [force]
+      type(friction_law_type), intent(in) :: friction(:) !! (m) of nodal forces
       logical, intent(in) :: removed(:)                !! (m) open whatever the gap
       type(contact_workspace_type) :: work             !! nothing closed, nothing factored
 
       work%initial_gap = initial_gap
       work%friction = friction
-      work%largest_shear = largest_shear
       work%removed = removed
       allocate (work%least_drive(size(system%schur, 1)), source=0.0_dp)
       allocate (work%anchor(size(system%schur, 1)), source=0.0_dp)
@@ -98,7 +96,6 @@ contains
 
       work%initial_gap = self%initial_gap
       work%friction = self%friction
-      work%largest_shear = self%largest_shear
       work%removed = self%removed
       work%load_scale = self%load_scale
       work%least_drive = self%least_drive
@@ -194,7 +191,7 @@ contains
             state%shear_force(k) = 0.0_dp
          case (contact_slip)
             state%shear_force(k) = slip_force(state%direction(k), self%friction(k), &
-               self%largest_shear(k), state%force(k))
+               state%force(k))
          case default
             state%shear_force(k) = lambda(system%tangent(k))
          end select
@@ -222,7 +219,7 @@ contains
       do k = 1, size(state%contact_state)
          if (state%contact_state(k) /= contact_slip .or. .not. is_capped(state%direction(k))) cycle
          if (system%tangent(k) > 0) lambda(system%tangent(k)) = slip_force(state%direction(k), &
-            self%friction(k), self%largest_shear(k), state%force(k))
+            self%friction(k), state%force(k))
       end do
    end function capped_forces
 
@@ -301,7 +298,7 @@ contains
       logical :: singular
 
       if (is_factored(self, state)) return
-      self%rows = rows_of(system, self%friction, state, self%closing)
+      self%rows = rows_of(system, self%friction%coefficient, state, self%closing)
       if (self%hold > 0.0_dp) then
          self%unconstrained = reshape([real(dp) ::], [size(self%rows%free), 0])
       else

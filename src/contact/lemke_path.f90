@@ -87,20 +87,20 @@ contains
 
       piece%base = state
       path%initial_gap = work%initial_gap
-      path%largest_shear = work%largest_shear
+      path%friction%largest_shear = work%friction%largest_shear
       path%closing%start = work%closing%start
       call path%solve_set(system, load, piece%base, error)
       if (allocated(error)) return
-      call measure(system, path, work%largest_shear < unlimited, piece%base, piece%slip(:, 1), &
-         piece%slack(:, :, 1))
+      call measure(system, path, work%friction%largest_shear < unlimited, piece%base, &
+         piece%slip(:, 1), piece%slack(:, :, 1))
       rate = state
       rate%reference = 0.0_dp
       path%initial_gap = piece%cover
-      path%largest_shear = 0.0_dp
+      path%friction%largest_shear = 0.0_dp
       path%closing%start = 0.0_dp
       call path%solve_set(system, 0.0_dp*load, rate, error)
       if (allocated(error)) return
-      call measure(system, path, work%largest_shear < unlimited, rate, piece%slip(:, 2), &
+      call measure(system, path, work%friction%largest_shear < unlimited, rate, piece%slip(:, 2), &
          piece%slack(:, :, 2))
    end subroutine solve_piece
 
@@ -147,8 +147,8 @@ contains
       slack = 0.0_dp
       do k = 1, size(slip)
          slip(k) = path%slip(system, state, k)
-         cone = path%friction(k)*state%force(k)
-         largest = path%largest_shear(k)
+         cone = path%friction(k)%coefficient*state%force(k)
+         largest = path%friction(k)%largest_shear
          if (state%contact_state(k) == contact_open) then
             if (.not. path%removed(k)) slack(1, k) = state%gap(k)
          else if (state%contact_state(k) == contact_slip) then

@@ -2,7 +2,7 @@
 !> contact state -> conductance, all on the contact points.
 module contact_operator
    use closing_instant, only: solve_increment
-   use conductance_laws, only: conductance, conductance_derivative, conductance_law_type
+   use conductance_laws, only: conductance, conductance_derivative
    use contact_heat, only: temperature_jumps
    use contact_states, only: contact_state_type, contact_open, contact_slip
    use errors, only: error_type, status_no_convergence
@@ -70,13 +70,15 @@ contains
    end function condensed_load
 
    !> chi: the conductance of a contact state, eq. (1.8).
-   pure function law_conductance(bodies, law, state) result(omega)
+   pure function law_conductance(bodies, temperature, jump, state) result(omega)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(conductance_law_type), intent(in) :: law(:)          !! (m) at the temperatures
+      real(dp), intent(in) :: temperature(:)                    !! (nodes)
+      real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta
       type(contact_state_type), intent(in) :: state
       real(dp) :: omega(size(state%contact_state))              !! (m)
 
-      omega = conductance(law, state%contact_state /= contact_open, state%gap, &
+      omega = conductance(bodies%laws%conductance_at(bodies%points%means(temperature), jump), &
+         state%contact_state /= contact_open, state%gap, &
          law_pressure(bodies, state))
    end function law_conductance
 
@@ -109,14 +111,14 @@ contains
 
    !> Nodal forces of the stresses that the bodies have without strains: of temperatures, and the
    !> initial ones.
-   pure function unstrained_forces(bodies, temperature) result(forces)
+   pure function unstrained_forces(bodies, warming) result(forces)
       type(reduced_bodies_type), intent(in) :: bodies
-      real(dp), intent(in) :: temperature(:)                    !! (nodes) [temperature]
-      real(dp) :: forces(2*size(temperature))                   !! (2 nodes) [force]
+      real(dp), intent(in) :: warming(:)         !! (nodes) since the initial state [temperature]
+      real(dp) :: forces(2*size(warming))                       !! (2 nodes) [force]
 
       forces = 0.0_dp
       if (allocated(bodies%thermal_load%value)) then
-         forces = bodies%thermal_load%multiply(temperature - bodies%initial_temperature)
+         forces = bodies%thermal_load%multiply(warming)
       end if
       if (allocated(bodies%initial_force)) forces = forces + bodies%initial_force
    end function unstrained_forces

@@ -11,7 +11,6 @@
 !> so that the heat enters the bodies where it crosses, by the same sum. On the other side of a
 !> point omega is that of the point itself.
 module cut_hats
-   use all_contact_points, only: all_contact_points_type
    use balances, only: heat_residual
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
@@ -46,7 +45,6 @@ module cut_hats
       real(dp), allocatable :: own(:)
       type(sum_list_type) :: jump = sum_list_type()   !! (n, nodes) J_c
    contains
-      procedure :: points_crossed
       procedure :: without
    end type cut_hats_type
 
@@ -74,7 +72,7 @@ contains
          associate (first => bodies%points%interface_start(i), &
             last => bodies%points%interface_start(i + 1) - 1)
             is_beside(first:last) = .false.
-            if (.not. bodies%points%cuts_hats(i) .or. bodies%points%removed(first)) cycle
+            if (.not. bodies%points%cuts_hats(i) .or. bodies%laws%removed(first)) cycle
             is_beside(first:last) = bodies%jump_index(first:last) > 0 .and. &
                beside_edge(opening(first:last) > 0.0_dp)
          end associate
@@ -86,7 +84,7 @@ contains
             last => bodies%points%interface_start(i + 1) - 1)
             if (.not. any(is_beside(first:last))) cycle
             call integrate_hats(bodies%interfaces(i), edges_of(bodies%interfaces(i), &
-               bodies%points%law(first), opening(first:last), modulus(first:last)), &
+               bodies%laws%conductance(first), opening(first:last), modulus(first:last)), &
                is_beside(first:last), beside(found + 1:found + count(is_beside(first:last))))
             associate (new => beside(found + 1:found + count(is_beside(first:last))))
                new%is_open = opening(first - 1 + new%point) > 0.0_dp
@@ -249,28 +247,6 @@ contains
          if (mean > 0.0_dp) edge%gap_rate = along%gap(closed + 1)/mean*length**1.5_dp
       end associate
    end function edge_between
-
-   !> The contact points with the sums by which heat crosses them.
-   pure function points_crossed(self, points) result(crossed)
-      class(cut_hats_type), intent(in) :: self
-      type(all_contact_points_type), intent(in) :: points
-      type(all_contact_points_type) :: crossed
-      integer :: i, k
-
-      crossed = points
-      if (.not. allocated(self%point)) return
-      if (size(self%point) == 0) return
-      call crossed%difference%reserve(size(points%slave), size(points%difference%value))
-      do k = 1, size(points%slave)
-         i = findloc(self%point, k, dim=1)
-         if (i > 0) then
-            call crossed%difference%add(self%jump%values_of(i), self%jump%coefficients_of(i))
-         else
-            call crossed%difference%add(points%difference%values_of(k), &
-               points%difference%coefficients_of(k))
-         end if
-      end do
-   end function points_crossed
 
    !> The cut hats of the contact points that are not left out.
    pure function without(self, left_out) result(kept)

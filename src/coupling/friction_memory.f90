@@ -25,8 +25,8 @@ contains
       real(dp), dimension(size(next%contact%gap)) :: before, now
       integer :: k
 
-      before = tangential_positions(bodies%points, previous%displacement)
-      now = tangential_positions(bodies%points, next%displacement)
+      before = tangential_positions(bodies%points, bodies%held_direction, previous%displacement)
+      now = tangential_positions(bodies%points, bodies%held_direction, next%displacement)
       associate (contact => next%contact)
          do k = 1, size(now)
             if (bodies%equilibrium%contact%tangent(k) == 0) then

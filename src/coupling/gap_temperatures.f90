@@ -49,7 +49,7 @@ contains
             if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
                heat%jump_mean(:, bodies%jump_index(k))*jump(k)
          end do
-         workspace%pass%graph%law = bodies%points%laws_at(faces)
+         workspace%pass%graph%law = bodies%laws%conductance_at(faces%mean, faces%jump)
       end associate
    end subroutine take_temperatures
 
@@ -177,7 +177,7 @@ contains
          real(dp), intent(in) :: at
          real(dp) :: by(2), weights(2), ends(2)
 
-         associate (law => bodies%points%law(k), faces => workspace%faces(k))
+         associate (law => bodies%laws%conductance(k), faces => workspace%faces(k))
             if (graph%rests(at)) then
                ends = [conductance(graph%law, .true., 0.0_dp, 0.0_dp), &
                   conductance(graph%law, .false., 0.0_dp, 0.0_dp)]

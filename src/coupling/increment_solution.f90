@@ -122,17 +122,17 @@ contains
       data%expansion = bodies%largest_expansion
       data%previous = previous%contact
       call adapt_contact(bodies, data%previous)
-      omega = law_conductance(bodies, bodies%points%laws_of(previous%temperature, previous%jump), &
+      omega = law_conductance(bodies, previous%temperature, previous%jump, &
          kept_contact(data%previous, previous%has_mechanics))
-      is_new = bodies%points%removed .or. previous%omega <= 0.0_dp
+      is_new = bodies%laws%removed .or. previous%omega <= 0.0_dp
       data%equation = heat_equation_type(step%scheme, previous%sources, next%sources, &
          previous%temperature, bodies%points%weight, merge(omega, previous%omega, is_new), &
          previous%jump)
       data%omega_before = merge(omega, previous%omega_before, is_new)
       data%kept_imbalance = previous%keeps_imbalance
-      data%resting = previous%resting .and. .not. bodies%points%removed
+      data%resting = previous%resting .and. .not. bodies%laws%removed
       if (.not. data%equation%takes_past_conductance()) data%cut = &
-         previous%cut%without(bodies%points%removed)
+         previous%cut%without(bodies%laws%removed)
       if (previous%increment_size > 0.0_dp) data%size_ratio = &
          next%increment_size/previous%increment_size
    end subroutine begin_increment
@@ -142,12 +142,12 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(contact_state_type), intent(inout) :: contact
 
-      associate (removed => bodies%points%removed)
+      associate (removed => bodies%laws%removed)
          where (removed)
             contact%contact_state = contact_open
             contact%force = 0.0_dp
          end where
-         where (.not. bodies%points%has_friction())
+         where (.not. bodies%laws%friction%coefficient > 0.0_dp)
             contact%direction = 0
             contact%shear_force = 0.0_dp
             contact%contact_state = min(contact%contact_state, contact_slip)
@@ -163,7 +163,7 @@ contains
       type(solution_state_type), intent(inout) :: next
 
       next%idle = idle
-      next%resting = next%resting .or. (next%idle .and. law_jumps(bodies%points%law))
+      next%resting = next%resting .or. (next%idle .and. law_jumps(bodies%laws%conductance))
    end subroutine settle_idle_points
 
    !> Contact of an increment whose temperatures do not depend on it.
@@ -177,8 +177,7 @@ contains
       call solve_increment(bodies%equilibrium%contact, data%previous, data%welded_load, &
          workspace%contact, workspace%held, next%contact, error)
       if (allocated(error)) return
-      next%omega = law_conductance(bodies, bodies%points%laws_of(next%temperature, next%jump), &
-         next%contact)
+      next%omega = law_conductance(bodies, next%temperature, next%jump, next%contact)
       next%omega_before = next%omega
       next%resting = .false.
       if (.not. solves_heat(data%analysis) .or. size(next%omega) == 0) return
@@ -216,8 +215,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (before => data%before)
-         next%omega = law_conductance(bodies, bodies%points%laws_of(before%temperature, &
-            before%jump), kept_contact(data%previous, before%has_mechanics))
+         next%omega = law_conductance(bodies, before%temperature, before%jump, &
+            kept_contact(data%previous, before%has_mechanics))
       end associate
       where (data%resting) next%omega = data%equation%omega_old
       data%equation%omega_old = next%omega
@@ -246,8 +245,9 @@ contains
       contact = kept_contact(data%previous, data%before%has_mechanics)
       pass%omega = omega
       allocate (pass%graph(size(omega)))
-      pass%graph%law = bodies%points%laws_of(data%before%temperature, data%before%jump)
-      where (law_jumps(bodies%points%law)) pass%graph%width = 1.0_dp
+      pass%graph%law = bodies%laws%conductance_at(bodies%points%means(data%before%temperature), &
+         data%before%jump)
+      where (law_jumps(bodies%laws%conductance)) pass%graph%width = 1.0_dp
       pass%coordinate = -pass%graph%width - law_pressure(bodies, contact)
       where (contact%contact_state == contact_open) pass%coordinate = max(contact%gap, 0.0_dp)
       where (data%resting) pass%coordinate = pass%graph%coordinate_of_omega(omega, 0.0_dp)
@@ -262,12 +262,12 @@ contains
       integer :: k
 
       if (.not. allocated(workspace%faces)) return
-      k = findloc(is_below_zero(bodies%points%law, workspace%faces), .true., dim=1)
+      k = findloc(is_below_zero(bodies%laws%conductance, workspace%faces), .true., dim=1)
       if (k == 0) return
       associate (i => count(bodies%points%interface_start <= k))
          call set_error(error, status_no_convergence, 'contact pair '// &
             bodies%interfaces(i)%name//' radiates below absolute zero, '// &
-            to_text(bodies%points%law(k)%by_temperature%absolute_zero)// &
+            to_text(bodies%laws%conductance(k)%by_temperature%absolute_zero)// &
             '; check ABSOLUTE ZERO= of *PHYSICAL CONSTANTS and the temperatures of the deck')
       end associate
    end subroutine check_absolute_zero
@@ -284,7 +284,7 @@ contains
 
       workspace%pass%omega = data%equation%omega_old
       allocate (workspace%pass%graph(size(workspace%pass%omega)))
-      workspace%pass%graph%law = bodies%points%law
+      workspace%pass%graph%law = bodies%laws%conductance
       call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, error)
       if (allocated(error)) return
       next%omega = workspace%pass%image
@@ -334,16 +334,13 @@ contains
       real(dp), allocatable, intent(out) :: welded_load(:)
       real(dp) :: thermal(2*size(next%temperature))
 
-      thermal = unstrained_forces(bodies, next%temperature)
+      thermal = unstrained_forces(bodies, next%temperature - loads%temperature%rest)
       workspace%force = bodies%equilibrium%load_of(bodies%mechanical, &
          next%force_load + thermal, loads%displacement%value)
       call bodies%equilibrium%condense_load(bodies%mechanical, workspace%force, &
          workspace%known(of_mechanics))
-      associate (points => bodies%points)
-         workspace%contact = contact_workspace_type(bodies%equilibrium%contact, &
-            loads%present_gaps(points), points%friction%coefficient, points%largest_friction(), &
-            points%removed)
-      end associate
+      workspace%contact = contact_workspace_type(bodies%equilibrium%contact, &
+         loads%present_gaps(bodies%points), bodies%laws%nodal_friction, bodies%laws%removed)
       workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       associate (applied => next%force_load, rigid => bodies%rigid, &
          contact => bodies%equilibrium%contact)
@@ -371,7 +368,8 @@ contains
       if (bodies%is_coupled) then
          call add_jumps(bodies, heat, workspace, next%temperature)
          workspace%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
-            unstrained_forces(bodies, next%temperature), loads%displacement%value)
+            unstrained_forces(bodies, next%temperature - loads%temperature%rest), &
+            loads%displacement%value)
       end if
       allocate (on_tail(bodies%mechanical%map%tail))
       associate (contact => bodies%equilibrium%contact)

@@ -42,7 +42,7 @@ contains
       where (weight <= 0.0_dp) weight = maxval(weight)
       do k = 1, size(weight)
          stiffness(k) = bodies%equilibrium%contact%alone(k)
-         graph(k)%law = bodies%points%law(k)
+         graph(k)%law = bodies%laws%conductance(k)
       end do
       stiffness = max(stiffness, least_stiffness*maxval(stiffness))
       where (stiffness <= 0.0_dp) stiffness = 1.0_dp

@@ -5,6 +5,7 @@ module deck_preparation
    use cards, only: cards_type
    use command_line, only: command_type
    use contact_definitions, only: pairing_surfaces
+   use contact_laws, only: contact_laws_type, laws_of_step
    use contact_quantities, only: estimated
    use deck_builder, only: build_model
    use deck_builder_interactions, only: frictionless
@@ -20,7 +21,7 @@ module deck_preparation
    use model, only: model_type
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use all_contact_points, only: all_contact_points_type
-   use held_points, only: find_held_directions, normal_supports, over_constrained
+   use held_points, only: normal_supports, over_constrained
    use progress, only: progress_type
    use redundant_points, only: first_redundant
    use reported_quantities, only: verifiable
@@ -167,16 +168,16 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(deck_report_type), intent(inout) :: report
       type(loads_type) :: loads
-      type(all_contact_points_type) :: points
       integer :: step
 
       loads = simulation%loads
-      points = simulation%bodies%points
       do step = 1, size(model%steps)
          call loads%begin_step(model%steps(step), simulation%state%displacement, &
             simulation%state%temperature)
-         call points%enter_step(model, step)
-         call check_step(step_place(cards, step), model, simulation, points, loads, step, report)
+         associate (points => simulation%bodies%points)
+            call check_step(step_place(cards, step), model, simulation, laws_of_step(model, &
+               points%interface_start, points%weight, step), loads, step, report)
+         end associate
          if (report%has_errors()) return
       end do
    end subroutine check_supports
@@ -195,27 +196,27 @@ contains
       end do
    end function step_place
 
-   subroutine check_step(place, model, simulation, points, loads, step, report)
+   subroutine check_step(place, model, simulation, laws, loads, step, report)
       type(place_type), intent(in) :: place
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
-      type(all_contact_points_type), intent(in) :: points   ! in the step
+      type(contact_laws_type), intent(in) :: laws            ! in the step
       type(loads_type), intent(in) :: loads
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
       type(string_type), allocatable :: messages(:)
       logical :: convicted
 
-      associate (analysis => model%steps(step)%analysis)
+      associate (analysis => model%steps(step)%analysis, points => simulation%bodies%points)
          if (solves_mechanics(analysis)) then
-            call report_over_constrained(model, simulation, loads%displacement, step, report)
-            call unconstrained_in_step(model, points, loads%displacement%active, messages)
+            call report_over_constrained(model, simulation, laws, loads%displacement, step, report)
+            call unconstrained_in_step(model, points, laws, loads%displacement%active, messages)
             convicted = .false.
             if (size(messages) > 0) call report%convict(frictionless, convicted)
             if (.not. convicted) call report_all()
          end if
          if (solves_heat(analysis)) then
-            call undetermined_in_step(model, points, loads%temperature%active, step, messages)
+            call undetermined_in_step(model, points, laws, loads%temperature%active, step, messages)
             call report_all()
          end if
       end associate
@@ -232,23 +233,22 @@ contains
    !> Reports the first contact point of each interface whose force is undetermined: its relative
    !> motion is prescribed along the normal, because that of both nodes is, or supports leave fewer
    !> nodes to act on than there are contact points.
-   subroutine report_over_constrained(model, simulation, supports, step, report)
+   subroutine report_over_constrained(model, simulation, laws, supports, step, report)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
+      type(contact_laws_type), intent(in) :: laws
       type(load_history_type), intent(in) :: supports
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
-      type(all_contact_points_type) :: row
       logical :: too_much(size(simulation%bodies%points%slave))
       character(:), allocatable :: reason
       integer :: i, k
 
-      row = simulation%bodies%points
-      call find_held_directions(row, supports%active)
-      too_much = over_constrained(row, supports%active)
+      too_much = over_constrained(simulation%bodies%points, supports%active)
       do i = 1, size(model%contacts)
-         associate (points => simulation%bodies%interfaces(i), number => model%mesh%node_number, &
-            first => row%interface_start(i), last => row%interface_start(i + 1) - 1)
+         associate (row => simulation%bodies%points, points => simulation%bodies%interfaces(i), &
+            number => model%mesh%node_number, first => simulation%bodies%points% &
+            interface_start(i), last => simulation%bodies%points%interface_start(i + 1) - 1)
             k = findloc(too_much(first:last), .true., dim=1)
             if (k > 0) then
                reason = cards_at(model, row, supports, first + k - 1)//' the motion of '// &
@@ -257,7 +257,8 @@ contains
                   'contact force is undetermined; free one of the two nodes along the normal '// &
                   'of the faces'
             else if (points%pairing == pairing_surfaces) then
-               k = first_redundant(row, first, last, supports%active)
+               k = first_redundant(row, first, last, supports%active, &
+                  laws%friction%coefficient > 0.0_dp)
                if (k == 0) cycle
                reason = '*BOUNDARY holds slave node '//to_text(number(row%slave(k)))// &
                   ', and too few nodes of the master are free there to determine the contact '// &

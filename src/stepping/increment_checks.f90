@@ -137,8 +137,9 @@ contains
       if (contact%several) words = &
          'with so much friction other contact states satisfy all conditions, too'
       if (size(contact%unconstrained, 2) > 0 .or. any(next%idle)) then
-         free = unconstrained_now(model, bodies%points, loads%displacement%active, &
-            merge(contact_open, next%contact%contact_state, next%idle .or. next%resting))
+         free = unconstrained_now(model, bodies%points, bodies%laws%friction%coefficient > 0.0_dp, &
+            loads%displacement%active, merge(contact_open, next%contact%contact_state, &
+            next%idle .or. next%resting))
          if (len(free) > 0) words = &
             free(3:)//'; no load drives it: the smallest movement is used'
       end if

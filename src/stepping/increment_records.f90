@@ -136,10 +136,10 @@ contains
          touches = closed .and. record%contact_state == contact_open
          where (touches)
             record%contact_state = merge(contact_stick, contact_slip, &
-               bodies%points%friction(first:last)%coefficient > 0.0_dp)
+               bodies%laws%friction(first:last)%coefficient > 0.0_dp)
             record%gap = 0.0_dp
          end where
-         call measure_contact(points, bodies%points%friction(first), closed, &
+         call measure_contact(points, bodies%laws%friction(first), closed, &
             contact%force(first:last), contact%shear_force(first:last), record)
          record%movement = contact%tangential(first:last)
          record%slip = record%movement - contact%slip_origin(first:last)
@@ -153,7 +153,7 @@ contains
          record%conductance = next%carrying(first:last)
          do k = 1, size(touches)
             if (.not. touches(k)) cycle
-            law = law_at(bodies%points%law(first - 1 + k), face_temperatures_type( &
+            law = law_at(bodies%laws%conductance(first - 1 + k), face_temperatures_type( &
                0.5_dp*(record%slave_temperature(k) + record%master_temperature(k)), &
                next%jump(first - 1 + k)))
             record%conductance(k) = conductance(law, .true., 0.0_dp, record%pressure(k))
@@ -212,6 +212,7 @@ contains
       type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
       real(dp), allocatable :: internal(:), residual(:)
+      type(friction_law_type) :: friction(size(bodies%points%slave))
       type(scales_type) :: scales
       real(dp) :: least, positions(2, size(bodies%points%slave)), stiffness
       logical :: along_x
@@ -223,7 +224,7 @@ contains
          scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
       end if
       internal = bodies%mechanical%matrix%multiply(next%displacement) - &
-         unstrained_forces(bodies, next%temperature)
+         unstrained_forces(bodies, next%temperature - model%initial_temperature)
       stiffness = bodies%mechanical%largest_entry
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
@@ -238,8 +239,11 @@ contains
          positions = reshape([loads%present_gaps(bodies%points) - sum(positions* &
             bodies%points%normal, dim=1), sum(positions*bodies%points%tangent, dim=1)], &
             shape(positions), order=[2, 1])
+         where (bodies%laws%removed) positions(1, :) = 0.0_dp
+         friction = bodies%laws%nodal_friction
+         where (bodies%equilibrium%contact%tangent == 0) friction%coefficient = 0.0_dp
          record%contact_violation = contact_violation(positions, residual, held, bodies%points, &
-            next%contact, bodies%equilibrium%contact%tangent > 0, scales)
+            next%contact, friction, scales)
          record%fields%reaction = on_nodes(bodies%points%partners, reshape(merge(residual, &
             0.0_dp, held), [2, size(next%temperature)]))
       end associate

@@ -73,7 +73,6 @@ contains
       if (allocated(error)) return
       call self%recovery%prepare(model)
       call self%loads%prepare(model)
-      call self%bodies%points%enter_step(model, 1)
       self%state = make_initial_state(model, self%bodies)
       self%seconds%assemble = (wall_seconds() - since)
       call measure_steps(model, self%bodies%points, self%loads, self%state, self%sizes, error)
@@ -299,8 +298,8 @@ contains
          end if
          if (allocated(error)) then
             if (workspace%contact%driven) error%message = error%message// &
-               unconstrained_now(model, bodies%points, self%loads%displacement%active, &
-               next%contact%contact_state)
+               unconstrained_now(model, bodies%points, bodies%laws%friction%coefficient > 0.0_dp, &
+               self%loads%displacement%active, next%contact%contact_state)
             return
          end if
          if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &

@@ -29,8 +29,8 @@ contains
          state%smallest_gap = contact%gap
          allocate (state%resting(m), state%idle(m), source=.false.)
          state%jump = bodies%points%jumps(model%initial_temperature)
-         state%omega = law_conductance(bodies, bodies%points%laws_of(model%initial_temperature, &
-            state%jump), kept_contact(contact, has_mechanics=.false.))
+         state%omega = law_conductance(bodies, model%initial_temperature, state%jump, &
+            kept_contact(contact, has_mechanics=.false.))
          state%omega_before = state%omega
          state%carrying = state%omega
          allocate (state%displacement(2*n), state%sources%load(n), source=0.0_dp)
