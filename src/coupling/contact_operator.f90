@@ -2,7 +2,7 @@
 !> contact state -> conductance, all on the contact points.
 module contact_operator
    use closing_instant, only: solve_increment
-   use conductance_laws, only: conductance, conductance_derivative
+   use conductance_laws, only: conductance, conductance_derivative, conductance_law_type
    use contact_heat, only: temperature_jumps
    use contact_states, only: contact_state_type, contact_open, contact_slip
    use errors, only: error_type, status_no_convergence
@@ -76,9 +76,11 @@ contains
       real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta
       type(contact_state_type), intent(in) :: state
       real(dp) :: omega(size(state%contact_state))              !! (m)
+      type(conductance_law_type), allocatable :: law(:)
 
-      omega = conductance(bodies%laws%conductance_at(bodies%points%means(temperature), jump), &
-         state%contact_state /= contact_open, state%gap, &
+      ! gfortran frees the components of an empty function's result within an elemental call.
+      law = bodies%laws%conductance_at(bodies%points%means(temperature), jump)
+      omega = conductance(law, state%contact_state /= contact_open, state%gap, &
          law_pressure(bodies, state))
    end function law_conductance
 
