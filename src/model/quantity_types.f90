@@ -54,8 +54,8 @@ module quantity_types
       !> about it (docs/accuracy.md); 0 for what is no edge.
       real(dp) :: resolution = 0.0_dp
       ! In the result file, as attributes of its dataset.
-      character(100) :: description = ''       !! what it is, with its sign and codes
-      character(16) :: components = ''         !! their names, where `values` are those of a tensor
+      character(120) :: description = ''       !! what it is, with its sign and codes
+      character(40) :: components = ''         !! their names, where `values` have such
    end type quantity_type
 
 contains

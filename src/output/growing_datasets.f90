@@ -1,14 +1,15 @@
 !> Datasets that grow row by row: rows gather in memory and go to the file as one block.
 module growing_datasets
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only: c_loc
    use hdf5, only: hid_t, hsize_t, h5dcreate_f, h5dopen_f, h5dclose_f, h5dset_extent_f, &
       h5dget_space_f, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5p_dataset_create_f, &
       h5screate_simple_f, h5sclose_f, h5sselect_hyperslab_f, h5s_select_set_f, h5s_unlimited_f, &
       h5t_native_double
-   use hdf5_writer, only: hdf5_writer_type, stored_type, write_values
+   use hdf5_writer, only: as_integer, as_real, hdf5_writer_type, stored_type, write_values
    use kinds, only: dp, long
    use model, only: unit_labels_type
-   use quantity_types, only: quantity_type
+   use quantity_types, only: of_bodies, of_contact_points, quantity_type
    use unit_labels, only: unit_in_words
    implicit none
    private
@@ -19,19 +20,17 @@ module growing_datasets
    !> One dataset and the rows of it that are not in the file yet.
    type :: growing_dataset_type
       private
-      character(:), allocatable :: path         !! path in the file
-      character(:), allocatable :: description  !! attributes of the dataset
-      character(:), allocatable :: unit
-      character(:), allocatable :: components
+      character(:), allocatable :: path                            !! path in the file
+      character(:), allocatable :: description, unit, components   !! attributes of the dataset
       integer :: storage = 0                    !! as_real, as_integer or as_long
       integer :: width = 0                      !! values in a row; 0: rows are single numbers
+      integer :: at_once = 0                    !! values of one append
       integer(hsize_t) :: chunk_rows = 1        !! rows in a chunk
       logical :: in_file = .false.              !! whether the file has the dataset
       integer(hsize_t) :: rows_in_file = 0      !! rows that the file holds
       integer :: used = 0                       !! values in the buffer
       real(dp), allocatable :: buffer(:)        !! the rows that are not in the file yet
    contains
-      procedure :: describe_as
       procedure :: append
       procedure :: flush => flush_rows
    end type growing_dataset_type
@@ -39,66 +38,74 @@ module growing_datasets
 contains
 
    !> A dataset without rows; the file gets it at the first flush.
-   pure function growing_dataset(path, storage, width, rows_at_once, times) result(dataset)
+   pure function growing_dataset(path, storage, width, rows_at_once, times, description, unit) &
+      result(dataset)
       character(*), intent(in) :: path     !! path in the file
       integer, intent(in) :: storage       !! as_real, as_integer or as_long
       integer, intent(in) :: width         !! values in a row; 0: shape (rows), else (rows, width)
       integer, intent(in) :: rows_at_once  !! rows of one append
       integer, intent(in) :: times         !! appends that are expected
+      character(*), intent(in), optional :: description   !! what it is
+      character(*), intent(in), optional :: unit          !! '-' for a pure number, as without it
       type(growing_dataset_type) :: dataset
-      integer(long) :: append_bytes, appends
+      integer(long) :: appends
 
       dataset%path = path
       dataset%description = ''
       dataset%unit = '-'
       dataset%components = ''
+      if (present(description)) dataset%description = description
+      if (present(unit)) dataset%unit = unit
       dataset%storage = storage
       dataset%width = width
-      append_bytes = 8_long*max(width, 1)*rows_at_once
-      appends = max(1_long, min(chunk_bytes/append_bytes, int(times, long)))
+      dataset%at_once = max(width, 1)*rows_at_once
+      appends = max(1_long, min(chunk_bytes/(8_long*dataset%at_once), int(times, long)))
       dataset%chunk_rows = appends*rows_at_once
-      allocate(dataset%buffer(max(width, 1)*rows_at_once))
+      allocate(dataset%buffer(dataset%at_once))
    end function growing_dataset
 
-   !> A dataset of a quantity, described by its entry.
-   pure function quantity_dataset(group, quantity, labels, storage, width, rows_at_once, times) &
+   !> A dataset of a quantity, described by its entry; one column for each place where the quantity
+   !> is of bodies or contact points and places are given.
+   pure function quantity_dataset(group, quantity, labels, rows_at_once, times, places) &
       result(dataset)
-      character(*), intent(in) :: group            !! path of its group, with a slash at the end
+      character(*), intent(in) :: group             !! path of its group, with a slash at the end
       type(quantity_type), intent(in) :: quantity
-      type(unit_labels_type), intent(in) :: labels !! units of the deck
-      integer, intent(in) :: storage, width, rows_at_once, times   !! as for growing_dataset
+      type(unit_labels_type), intent(in) :: labels  !! units of the deck
+      integer, intent(in) :: rows_at_once, times    !! as for growing_dataset
+      integer, intent(in), optional :: places       !! bodies or contact points
       type(growing_dataset_type) :: dataset
+      integer :: width
 
-      dataset = growing_dataset(group//trim(quantity%name), storage, width, rows_at_once, times)
-      call dataset%describe_as(trim(quantity%description), unit_in_words(quantity%unit, labels), &
-         trim(quantity%components))
+      width = merge(quantity%values, 0, quantity%values > 1)
+      if (present(places)) then
+         if (any(quantity%kind == [of_bodies, of_contact_points])) width = places
+      end if
+      dataset = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
+         quantity%is_integer), width, rows_at_once, times, quantity%description, &
+         unit_in_words(quantity%unit, labels))
+      dataset%components = quantity%components
    end function quantity_dataset
 
-   !> Says what the dataset is.
-   pure subroutine describe_as(self, description, unit, components)
-      class(growing_dataset_type), intent(inout) :: self
-      character(*), intent(in) :: description             !! what it is
-      character(*), intent(in) :: unit                    !! its unit; '-' for a pure number
-      character(*), intent(in) :: components              !! names of those; empty: none
-
-      self%description = description
-      self%unit = unit
-      self%components = components
-   end subroutine describe_as
-
-   !> Adds rows.
+   !> Adds rows; NaN for those of one append where there are no values.
    pure subroutine append(self, values)
       class(growing_dataset_type), intent(inout) :: self
       real(dp), intent(in) :: values(:)                   !! rows, one after the other
       real(dp), allocatable :: larger(:)
+      integer :: last
 
-      if (self%used + size(values) > size(self%buffer)) then
-         allocate(larger(2*(self%used + size(values))))
+      last = self%used + size(values)
+      if (size(values) == 0) last = self%used + self%at_once
+      if (last > size(self%buffer)) then
+         allocate(larger(2*last))
          larger(:self%used) = self%buffer(:self%used)
          call move_alloc(larger, self%buffer)
       end if
-      self%buffer(self%used + 1:self%used + size(values)) = values
-      self%used = self%used + size(values)
+      if (size(values) == 0) then
+         self%buffer(self%used + 1:last) = ieee_value(1.0_dp, ieee_quiet_nan)
+      else
+         self%buffer(self%used + 1:last) = values
+      end if
+      self%used = last
    end subroutine append
 
    !> Bytes that wait in memory.

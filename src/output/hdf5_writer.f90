@@ -233,60 +233,52 @@ contains
       end do
       call make_text_type(type, status)
       call write_whole(self, path, shape(starts, kind=hsize_t), stored_value_type(type, type, &
-         c_loc(starts)))
+         c_loc(starts)), description, '-')
       call h5tclose_f(type, status)
-      call self%describe(path, description, '-')
    end subroutine write_strings
 
    !> Writes a dataset of integers, numbers without a unit.
    subroutine write_integers(self, path, values, storage, description)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path
-      integer, intent(in) :: values(:)
+      integer, contiguous, target, intent(in) :: values(:)
       integer, intent(in) :: storage                      !! as_integer, as_long or as_byte
       character(*), intent(in) :: description
-      integer, allocatable, target :: copy(:)
 
-      allocate(copy, source=values)
       call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_integer, stored_type(storage), c_loc(copy)))
-      call self%describe(path, description, '-')
+         h5t_native_integer, stored_type(storage), c_loc(values)), description, '-')
    end subroutine write_integers
 
    !> Writes a dataset of reals.
    subroutine write_reals(self, path, values, description, unit)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path
-      real(dp), intent(in) :: values(:)
+      real(dp), contiguous, target, intent(in) :: values(:)
       character(*), intent(in) :: description, unit       !! as for describe
-      real(dp), allocatable, target :: copy(:)
 
-      allocate(copy, source=values)
       call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_double, stored_type(as_real), c_loc(copy)))
-      call self%describe(path, description, unit)
+         h5t_native_double, stored_type(as_real), c_loc(values)), description, unit)
    end subroutine write_reals
 
    !> Writes a dataset of rows of reals.
    subroutine write_real_table(self, path, values, description, unit, components)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path
-      real(dp), intent(in) :: values(:, :)
+      real(dp), contiguous, target, intent(in) :: values(:, :)
       character(*), intent(in) :: description, unit       !! as for describe
       character(*), intent(in), optional :: components    !! as for describe
-      real(dp), allocatable, target :: copy(:, :)
 
-      allocate(copy, source=values)
       call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_double, stored_type(as_real), c_loc(copy)))
-      call self%describe(path, description, unit, components)
+         h5t_native_double, stored_type(as_real), c_loc(values)), description, unit, components)
    end subroutine write_real_table
 
-   subroutine write_whole(self, path, dimensions, value)
+   subroutine write_whole(self, path, dimensions, value, description, unit, components)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path
       integer(hsize_t), intent(in) :: dimensions(:)
       type(stored_value_type), intent(in) :: value
+      character(*), intent(in) :: description, unit
+      character(*), intent(in), optional :: components
       integer(hid_t) :: space, dataset
       integer :: status(5)
 
@@ -297,6 +289,7 @@ contains
       call h5dclose_f(dataset, status(4))
       call h5sclose_f(space, status(5))
       call self%note(status, 'cannot write dataset '//path)
+      call self%describe(path, description, unit, components)
    end subroutine write_whole
 
    !> Writes values into an open dataset: all of it, or what the selections name.
@@ -324,20 +317,11 @@ contains
       character(*), intent(in) :: description
       character(*), intent(in) :: unit                    !! '-' for a pure number
       character(*), intent(in), optional :: components    !! their names; empty or absent: none
-      integer(hid_t) :: object
-      integer :: status(5)
 
-      if (self%has_failed()) return
-      status = 0
-      call h5oopen_f(self%id, path, object, status(1))
-      call set_text(object, 'description', trim(description), status(2))
-      call set_text(object, 'unit', trim(unit), status(3))
-      if (present(components)) then
-         if (len_trim(components) > 0) call set_text(object, 'components', trim(components), &
-            status(4))
-      end if
-      call h5oclose_f(object, status(5))
-      call self%note(status, 'cannot describe '//path)
+      call self%set(path, 'description', trim(description))
+      call self%set(path, 'unit', trim(unit))
+      if (.not. present(components)) return
+      if (len_trim(components) > 0) call self%set(path, 'components', trim(components))
    end subroutine describe
 
    !> Writes an attribute of a group or dataset, over one of the same name: an integer of either
@@ -347,42 +331,29 @@ contains
       character(*), intent(in) :: path                    !! of the group or dataset
       character(*), intent(in) :: name
       class(*), target, intent(in) :: value
-      integer(hid_t) :: object
-      integer :: status(3)
 
-      if (self%has_failed()) return
-      ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
-      call h5oopen_f(self%id, path, object, status(1))
       select type (value)
       type is (integer)
-         call set_value(object, name, stored_value_type(h5t_native_integer, &
-            stored_type(as_integer), c_loc(value)), status(2))
+         call set_value(self, path, name, stored_value_type(h5t_native_integer, &
+            stored_type(as_integer), c_loc(value)))
       type is (integer(long))
-         call set_value(object, name, stored_value_type(h5kind_to_type(long, h5_integer_kind), &
-            stored_type(as_long), c_loc(value)), status(2))
+         call set_value(self, path, name, stored_value_type(h5kind_to_type(long, h5_integer_kind), &
+            stored_type(as_long), c_loc(value)))
       type is (real(dp))
-         call set_value(object, name, stored_value_type(h5t_native_double, &
-            stored_type(as_real), c_loc(value)), status(2))
+         call set_value(self, path, name, stored_value_type(h5t_native_double, &
+            stored_type(as_real), c_loc(value)))
       type is (character(*))
-         call set_text(object, name, value, status(2))
+         call set_text(self, path, name, value)
       end select
-      call h5oclose_f(object, status(3))
-      call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_attribute
 
    subroutine set_integers(self, path, name, values)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, name
       integer, contiguous, target, intent(in) :: values(:)
-      integer(hid_t) :: object
-      integer :: status(3)
 
-      if (self%has_failed()) return
-      call h5oopen_f(self%id, path, object, status(1))
-      call set_value(object, name, stored_value_type(h5t_native_integer, &
-         stored_type(as_integer), c_loc(values), size(values)), status(2))
-      call h5oclose_f(object, status(3))
-      call self%note(status, 'cannot write attribute '//path//'@'//name)
+      call set_value(self, path, name, stored_value_type(h5t_native_integer, &
+         stored_type(as_integer), c_loc(values), size(values)))
    end subroutine set_integers
 
    !> Writes an attribute of text of fixed length, the form that VTK asks for.
@@ -390,64 +361,64 @@ contains
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, name, value
       character(len(value), kind=c_char), target :: copy
-      integer(hid_t) :: object, type
-      integer :: status(6)
+      integer(hid_t) :: type
+      integer :: status(3)
 
       if (self%has_failed()) return
       copy = value
       call h5tcopy_f(h5t_native_character, type, status(1))
       call h5tset_size_f(type, len(value, kind=size_t), status(2))
-      call h5oopen_f(self%id, path, object, status(3))
-      call set_value(object, name, stored_value_type(type, type, c_loc(copy)), status(4))
-      call h5oclose_f(object, status(5))
-      call h5tclose_f(type, status(6))
+      call set_value(self, path, name, stored_value_type(type, type, c_loc(copy)))
+      call h5tclose_f(type, status(3))
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_fixed_text
 
-   !> Writes text to an open object.
-   subroutine set_text(object, name, value, worst)
-      integer(hid_t), intent(in) :: object
-      character(*), intent(in) :: name, value
-      integer, intent(out) :: worst                       ! negative after an error
+   subroutine set_text(self, path, name, value)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path, name, value
       character(len(value) + 1, kind=c_char), target :: copy
       type(c_ptr), target :: start
       integer(hid_t) :: type
-      integer :: status(3)
+      integer :: status(2)
 
+      if (self%has_failed()) return
       copy = value//c_null_char
       start = c_loc(copy)
       call make_text_type(type, status(1))
-      call set_value(object, name, stored_value_type(type, type, c_loc(start)), status(2))
-      call h5tclose_f(type, status(3))
-      worst = minval(status)
+      call set_value(self, path, name, stored_value_type(type, type, c_loc(start)))
+      call h5tclose_f(type, status(2))
+      call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_text
 
-   !> Writes an attribute of an open object.
-   subroutine set_value(object, name, value, worst)
-      integer(hid_t), intent(in) :: object
-      character(*), intent(in) :: name
+   subroutine set_value(self, path, name, value)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path, name
       type(stored_value_type), intent(in) :: value
-      integer, intent(out) :: worst                       ! negative after an error
-      integer(hid_t) :: attribute, space
-      integer :: status(6)
+      integer(hid_t) :: attribute, object, space
+      integer :: status(8)
       logical :: exists
 
+      if (self%has_failed()) return
       status = 0
-      call h5aexists_f(object, name, exists, status(1))
+      exists = .false.
+      ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
+      call h5oopen_f(self%id, path, object, status(1))
+      call h5aexists_f(object, name, exists, status(2))
       if (exists) then
-         call h5aopen_f(object, name, attribute, status(2))
+         call h5aopen_f(object, name, attribute, status(3))
       else
          if (value%extent > 0) then
-            call h5screate_simple_f(1, [int(value%extent, hsize_t)], space, status(2))
+            call h5screate_simple_f(1, [int(value%extent, hsize_t)], space, status(3))
          else
-            call h5screate_f(h5s_scalar_f, space, status(2))
+            call h5screate_f(h5s_scalar_f, space, status(3))
          end if
-         call h5acreate_f(object, name, value%file_type, space, attribute, status(3))
-         call h5sclose_f(space, status(4))
+         call h5acreate_f(object, name, value%file_type, space, attribute, status(4))
+         call h5sclose_f(space, status(5))
       end if
-      call h5awrite_f(attribute, value%memory_type, value%address, status(5))
-      call h5aclose_f(attribute, status(6))
-      worst = minval(status)
+      call h5awrite_f(attribute, value%memory_type, value%address, status(6))
+      call h5aclose_f(attribute, status(7))
+      call h5oclose_f(object, status(8))
+      call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_value
 
 end module hdf5_writer

@@ -17,12 +17,13 @@ module results
    use kinds, only: dp, long
    use model, only: model_type
    use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, needs_nothing, &
-      needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes
+      needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes, &
+      quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets
    use result_accuracy, only: write_accuracy
    use result_fields, only: field_results_type
-   use result_tables, only: error_results_type, result_table_type, write_geometry
+   use result_tables, only: bounded_quantities, result_table_type, write_geometry
    use run_summaries, only: or_blank, run_summary_type, write_run
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
@@ -30,12 +31,14 @@ module results
    use clock, only: wall_seconds
    use text, only: string_type
    use unit_labels, only: load_unit, unit_in_words
-   use vtk_grids, only: write_result_mesh
    use working_files, only: working_file_type
    implicit none
    private
    public :: results_type
 
+   type(quantity_type), parameter :: step_time = quantity_type('time', of_history, 'time', &
+      description='total time at the end of the step')
+   integer, parameter :: history = 1, convergence = 2   !! tables
    integer(long), parameter :: memory_limit = 67108864_long   !! bytes that may wait in memory
 
    !> Writer of the results of one run.
@@ -45,10 +48,9 @@ module results
       type(status_file_type) :: increments                    !! `.sta`
       type(status_file_type) :: passes                        !! `.cvg`
       type(field_results_type) :: fields                      !! `/VTKHDF`
-      type(result_table_type) :: history                      !! `/history`
-      type(result_table_type) :: convergence                  !! `/convergence`
-      type(result_table_type), allocatable :: contacts(:)     !! `/contact/<name>`
-      type(error_results_type) :: errors                      !! `/errors`
+      !> `/history`, `/convergence`, `/contact/<name>` of each interface, then, where errors are
+      !> estimated, `/errors` and `/errors/<name>` of each interface
+      type(result_table_type), allocatable :: tables(:)
       type(working_file_type) :: contact_file                 !! `NAME.contact.vtkhdf`
       type(contact_grid_type) :: contact_grid                 !! its contents
       logical, public :: has_contact = .false.                !! whether there is such a file
@@ -101,29 +103,41 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      logical :: has(0:needs_coupling)
-      integer :: i, expected
+      logical :: has(0:needs_coupling), has_errors
+      integer :: i, expected, n
 
       call start_hdf5(error)
       if (allocated(error)) return
       self%element_points = element_points
       self%cards = cards
       has = what_is_solved(model, size(interfaces) > 0)
-      expected = expected_increments(model)
+      n = size(interfaces)
+      expected = max(1, nint(min(sum(min(planned_increments(model%steps), &
+         real(model%steps%max_increments, dp))), 1.0e6_dp)))
       call self%fields%start(model, interfaces, point_node, has, expected)
-      call self%history%start('/history/', [datasets(of_history, has), datasets(of_bodies, has)], &
-         model%mesh%body_count, expected, model%units)
-      call self%convergence%start('/convergence/', datasets(of_passes, has), 0, 8*expected, &
+      self%has_contact = n > 0
+      if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
+         [quantity_type ::], sum([(size(interfaces(i)%slave_node), i=1, n)]), 0, expected, &
          model%units)
-      call self%errors%start(model%estimates_errors, interfaces, size(model%steps), model%units)
-      allocate(self%contacts(size(interfaces)))
-      self%has_contact = size(interfaces) > 0
-      if (self%has_contact) call self%contact_grid%start(interfaces, has, expected, model%units)
-      do i = 1, size(interfaces)
-         call self%contacts(i)%start('/contact/'//interfaces(i)%name//'/', &
-            [datasets(of_contact_points, has), datasets(of_interface, has)], &
-            size(interfaces(i)%slave_node), expected, model%units)
-      end do
+      has_errors = self%has_contact .and. model%estimates_errors
+      allocate (self%tables(merge(3 + 2*n, 2 + n, has_errors)))
+      associate (tables => self%tables, units => model%units, steps => size(model%steps))
+         call tables(history)%start('/history', [datasets(of_history, has), &
+            datasets(of_bodies, has)], model%mesh%body_count, expected, units)
+         call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected, &
+            units)
+         do i = 1, n
+            call tables(2 + i)%start('/contact/'//interfaces(i)%name, &
+               [datasets(of_contact_points, has), datasets(of_interface, has)], &
+               size(interfaces(i)%slave_node), expected, units)
+         end do
+         if (.not. has_errors) return
+         call tables(3 + n)%start('/errors', [step_time], 0, steps, units)
+         do i = 1, n
+            call tables(3 + n + i)%start('/errors/'//interfaces(i)%name, bounded_quantities(), 0, &
+               steps, units)
+         end do
+      end associate
    end subroutine open_results
 
    !> Adds an accepted increment; publishes where that is due. The last increment of the last step
@@ -138,21 +152,27 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       real(dp) :: since
       logical :: is_due, ends_run
-      integer :: i
+      integer :: i, n
 
       since = wall_seconds()
       self%accepted = self%accepted + 1
-      call self%history%append(record, model%mesh%body_count)
+      call self%tables(history)%append(record)
       call self%increments%add_increment(record)
       if (allocated(record%iterations)) then
-         call self%convergence%append(record%iterations)
+         call self%tables(convergence)%append(record%iterations)
          call self%passes%add_iterations(record%iterations)
       end if
       do i = 1, size(interfaces)
-         call self%contacts(i)%append(interfaces(i), record%contacts(i))
+         call self%tables(2 + i)%append(interfaces(i), record%contacts(i))
       end do
       if (self%has_contact) call self%contact_grid%append(record, interfaces)
-      if (allocated(record%errors)) call self%errors%append(record%time, record%errors)
+      if (allocated(record%errors)) then
+         n = size(interfaces)
+         call self%tables(3 + n)%append(record)
+         do i = 1, n
+            call self%tables(3 + n + i)%append(record%errors(i))
+         end do
+      end if
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
@@ -183,7 +203,7 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       if (self%is_broken) return
-      call self%convergence%append(failed)
+      call self%tables(convergence)%append(failed)
       call self%passes%add_iterations(failed)
       if (self%accepted > 0) then
          call publish(self, model, interfaces, run, error, accuracy)
@@ -228,26 +248,15 @@ contains
       end associate
    end function what_is_solved
 
-   pure function expected_increments(model) result(expected)
-      type(model_type), intent(in) :: model
-      integer :: expected
-      real(dp) :: total
-
-      total = sum(min(planned_increments(model%steps), &
-         real(model%steps%max_increments, dp)))
-      expected = max(1, nint(min(total, 1.0e6_dp)))
-   end function expected_increments
-
    pure function waiting_bytes(self) result(bytes)
       class(results_type), intent(in) :: self
       integer(long) :: bytes
       integer :: i
 
-      bytes = bytes_in(self%fields%sets) + bytes_in(self%history%sets) &
-         + bytes_in(self%convergence%sets)
+      bytes = bytes_in(self%fields%sets)
       if (self%has_contact) bytes = bytes + bytes_in(self%contact_grid%sets)
-      do i = 1, size(self%contacts)
-         bytes = bytes + bytes_in(self%contacts(i)%sets)
+      do i = 1, size(self%tables)
+         bytes = bytes + bytes_in(self%tables(i)%sets)
       end do
    end function waiting_bytes
 
@@ -272,7 +281,13 @@ contains
          model%units)
       call self%file%close(error)
       if (allocated(error)) return
-      call publish_contact(self, model, interfaces, error)
+      if (self%has_contact) then
+         call flush_contact(self, model, interfaces)
+         call self%contact_file%close(error)
+         if (.not. allocated(error)) call self%contact_file%put_in_place(error)
+      else
+         call self%contact_file%remove()   ! of an earlier run of a deck with contact
+      end if
       if (allocated(error)) return
       if (is_first) then
          call self%increments%empty(error)
@@ -289,22 +304,6 @@ contains
       call self%file%charge(since, ended=.true.)
    end subroutine publish
 
-   !> The file of the contact points; one of an earlier run of a deck with contact goes with it.
-   subroutine publish_contact(self, model, interfaces, error)
-      class(results_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(contact_points_type), intent(in) :: interfaces(:)
-      type(error_type), allocatable, intent(out) :: error
-
-      if (.not. self%has_contact) then
-         call self%contact_file%remove()
-         return
-      end if
-      call flush_contact(self, model, interfaces)
-      call self%contact_file%close(error)
-      if (.not. allocated(error)) call self%contact_file%put_in_place(error)
-   end subroutine publish_contact
-
    subroutine flush_contact(self, model, interfaces)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -313,7 +312,7 @@ contains
 
       call self%contact_file%open(is_new)
       if (is_new) call self%contact_grid%write_head(self%contact_file%content, interfaces, &
-         model%mesh%node_number)
+         model%mesh%node_number, model%units)
       call self%contact_grid%flush(self%contact_file%content, is_new)
    end subroutine flush_contact
 
@@ -328,11 +327,8 @@ contains
       associate (file => self%file%content)
          if (is_new) call write_heads(self, model, interfaces)
          call self%fields%flush(file, is_new)
-         call flush_sets(self%history%sets, file)
-         call flush_sets(self%convergence%sets, file)
-         call flush_sets(self%errors%sets, file)
-         do i = 1, size(self%contacts)
-            call flush_sets(self%contacts(i)%sets, file)
+         do i = 1, size(self%tables)
+            call flush_sets(self%tables(i)%sets, file)
          end do
          if (.not. is_new) return
          call file%set('/history/load', 'label', or_blank(model%load_label))
@@ -345,24 +341,22 @@ contains
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
-      character(:), allocatable :: group
       integer :: i
 
       associate (file => self%file%content)
-         call write_result_mesh(file, model, self%fields%point_node, self%element_points)
-         call self%fields%steps%create_groups(file)
-         call file%create_group('/history')
-         call file%create_group('/convergence')
+         call self%fields%write_head(file, model, self%element_points)
          call file%create_group('/contact')
-         call self%errors%create_groups(file, interfaces)
+         do i = 1, size(self%tables)
+            call file%create_group(self%tables(i)%group)
+         end do
          do i = 1, size(interfaces)
-            group = '/contact/'//interfaces(i)%name
-            call file%create_group(group)
-            call file%set(group, 'friction', &
-               model%interactions(model%contacts(i)%interaction)%friction%coefficient)
-            call file%set(group, 'pairing', pairing_name(interfaces(i)%pairing))
-            call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number, &
-               model%units)
+            associate (group => self%tables(2 + i)%group)
+               call file%set(group, 'friction', &
+                  model%interactions(model%contacts(i)%interaction)%friction%coefficient)
+               call file%set(group, 'pairing', pairing_name(interfaces(i)%pairing))
+               call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number, &
+                  model%units)
+            end associate
          end do
          call file%create_group('/run')
          call file%write('/deck', self%cards, 'card images as read')
