@@ -7,7 +7,7 @@ module element_conduction
    use shape_functions, only: element_gradients, element_shape
    implicit none
    private
-   public :: conduction_matrix, heat_flux_at
+   public :: conduction_matrix
 
 contains
 
@@ -40,19 +40,5 @@ contains
          end do
       end do
    end function conduction_matrix
-
-   !> Heat flux q = -K grad T, eq. (1.4), at a point of an element.
-   pure function heat_flux_at(kind, coordinates, point, conductivity, temperature) result(flux)
-      integer, intent(in) :: kind                 !! kind of the element
-      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
-      real(dp), intent(in) :: point(2)            !! xi, eta
-      real(dp), intent(in) :: conductivity(2, 2)  !! at the point [power/(length temperature)]
-      real(dp), intent(in) :: temperature(:)      !! (nodes of the kind) [temperature]
-      real(dp) :: flux(2)                         !! q_x, q_y [power/length^2]
-      real(dp) :: b(2, element_node_count(kind)), jacobian
-
-      call element_gradients(kind, coordinates, point, b, jacobian)
-      flux = -matmul(conductivity, matmul(b, temperature))
-   end function heat_flux_at
 
 end module element_conduction

@@ -14,7 +14,7 @@ module element_elasticity
    use shape_functions, only: element_gradients, element_shape
    implicit none
    private
-   public :: element_stiffness, element_thermal_load, element_stress_force, strain_at
+   public :: element_stiffness, element_thermal_load, element_stress_force
 
 contains
 
@@ -98,38 +98,6 @@ contains
          force = force - volumes(g)*matmul(stress, b(:, g, :))
       end do
    end function element_stress_force
-
-   !> Strain at a point of an element.
-   pure function strain_at(kind, plane, coordinates, point, displacement) result(strain)
-      integer, intent(in) :: kind                  !! kind of the element
-      integer, intent(in) :: plane                 !! plane_strain, ...
-      real(dp), intent(in) :: coordinates(:, :)    !! (2, nodes of the kind) [length]
-      real(dp), intent(in) :: point(2)             !! xi, eta
-      real(dp), intent(in) :: displacement(:, :)   !! (2, nodes of the kind) [length]
-      real(dp) :: strain(4)                        !! xx, yy, zz, xy
-      real(dp) :: gradients(2, element_node_count(kind)), psi(element_node_count(kind))
-      real(dp) :: jacobian, slope(2, 2)
-
-      call element_gradients(kind, coordinates, point, gradients, jacobian)
-      psi = element_shape(kind, point)
-      slope = matmul(displacement, transpose(gradients))
-      strain = [slope(1, 1), slope(2, 2), 0.0_dp, slope(1, 2) + slope(2, 1)]
-      if (plane == axisymmetric) strain(3) = dot_product(psi, displacement(1, :))/ &
-         dot_product(psi, coordinates(1, :))
-      if (has_mean_dilatation(kind, plane)) strain(:3) = strain(:3) + &
-         (dilatation_of(kind, plane, coordinates, displacement) - sum(strain(:3)))/3
-   end function strain_at
-
-   !> Mean dilatation of an element under displacements of its nodes.
-   pure function dilatation_of(kind, plane, coordinates, displacement) result(dilatation)
-      integer, intent(in) :: kind, plane
-      real(dp), intent(in) :: coordinates(:, :), displacement(:, :)
-      real(dp) :: dilatation
-      real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
-
-      call point_strain_matrices(kind, plane, coordinates, 1.0_dp, b, volumes)
-      dilatation = dot_product(mean_dilatation(b, volumes), reshape(displacement, [size(b, 3)]))
-   end function dilatation_of
 
    !> B at all integration points, with the mean dilatation where the element uses it, and the
    !> volumes that the points stand for.

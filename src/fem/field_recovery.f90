@@ -2,8 +2,7 @@
 !> nodes, averaged over the elements of one body and section. A node shared by several sections so
 !> is several points.
 module field_recovery
-   use element_kinds, only: element_node_count, kind_count, quad4, quad8, quad8_reduced, &
-      triangle3, triangle6
+   use element_kinds, only: element_node_count, kind_count
    use kinds, only: dp
    use materials, only: material_type, section_type
    use mesh, only: mesh_type
@@ -14,10 +13,8 @@ module field_recovery
    use shape_functions, only: node_position
    implicit none
    private
-   public :: point_map_type, make_points, recover_stress, recover_heat_flux
+   public :: point_map_type, make_points
    public :: prepare_samples, stress_samples, heat_flux_samples, average_samples
-
-   integer, parameter :: kinds(kind_count) = [quad8, quad8_reduced, quad4, triangle6, triangle3]
 
    !> The points at which averaged fields live: one per node and section.
    type :: point_map_type
@@ -77,10 +74,9 @@ contains
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       type(point_fields_type), intent(out) :: fields
       type(point_rule_type) :: rules(kind_count)
-      integer :: i, k
+      integer :: k
 
-      do i = 1, kind_count
-         k = kinds(i)
+      do k = 1, kind_count
          ! Equal weights are right for the four-node element, whose mean dilatation is that over
          ! these points.
          rules(k) = point_rule(k, recovery_points(k), spread(1.0_dp, 1, recovery_count(k)))
@@ -125,45 +121,6 @@ contains
       end do
    end subroutine heat_flux_samples
 
-   !> Stress at the points along x and y, eq. (1.5).
-   pure function recover_stress(mesh, sections, materials, orientations, points, displacement, &
-      temperature) result(stress)
-      type(mesh_type), intent(in) :: mesh
-      type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
-      type(point_map_type), intent(in) :: points
-      real(dp), intent(in) :: displacement(:, :)            !! (2, nodes) [length]
-      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
-      real(dp) :: stress(4, size(points%node))              !! xx, yy, zz, xy [stress]
-      type(point_fields_type) :: fields
-      real(dp), allocatable :: samples(:, :)
-
-      call prepare_samples(mesh, sections, materials, orientations, fields)
-      allocate (samples(4, fields%first(size(fields%first)) - 1))
-      call stress_samples(fields, mesh, displacement, temperature, samples)
-      stress = average_samples(mesh, points, samples)
-   end function recover_stress
-
-   !> Heat flux at the points along x and y, eq. (1.4).
-   pure function recover_heat_flux(mesh, sections, materials, orientations, points, temperature) &
-      result(flux)
-      type(mesh_type), intent(in) :: mesh
-      type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
-      type(point_map_type), intent(in) :: points
-      real(dp), intent(in) :: temperature(:)                !! (nodes) [temperature]
-      real(dp) :: flux(2, size(points%node))                !! x, y [power/length^2]
-      type(point_fields_type) :: fields
-      real(dp), allocatable :: samples(:, :)
-
-      call prepare_samples(mesh, sections, materials, orientations, fields)
-      allocate (samples(2, fields%first(size(fields%first)) - 1))
-      call heat_flux_samples(fields, mesh, temperature, samples)
-      flux = average_samples(mesh, points, samples)
-   end function recover_heat_flux
-
    !> Values at the points: extrapolated in each element to its nodes, then averaged.
    pure function average_samples(mesh, points, samples) result(values)
       type(mesh_type), intent(in) :: mesh
@@ -173,8 +130,7 @@ contains
       real(dp) :: weights(4, 8, kind_count), position(2, 8)
       integer :: e, first, i, k, n, q
 
-      do i = 1, kind_count
-         k = kinds(i)
+      do k = 1, kind_count
          position(:, :element_node_count(k)) = node_position(k)
          do q = 1, element_node_count(k)
             weights(:recovery_count(k), q, k) = recovery_weights(k, position(:, q))

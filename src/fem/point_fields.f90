@@ -12,11 +12,12 @@ module point_fields
    use mesh, only: mesh_type, nodes_per_element
    use orientations, only: material_axes, orientation_type
    use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
+   use quadrature, only: integration_rule, point_count
    use shape_functions, only: element_gradients, element_shape, node_position
    implicit none
    private
    public :: point_fields_type, point_rule_type, point_rule, point_material_type
-   public :: most_field_points
+   public :: integration_rules, most_field_points
 
    integer, parameter :: most_field_points = 10  !! of an element, made even
    integer, parameter :: most = most_field_points
@@ -52,6 +53,7 @@ module point_fields
       logical, allocatable :: one_material(:)            !! (elements) one for all of its points
    contains
       procedure :: prepare
+      procedure :: positions
       procedure :: stress
       procedure :: heat_flux
    end type point_fields_type
@@ -106,6 +108,20 @@ contains
          rule%slope_eta(g, :rule%nodes) = slope(2, :)
       end do
    end function point_rule
+
+   !> Integration points of every kind of element.
+   pure function integration_rules() result(rules)
+      type(point_rule_type) :: rules(kind_count)
+      real(dp) :: points(2, most), weights(most)
+      integer :: kind
+
+      do kind = 1, kind_count
+         associate (n => point_count(kind))
+            call integration_rule(kind, points(:, :n), weights(:n))
+            rules(kind) = point_rule(kind, points(:, :n), weights(:n))
+         end associate
+      end do
+   end function integration_rules
 
    pure subroutine map_points(rule, coordinates, thickness, is_axisymmetric, inverse, volume)
       type(point_rule_type), intent(in) :: rule
@@ -204,6 +220,22 @@ contains
          end do
       end do
    end function inverse_of
+
+   !> Where the points of an element lie.
+   pure function positions(self, mesh, element)
+      class(point_fields_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                 !! which element
+      real(dp) :: positions(2, self%rules(mesh%element_kind(element))%count) !! x, y [length]
+      integer :: g
+
+      associate (rule => self%rules(mesh%element_kind(element)))
+         do g = 1, rule%count
+            positions(:, g) = matmul(mesh%coordinates(:, mesh%element_nodes(:rule%nodes, &
+               element)), rule%shape(g, :rule%nodes))
+         end do
+      end associate
+   end function positions
 
    !> Stress of an element at its points along x and y, eq. (1.5).
    pure subroutine stress(self, mesh, element, displacement, temperature, values)

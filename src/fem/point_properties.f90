@@ -9,7 +9,7 @@ module point_properties
    use shape_functions, only: element_shape
    implicit none
    private
-   public :: elasticity_in, thermal_modulus_in, conductivity_in, axes_at_points
+   public :: elasticity_in, thermal_modulus_in, conductivity_in, axes_at_points, along_axes
 
 contains
 
@@ -80,6 +80,15 @@ contains
 
       k = matmul(axes, transpose(axes*spread(material%conductivity, 1, 2)))
    end function conductivity_in
+
+   !> Stresses xx, yy, zz, xy as 11, 22, 33, 12 of axes.
+   pure function along_axes(axes, stress) result(turned)
+      real(dp), intent(in) :: axes(2, 2)   !! axes 1 and 2 as columns
+      real(dp), intent(in) :: stress(4)    !! along x and y [stress]
+      real(dp) :: turned(4)                !! along the axes [stress]
+
+      turned = matmul(transpose(strain_rotation(transpose(axes))), stress)
+   end function along_axes
 
    pure function in_global_axes(material, axes) result(e)
       type(material_type), intent(in) :: material

@@ -6,11 +6,12 @@
 !> the element's shape functions. Not the 2 x 2 points at which s of elements of eight nodes is
 !> best: there s* is s, but for what smoothing leaves, and their sum would be near zero.
 module recovered_error
-   use element_kinds, only: kind_count, quad4, quad8, quad8_reduced, triangle3, triangle6
+   use element_kinds, only: kind_count, quad8, quad8_reduced, triangle6
    use kinds, only: dp
    use mesh, only: nodes_per_element
-   use point_fields, only: most => most_field_points, point_rule, point_rule_type
-   use quadrature, only: integration_rule, load_point_count, load_rule, point_count
+   use point_fields, only: integration_rules, most => most_field_points, point_rule, &
+      point_rule_type
+   use quadrature, only: load_point_count, load_rule
    implicit none
    private
    public :: element_error_type, measure_stress, measure_heat_flux, error_rules, error_record_type
@@ -36,20 +37,16 @@ contains
    !> The points at which errors are integrated.
    pure function error_rules() result(rules)
       type(point_rule_type) :: rules(kind_count)   !! by kind; weights sum to 4 (square) or 1/2
-      integer, parameter :: kinds(kind_count) = [quad8, quad8_reduced, quad4, triangle6, triangle3]
+      integer, parameter :: higher(3) = [quad8, quad8_reduced, triangle6]
       real(dp) :: points(2, most), weights(most)
-      integer :: i, k, n
+      integer :: i
 
-      do i = 1, kind_count
-         k = kinds(i)
-         if (k == quad4 .or. k == triangle3) then
-            n = point_count(k)
-            call integration_rule(k, points(:, :n), weights(:n))
-         else
-            n = load_point_count(k)
-            call load_rule(k, points(:, :n), weights(:n))
-         end if
-         rules(k) = point_rule(k, points(:, :n), weights(:n))
+      rules = integration_rules()
+      do i = 1, size(higher)
+         associate (n => load_point_count(higher(i)))
+            call load_rule(higher(i), points(:, :n), weights(:n))
+            rules(higher(i)) = point_rule(higher(i), points(:, :n), weights(:n))
+         end associate
       end do
    end function error_rules
 

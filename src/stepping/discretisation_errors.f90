@@ -1,7 +1,6 @@
 !> Stress and flux of an increment, and how far they are from smooth ones (Zienkiewicz & Zhu): what
 !> geometry and materials give is formed once a run.
 module discretisation_errors
-   use element_fields, only: element_positions
    use element_kinds, only: element_node_count
    use field_recovery, only: average_samples, heat_flux_samples, make_points, point_map_type, &
       prepare_samples, stress_samples
@@ -10,7 +9,6 @@ module discretisation_errors
    use model, only: model_type
    use patch_recovery, only: patch_recovery_type
    use point_fields, only: most => most_field_points, point_fields_type
-   use quadrature, only: recovery_points
    use recovered_error, only: element_error_type, error_rules, error_record_type, &
       measure_heat_flux, measure_stress
    implicit none
@@ -58,7 +56,7 @@ contains
       allocate (position(2, self%samples%first(size(self%samples%first)) - 1))
       do e = 1, size(model%mesh%element_kind)
          position(:, self%samples%first(e):self%samples%first(e + 1) - 1) = &
-            element_positions(model%mesh, e, recovery_points(model%mesh%element_kind(e)))
+            self%samples%positions(model%mesh, e)
       end do
       call self%patches%prepare(model%mesh, self%points, self%samples%first, position)
       call measure_factors(self)

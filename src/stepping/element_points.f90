@@ -1,12 +1,14 @@
 !> What *EL PRINT asks for: stress and heat flux at the integration points of the elements of a set.
 module element_points
    use due_output, only: table_is_due
-   use element_fields, only: along_axes, element_axes, element_heat_flux, element_positions, &
-      element_stress
    use kinds, only: dp
    use model, only: model_type
+   use orientations, only: material_axes
+   use point_fields, only: integration_rules, most => most_field_points, &
+      point_fields_type
+   use point_properties, only: along_axes
    use print_requests, only: print_request_type
-   use quadrature, only: integration_rule, most_points, point_count
+   use quadrature, only: point_count
    use records, only: element_points_record_type, increment_record_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, step_type
@@ -33,69 +35,61 @@ contains
       end do
    end function points_of_elements
 
+   !> The points of the elements of a set. Stress belongs to the temperatures with which equilibrium
+   !> was solved last.
    pure function points_of_set(model, request, with_heat, state) result(record)
       type(model_type), intent(in) :: model
       type(print_request_type), intent(in) :: request
       logical, intent(in) :: with_heat
       type(solution_state_type), intent(in) :: state
       type(element_points_record_type) :: record
-      integer :: e, first, n
+      type(point_fields_type) :: fields
+      real(dp) :: stress(most, 4), flux(most, 2)
+      integer :: first, g, i, last, n
 
+      call fields%prepare(model%mesh, model%sections, model%materials, model%orientations, &
+         integration_rules())
       associate (mesh => model%mesh, members => model%mesh%element_sets(request%set)%members)
          n = sum(point_count(mesh%element_kind(members)))
          allocate (record%element(n), record%point(n), record%position(2, n))
          if (state%has_mechanics) allocate (record%stress(4, n))
          if (with_heat) allocate (record%heat_flux(2, n))
-         first = 1
-         do e = 1, size(members)
-            call add_element(model, members(e), request%local_axes, state, first, record)
-            first = first + point_count(mesh%element_kind(members(e)))
+         last = 0
+         do i = 1, size(members)
+            first = last + 1
+            last = last + point_count(mesh%element_kind(members(i)))
+            record%element(first:last) = members(i)
+            record%point(first:last) = [(g, g=1, last - first + 1)]
+            record%position(:, first:last) = fields%positions(mesh, members(i))
+            if (state%has_mechanics) then
+               call fields%stress(mesh, members(i), reshape(state%displacement, &
+                  [2, size(state%temperature)]), state%stress_temperature - &
+                  model%initial_temperature, stress)
+               record%stress(:, first:last) = transpose(stress(:last - first + 1, :))
+            end if
+            if (with_heat) then
+               call fields%heat_flux(mesh, members(i), state%temperature, flux)
+               record%heat_flux(:, first:last) = transpose(flux(:last - first + 1, :))
+            end if
          end do
       end associate
+      if (request%local_axes) call turn(model, record)
    end function points_of_set
 
-   !> The points of one element. Stress belongs to the temperatures with which equilibrium was
-   !> solved last.
-   pure subroutine add_element(model, element, local_axes, state, first, record)
+   !> Replaces the components along x and y by those along the axes of the material.
+   pure subroutine turn(model, record)
       type(model_type), intent(in) :: model
-      integer, intent(in) :: element
-      logical, intent(in) :: local_axes
-      type(solution_state_type), intent(in) :: state
-      integer, intent(in) :: first
       type(element_points_record_type), intent(inout) :: record
-      real(dp) :: xi_eta(2, most_points), weights(most_points), axes(2, 2, most_points)
-      integer :: g, n, last
+      real(dp) :: axes(2, 2)
+      integer :: k
 
-      n = point_count(model%mesh%element_kind(element))
-      last = first + n - 1
-      call integration_rule(model%mesh%element_kind(element), xi_eta(:, :n), weights(:n))
-      record%element(first:last) = element
-      record%point(first:last) = [(g, g=1, n)]
-      record%position(:, first:last) = element_positions(model%mesh, element, xi_eta(:, :n))
-      axes(:, :, :n) = element_axes(model%mesh, model%sections, model%orientations, element, &
-         xi_eta(:, :n))
-      if (allocated(record%stress)) then
-         record%stress(:, first:last) = element_stress(model%mesh, model%sections, &
-            model%materials, model%orientations, element, xi_eta(:, :n), &
-            reshape(state%displacement, [2, size(state%temperature)]), &
-            state%stress_temperature - model%initial_temperature)
-         if (local_axes) then
-            do g = 1, n
-               record%stress(:, first - 1 + g) = along_axes(axes(:, :, g), &
-                  record%stress(:, first - 1 + g))
-            end do
-         end if
-      end if
-      if (allocated(record%heat_flux)) then
-         record%heat_flux(:, first:last) = element_heat_flux(model%mesh, model%sections, &
-            model%materials, model%orientations, element, xi_eta(:, :n), state%temperature)
-         if (local_axes) then
-            do g = 1, n
-               record%heat_flux(:, first - 1 + g) = matmul(record%heat_flux(:, first - 1 + g), &
-                  axes(:, :, g))
-            end do
-         end if
-      end if
-   end subroutine add_element
+      do k = 1, size(record%element)
+         axes = material_axes(model%orientations, model%sections( &
+            model%mesh%element_section(record%element(k)))%orientation, record%position(:, k))
+         if (allocated(record%stress)) record%stress(:, k) = along_axes(axes, record%stress(:, k))
+         if (allocated(record%heat_flux)) record%heat_flux(:, k) = &
+            matmul(record%heat_flux(:, k), axes)
+      end do
+   end subroutine turn
 
 end module element_points

@@ -16,8 +16,7 @@ COUPLING = {
 PARTS = {
     "heat": {
         "balances:heat_residual", "cut_hats:supplied_heat", "element_conduction",
-        "element_fields:element_heat_flux",
-        "field_recovery:recover_heat_flux", "heat_balance",
+        "field_recovery:heat_flux_samples", "heat_balance", "point_fields:heat_flux",
         "increment_checks:check_heat", "increment_solution:conduct",
         "increment_solution:load_heat", "heat_reduction", "load_integrals:unit_heat", "loads:card_heat",
         "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_properties:conductivity_in",
@@ -32,7 +31,7 @@ PARTS = {
         "contact_tractions", "chain_geometry", "contact_pairs", "interface_checks",
         "interface_warnings", "surface_chains", "zone_edges"} | {
         "balances:contact_violation", "balances:force_residual", "equilibrium_reduction",
-        "element_elasticity", "element_fields:element_stress", "field_recovery:recover_stress",
+        "element_elasticity", "field_recovery:stress_samples", "point_fields:stress",
         "increment_checks:check_violation", "increment_checks:warn_of_choices",
         "increment_records:balance_forces", "friction_memory",
         "increment_solution:load_mechanics", "point_properties:elasticity_in",
