@@ -2,7 +2,7 @@
 module sorting
    implicit none
    private
-   public :: sort_order, unique_sorted, repeated, number_index_type
+   public :: sort_order, unique_sorted, repeated, invert_lists, number_index_type
 
    !> Finds where a number is in a list that need not be sorted.
    type :: number_index_type
@@ -89,6 +89,34 @@ contains
       order = sort_order(numbers)
       positions = pack(order(2:), numbers(order(2:)) == numbers(order(:n - 1)))
    end function repeated
+
+   !> The lists that hold each of the numbers from 1 to n.
+   pure subroutine invert_lists(lists, counts, n, start, holders)
+      integer, intent(in) :: lists(:, :)                  !! (most numbers, lists)
+      integer, intent(in) :: counts(:)                    !! (lists) numbers in each
+      integer, intent(in) :: n                            !! largest number
+      integer, allocatable, intent(out) :: start(:)       !! (n + 1) first holder of each
+      integer, allocatable, intent(out) :: holders(:)     !! ascending for each number
+      integer :: i, k
+
+      allocate (start(n + 1), source=0)
+      do i = 1, size(counts)
+         do k = 1, counts(i)
+            start(lists(k, i)) = start(lists(k, i)) + 1
+         end do
+      end do
+      start(1) = start(1) + 1
+      do i = 2, size(start)
+         start(i) = start(i) + start(i - 1)
+      end do
+      allocate (holders(start(size(start)) - 1))
+      do i = size(counts), 1, -1
+         do k = 1, counts(i)
+            start(lists(k, i)) = start(lists(k, i)) - 1
+            holders(start(lists(k, i))) = i
+         end do
+      end do
+   end subroutine invert_lists
 
    !> Makes the index of a list; of equal numbers the first is found.
    pure subroutine build(self, numbers)

@@ -4,6 +4,7 @@ module element_assembly
    use element_kinds, only: element_node_count
    use kinds, only: dp
    use mesh, only: mesh_type
+   use sorting, only: invert_lists
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -92,7 +93,8 @@ contains
       integer :: last_of(size(mesh%node_number)), e, first, i, k, q
       integer, allocatable :: element(:), first_element(:)
 
-      call find_elements(mesh, first_element, element)
+      call invert_lists(mesh%element_nodes, element_node_count(mesh%element_kind), &
+         size(mesh%node_number), first_element, element)
       allocate (start(size(last_of) + 1), &
          neighbour(sum(element_node_count(mesh%element_kind)**2)))
       last_of = 0
@@ -114,34 +116,6 @@ contains
       end do
       neighbour = neighbour(:k)
    end subroutine find_neighbours
-
-   !> The elements at each node.
-   pure subroutine find_elements(mesh, first, element)
-      type(mesh_type), intent(in) :: mesh
-      integer, allocatable, intent(out) :: first(:)     !! (nodes + 1) position of each node's first
-      integer, allocatable, intent(out) :: element(:)
-      integer :: e, i, q
-
-      allocate (first(size(mesh%node_number) + 1), source=0)
-      do e = 1, size(mesh%element_number)
-         associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
-            first(nodes) = first(nodes) + 1
-         end associate
-      end do
-      first(1) = first(1) + 1
-      do i = 2, size(first)
-         first(i) = first(i) + first(i - 1)
-      end do
-      allocate (element(first(size(first)) - 1))
-      do e = size(mesh%element_number), 1, -1
-         do q = 1, element_node_count(mesh%element_kind(e))
-            associate (position => first(mesh%element_nodes(q, e)))
-               position = position - 1
-               element(position) = e
-            end associate
-         end do
-      end do
-   end subroutine find_elements
 
    !> Puts a value among sorted ones, which leave the last place free.
    pure subroutine insert(value, sorted)

@@ -18,13 +18,6 @@ module element_elasticity
 
 contains
 
-   !> Whether elements of a kind use the mean dilatation in a plane.
-   pure logical function has_mean_dilatation(kind, plane)
-      integer, intent(in) :: kind, plane
-
-      has_mean_dilatation = kind == quad4 .and. plane /= plane_stress
-   end function has_mean_dilatation
-
    !> Stiffness matrix, the element's part of K^n in (2.4): integral of B^T E B.
    pure function element_stiffness(kind, plane, coordinates, e, thickness) result(k)
       integer, intent(in) :: kind                 !! kind of the element
@@ -105,23 +98,9 @@ contains
       integer, intent(in) :: kind, plane
       real(dp), intent(in) :: coordinates(:, :), thickness
       real(dp), intent(out) :: b(:, :, :), volumes(:)
-      real(dp) :: mean(size(b, 3))
-      integer :: g
-
-      call point_strain_matrices(kind, plane, coordinates, thickness, b, volumes)
-      if (.not. has_mean_dilatation(kind, plane)) return
-      mean = mean_dilatation(b, volumes)
-      do g = 1, size(volumes)
-         call set_dilatation(mean, b(:, g, :))
-      end do
-   end subroutine strain_matrices
-
-   pure subroutine point_strain_matrices(kind, plane, coordinates, thickness, b, volumes)
-      integer, intent(in) :: kind, plane
-      real(dp), intent(in) :: coordinates(:, :), thickness
-      real(dp), intent(out) :: b(:, :, :), volumes(:)
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
-      integer :: g
+      real(dp), dimension(size(b, 3)) :: change, mean
+      integer :: g, i
 
       call integration_rule(kind, points, weights)
       do g = 1, size(weights)
@@ -129,7 +108,20 @@ contains
             volumes(g))
       end do
       volumes = volumes*weights
-   end subroutine point_strain_matrices
+      if (kind /= quad4 .or. plane == plane_stress) return
+      ! Mean of eps_xx + eps_yy + eps_zz over the volume, per degree of freedom.
+      mean = 0.0_dp
+      do g = 1, size(volumes)
+         mean = mean + volumes(g)*sum(b(:3, g, :), dim=1)
+      end do
+      mean = mean/sum(volumes)
+      do g = 1, size(volumes)
+         change = (mean - sum(b(:3, g, :), dim=1))/3
+         do i = 1, 3
+            b(i, g, :) = b(i, g, :) + change
+         end do
+      end do
+   end subroutine strain_matrices
 
    !> B at a point, and the volume per d xi d eta.
    pure subroutine strain_matrix(kind, plane, coordinates, thickness, point, b, volume)
@@ -153,31 +145,5 @@ contains
       b(4, 1::2) = gradients(2, :)
       b(4, 2::2) = gradients(1, :)
    end subroutine strain_matrix
-
-   !> Mean of eps_xx + eps_yy + eps_zz over the volume, per degree of freedom.
-   pure function mean_dilatation(b, volumes) result(mean)
-      real(dp), intent(in) :: b(:, :, :), volumes(:)
-      real(dp) :: mean(size(b, 3))
-      integer :: g
-
-      mean = 0.0_dp
-      do g = 1, size(volumes)
-         mean = mean + volumes(g)*sum(b(:3, g, :), dim=1)
-      end do
-      mean = mean/sum(volumes)
-   end function mean_dilatation
-
-   !> Gives the strains of B this dilatation, their deviator staying.
-   pure subroutine set_dilatation(dilatation, b)
-      real(dp), intent(in) :: dilatation(:)
-      real(dp), intent(inout) :: b(:, :)
-      real(dp) :: change(size(b, 2))
-      integer :: i
-
-      change = (dilatation - sum(b(:3, :), dim=1))/3
-      do i = 1, 3
-         b(i, :) = b(i, :) + change
-      end do
-   end subroutine set_dilatation
 
 end module element_elasticity

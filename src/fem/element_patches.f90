@@ -9,7 +9,7 @@ module element_patches
    use sample_sums, only: add_weight, row_type
    implicit none
    private
-   public :: layout_type, find_elements_round_corners, centres_for, midsides_at, fit_round_corner
+   public :: layout_type, centres_for, midsides_at, fit_round_corner
    public :: is_surrounded, is_linear, sites_of, corners_of, add_weights, fit_type, make_fit
    public :: quadratic_terms
 
@@ -47,35 +47,6 @@ module element_patches
    end type fit_type
 
 contains
-
-   !> Finds the elements of which each point is a corner.
-   pure subroutine find_elements_round_corners(mesh, points, layout)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
-      type(layout_type), intent(inout) :: layout
-      integer :: next(size(points%node)), e, p, q
-
-      allocate (layout%start(size(points%node) + 1), source=0)
-      do e = 1, size(mesh%element_kind)
-         do q = 1, element_corner_count(mesh%element_kind(e))
-            p = points%element_points(q, e)
-            layout%start(p + 1) = layout%start(p + 1) + 1
-         end do
-      end do
-      layout%start(1) = 1
-      do p = 1, size(points%node)
-         layout%start(p + 1) = layout%start(p + 1) + layout%start(p)
-      end do
-      next = layout%start(:size(next))
-      allocate (layout%around(layout%start(size(layout%start)) - 1))
-      do e = 1, size(mesh%element_kind)
-         do q = 1, element_corner_count(mesh%element_kind(e))
-            p = points%element_points(q, e)
-            layout%around(next(p)) = e
-            next(p) = next(p) + 1
-         end do
-      end do
-   end subroutine find_elements_round_corners
 
    !> Corners whose fits hold at a corner: its own, or, where its elements are too few for one, as
    !> at the outline of a body, those of its neighbours inside; without any its own, widened.

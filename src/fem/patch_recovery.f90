@@ -9,16 +9,16 @@
 !> times the second derivatives. At the outline of a section, where patches have too few elements,
 !> these are taken from quadratics fitted round the next corners inside.
 module patch_recovery
-   use element_kinds, only: quad8, quad8_reduced
-   use element_patches, only: add_weights, centres_for, corners_of, find_elements_round_corners, &
-      fit_round_corner, fit_type, is_linear, is_surrounded, layout_type, make_fit, midsides_at, &
-      quadratic_terms, sites_of
+   use element_kinds, only: element_corner_count, quad8, quad8_reduced
+   use element_patches, only: add_weights, centres_for, corners_of, fit_round_corner, fit_type, &
+      is_linear, is_surrounded, layout_type, make_fit, midsides_at, quadratic_terms, sites_of
    use field_recovery, only: point_map_type
    use kinds, only: dp
    use mesh, only: mesh_type
    use quadrature, only: recovery_count, recovery_weights
    use sample_sums, only: row_type, sample_sums_type
    use shape_functions, only: node_position
+   use sorting, only: invert_lists
    implicit none
    private
    public :: patch_recovery_type
@@ -59,7 +59,8 @@ contains
 
       layout%first_sample = first_sample
       layout%position = position
-      call find_elements_round_corners(mesh, points, layout)
+      call invert_lists(points%element_points, element_corner_count(mesh%element_kind), &
+         size(rows), layout%start, layout%around)
       allocate (self%inside(size(rows)), source=.false.)
       do p = 1, size(rows)
          has_fit(p) = .false.

@@ -103,12 +103,15 @@ contains
    !> The quantities with estimated errors, as they are in `/errors/<name>`.
    pure function bounded_quantities() result(quantities)
       type(quantity_type) :: quantities(size(estimated))
+      integer :: i
 
       quantities = estimated
       quantities%values = 5
       quantities%components = 'value bound mesh increments iteration'
-      quantities%description = 'value and the bound of its error, with its parts: '// &
-         estimated%description
+      do i = 1, size(estimated)
+         quantities(i)%description = 'value and the bound of its error, with its parts: '// &
+            trim(estimated(i)%description)
+      end do
    end function bounded_quantities
 
    !> Writes the geometry of contact points, those of some interfaces one behind the other.

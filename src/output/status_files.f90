@@ -7,6 +7,7 @@ module status_files
    use increment_quantities, only: history_value, pass_value
    use listing_text, only: column, table_cell, table_head
    use open_files, only: append_to_file, close_descriptor, open_new_file
+   use printed_text, only: printed_text_type
    use quantity_types, only: of_passes, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: quantities
@@ -15,8 +16,6 @@ module status_files
    private
    public :: status_file_type
 
-   integer, parameter :: line_length = 120   !! length of a line
-
    !> A file that grows by whole lines.
    type :: status_file_type
       private
@@ -24,8 +23,7 @@ module status_files
       character(:), allocatable :: heading            !! first line; begins with no digit
       type(quantity_type), allocatable :: columns(:)  !! of `.cvg`
       integer :: descriptor = -1                      !! of the file while it is open
-      integer :: waiting = 0                          !! lines not yet written
-      character(line_length), allocatable :: lines(:) !! these lines
+      type(printed_text_type) :: text                 !! lines not yet written
    contains
       procedure :: start_increments
       procedure :: start_iterations
@@ -47,7 +45,6 @@ contains
       self%path = path
       self%heading = 'increment  step            time            load  iterations  cut-backs'// &
          '    residual  heat imb.  force imb.'
-      allocate(self%lines(64))
    end subroutine start_increments
 
    !> Makes this the `.cvg` file; nothing is touched yet.
@@ -66,61 +63,43 @@ contains
       do i = 1, size(self%columns)
          self%heading = self%heading//table_head(self%columns(i))
       end do
-      allocate(self%lines(256))
    end subroutine start_iterations
 
    !> Adds the line of an accepted increment.
    subroutine add_increment(self, record)
       class(status_file_type), intent(inout) :: self      !! the `.sta` file
       type(increment_record_type), intent(in) :: record
-      character(line_length) :: line
 
-      write (line, '(i0, t12, i4, 2a, i12, i11, 3a)') record%increment, record%step, &
+      write (self%text%unit, '(i0, t12, i4, 2a, i12, i11, 3a)') record%increment, record%step, &
          column(record%time, 16, 8), column(record%load, 16, 8), &
          nint(history_value('iterations', record)), record%cut_backs, &
          column(history_value('residual', record), 12, 3), column(record%heat_imbalance, 11, 2), &
          column(record%force_imbalance, 11, 2)
-      call add_line(self, line)
    end subroutine add_increment
 
    !> Adds the lines of iterations.
    subroutine add_iterations(self, iterations)
       class(status_file_type), intent(inout) :: self            !! the `.cvg` file
       type(iteration_record_type), intent(in) :: iterations(:)  !! passes, in their order
-      character(line_length) :: line
       integer :: i, k
 
       do k = 1, size(iterations)
          associate (columns => self%columns, pass => iterations(k))
-            write (line, '(*(a))') &
+            write (self%text%unit, '(*(a))') &
                adjustl(table_cell(columns(1), pass_value(columns(1)%name, pass))), &
                (table_cell(columns(i), pass_value(columns(i)%name, pass)), i=2, size(columns))
          end associate
-         call add_line(self, line)
       end do
    end subroutine add_iterations
 
-   subroutine add_line(self, line)
-      class(status_file_type), intent(inout) :: self
-      character(line_length), intent(in) :: line
-      character(line_length), allocatable :: more(:)
-
-      if (self%waiting == size(self%lines)) then
-         allocate(more(2*self%waiting))
-         more(:self%waiting) = self%lines
-         call move_alloc(more, self%lines)
-      end if
-      self%waiting = self%waiting + 1
-      self%lines(self%waiting) = line
-   end subroutine add_line
-
-   !> Tries whether the file can be written, and leaves it as it is.
+   !> Tries whether the file can be written, and leaves it as it is; from now on lines can wait.
    !> Error: status_internal, when it cannot.
    subroutine reserve(self, error)
-      class(status_file_type), intent(in) :: self
+      class(status_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call try_file(self%path, error)
+      if (.not. allocated(error)) call self%text%open(error)
    end subroutine reserve
 
    !> Empties the file of an earlier run and leaves it with its heading.
@@ -139,25 +118,18 @@ contains
    subroutine write_waiting(self, error)
       class(status_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      character(:), allocatable :: text
-      integer :: i, first, last
+      character(:), allocatable :: lines
 
-      allocate (character(self%waiting*(line_length + 1)) :: text)
-      last = 0
-      do i = 1, self%waiting
-         first = last + 1
-         last = first + len_trim(self%lines(i))
-         text(first:last) = self%lines(i)(:last - first)//new_line('a')
-      end do
-      call append_to_file(self%descriptor, self%path, text(:last), error)
+      call self%text%take(lines)
+      call append_to_file(self%descriptor, self%path, lines, error)
       if (.not. allocated(error)) call check_in_place(self%path, self%descriptor, error)
-      self%waiting = 0
    end subroutine write_waiting
 
    !> Closes the file.
    subroutine close_file(self)
       class(status_file_type), intent(inout) :: self
 
+      call self%text%close()
       if (self%descriptor >= 0) call close_descriptor(self%descriptor)
       self%descriptor = -1
    end subroutine close_file
