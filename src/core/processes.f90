@@ -1,14 +1,15 @@
 !> Work in processes of its own: a crash, or memory that runs out, is that of the child alone, and
 !> the system says what the child took. The calls themselves are in system_processes.c.
 module processes
-   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, c_null_char, c_sizeof
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_int, &
+      c_long, c_null_char, c_ptr, c_size_t, c_sizeof
    use, intrinsic :: iso_fortran_env, only: error_unit
    use errors, only: error_type, set_error, status_internal
    use text, only: to_text
    implicit none
    private
    public :: task_type, child_type, report_type
-   public :: file_report, set_reason, reason_of, pause_briefly
+   public :: file_report, set_reason, reason_of, share_numbers, pause_briefly
 
    integer, parameter :: longest_reason = 4096            !! characters, with the 0 at the end
    integer, parameter :: block_length = 65536             !! characters read at once
@@ -102,6 +103,11 @@ module processes
          type(report_type), intent(in) :: report
       end subroutine c_file_report
 
+      type(c_ptr) function c_share(bytes) bind(c, name='thercon_share')
+         import :: c_ptr, c_size_t
+         integer(c_size_t), value :: bytes
+      end function c_share
+
       !> POSIX close(2).
       integer(c_int) function c_close(file) bind(c, name='close')
          import :: c_int
@@ -175,14 +181,19 @@ contains
       call c_signal_child(self%process, merge(1_c_int, 0_c_int, kills))
    end subroutine send_signal
 
-   !> The child's report so far.
+   !> The child's report so far; of one that ended before it had said all, that and why.
    function report(self)
       class(child_type), intent(in) :: self
       type(report_type) :: report
       character(c_char) :: bytes(c_sizeof(report))
 
-      if (c_read(self%reports, 0_c_long, int(size(bytes), c_int), bytes) < size(bytes)) return
-      report = transfer(bytes, report)
+      if (c_read(self%reports, 0_c_long, int(size(bytes), c_int), bytes) == size(bytes)) then
+         report = transfer(bytes, report)
+      end if
+      if (self%is_running .or. self%end%signal == 0 .and. report%is_whole == 1) return
+      report%is_whole = 0_c_int
+      report%status = int(status_internal, c_int)
+      call set_reason(report, self%sudden_end())
    end function report
 
    !> Takes all that a child printed, without a line end behind it, and closes its files.
@@ -268,6 +279,23 @@ contains
       n = findloc(characters, c_null_char, dim=1) - 1
       text = transfer(characters(:n), repeat(' ', n))
    end function text_of
+
+   !> Makes room for numbers, zeros at first, that later children write and this process reads.
+   !> Error: status_internal, when there is no memory.
+   subroutine share_numbers(numbers, rows, columns, error)
+      real(c_double), pointer, intent(out) :: numbers(:, :)   !! (rows, columns)
+      integer, intent(in) :: rows, columns
+      type(error_type), allocatable, intent(out) :: error
+      type(c_ptr) :: memory
+
+      nullify (numbers)
+      memory = c_share(max(rows*columns, 1)*c_sizeof(0.0_c_double))
+      if (.not. c_associated(memory)) then
+         call set_error(error, status_internal, 'no memory can be shared with further processes')
+         return
+      end if
+      call c_f_pointer(memory, numbers, [rows, columns])
+   end subroutine share_numbers
 
    !> Sleeps for some milliseconds, or until a signal comes.
    subroutine pause_briefly()

@@ -107,6 +107,13 @@ void thercon_file_report(const struct report *report)
    if (report_file >= 0) (void)!pwrite(report_file, &filed, sizeof filed, 0);
 }
 
+/* Memory, all zeros, that this process shares with its later children until it ends; or NULL. */
+void *thercon_share(size_t bytes)
+{
+   void *shared = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+   return shared == MAP_FAILED ? NULL : shared;
+}
+
 static void put(int file, const char *words)
 {
    size_t left = strlen(words);

@@ -283,9 +283,7 @@ contains
       associate (child => slot%child)
          outcome%cpu_seconds = child%end%cpu_seconds
          outcome%peak_bytes = child%end%peak_bytes
-         if (child%end%signal == 0 .and. report%is_whole == 1) return
-         outcome%status = status_internal
-         outcome%reason = child%sudden_end()
+         if (report%is_whole == 1) return
          if (slot%is_killed) then
             outcome%status = status_interrupted
             outcome%reason = 'killed because a second signal came'

@@ -3,9 +3,9 @@
 module trade_measurement
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_int
+   use adaptive_rounds, only: adaptive_rounds_type, increment_taker_type
    use clock, only: wall_seconds
    use command_line, only: command_type
-   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
    use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type, set_error, status_internal, status_interrupted, &
@@ -15,7 +15,6 @@ module trade_measurement
    use interruption, only: caught_signal
    use kinds, only: dp
    use model, only: model_type
-   use open_files, only: close_descriptor, open_in_memory
    use processes, only: child_type, pause_briefly, reason_of, report_type, set_reason, task_type
    use progress, only: progress_type
    use records, only: increment_record_type
@@ -27,7 +26,7 @@ module trade_measurement
    use variations, only: variation_type
    implicit none
    private
-   public :: row_task_type, measure_rows
+   public :: row_run_type, measure_rows
 
    !> Runs of a row by the CPU seconds of its first: short times scatter most.
    real(dp), parameter :: moments(3) = [0.1_dp, 1.0_dp, 5.0_dp]   !! [s]
@@ -35,110 +34,120 @@ module trade_measurement
    real(dp), parameter :: patience = 5.0_dp        !! a row may take so many times the limit
    real(dp), parameter :: least_patience = 20.0_dp !! and this [s]
 
-   !> Everything that a row needs.
-   type, extends(task_type) :: row_task_type
-      character(:), allocatable :: path      !! the deck as given
-      type(command_type) :: command          !! options of the command line
-      integer, allocatable :: items(:)       !! as from item_quantities
+   !> What is compared of a row, taken as its increments come.
+   type, extends(increment_taker_type) :: row_values_type
       real(dp), allocatable :: instants(:)   !! total times of comparison [time]
-      integer, allocatable :: nodes(:)       !! numbers of nodes whose temperature is compared
-      type(variation_type) :: variation      !! the row
-      character(:), allocatable :: found     !! path of a file for what it finds
+      integer, allocatable :: nodes(:)       !! indexes of nodes whose temperature is compared
+      real(dp), pointer :: values(:, :)      !! (items, instants)
+      integer :: increments = 0              !! accepted ones
+      integer :: passes = 0                  !! of the fixed point in all of them
+   contains
+      procedure :: take
+   end type row_values_type
+
+   !> All that a row needs.
+   type, extends(task_type) :: row_task_type
+      character(:), allocatable :: path           !! the deck as given
+      type(command_type) :: command               !! options of the command line
+      type(read_deck_type), pointer :: deck => null()   !! read
+      real(dp), allocatable :: instants(:)        !! total times of comparison [time]
+      integer, allocatable :: nodes(:)            !! numbers of nodes whose temperature is compared
+      real(dp), pointer :: values(:, :)           !! (items, instants) shared with the process
+      type(variation_type) :: variation           !! the row
    contains
       procedure :: execute
    end type row_task_type
 
-   !> Room for a row that is run.
-   type :: slot_type
-      integer :: row = 0            !! the row
-      integer :: runs_left = 0      !! of this row, the present one included; 0: the slot is free
-      type(row_task_type) :: task
-      type(child_type) :: child     !! its process
-      integer :: file = -1          !! descriptor of the file for what it finds
-      real(dp) :: since = 0.0_dp    !! when it began [s]
-   end type slot_type
+   !> A row in a process of its own.
+   type :: row_run_type
+      type(row_task_type) :: task     !! all but the variation is given
+      integer, private :: row = 0               !! its index
+      integer, private :: runs_left = 0         !! of it, the present one included; 0: none runs
+      type(child_type), private :: child
+      real(dp), private :: since = 0.0_dp       !! when it began [s]
+   end type row_run_type
 
 contains
 
    !> Runs some rows. A row that fails keeps its reason.
    !> Errors: status_interrupted after a signal, then only the rows that were measured remain;
    !> status_internal where no process can be started.
-   subroutine measure_rows(task, progress, rows, error)
-      type(row_task_type), intent(in) :: task                 !! all but the variation
+   subroutine measure_rows(runs, progress, rows, error)
+      type(row_run_type), intent(inout) :: runs(:)            !! as many as run at a time
       type(progress_type), intent(inout) :: progress
       type(trade_row_type), allocatable, intent(inout) :: rows(:)
       type(error_type), allocatable, intent(out) :: error
-      type(slot_type) :: slots(task%command%jobs)
-      integer :: next, s
+      integer :: next, i
       logical :: has_ended
 
       next = 1
-      do while (next <= size(rows) .or. any(slots%runs_left > 0))
-         do s = 1, size(slots)
-            if (slots(s)%runs_left > 0) then
-               call collect(slots(s), rows(slots(s)%row), has_ended)
-               if (.not. has_ended) cycle
-            end if
-            if (slots(s)%runs_left == 0) then
-               if (next > size(rows)) cycle
-               slots(s)%row = next
-               slots(s)%runs_left = 1
-               next = next + 1
-            end if
-            call progress%say('level '//to_text(rows(slots(s)%row)%variation%levels)//', row '// &
-               to_text(slots(s)%row)//' of '//to_text(size(rows)))
-            slots(s)%task = task
-            slots(s)%task%variation = rows(slots(s)%row)%variation
-            call open_in_memory(slots(s)%file, slots(s)%task%found, error)
-            if (.not. allocated(error)) call slots(s)%child%start(slots(s)%task, error)
+      do while (next <= size(rows) .or. any(runs%runs_left > 0))
+         do i = 1, size(runs)
+            associate (run => runs(i))
+               if (run%runs_left > 0) then
+                  call collect(run, rows(run%row), has_ended)
+                  if (.not. has_ended) cycle
+               end if
+               if (run%runs_left == 0) then
+                  if (next > size(rows)) cycle
+                  run%row = next
+                  run%runs_left = 1
+                  run%task%variation = rows(next)%variation
+                  next = next + 1
+               end if
+               call progress%say('level '//to_text(run%task%variation%levels)//', row '// &
+                  to_text(run%row)//' of '//to_text(size(rows)))
+               run%task%values = absent
+               run%since = wall_seconds()
+               call run%child%start(run%task, error)
+            end associate
             if (allocated(error)) exit
-            slots(s)%since = wall_seconds()
          end do
          if (.not. allocated(error) .and. caught_signal() /= '') call set_error(error, &
             status_interrupted, 'ended by '//caught_signal())
          if (allocated(error)) exit
          call pause_briefly()
       end do
-      do s = 1, size(slots)
-         if (slots(s)%child%is_running) call slots(s)%child%kill()
+      do i = 1, size(runs)
+         if (runs(i)%child%is_running) call runs(i)%child%kill()
       end do
-      if (allocated(error)) rows = rows(pack([(s, s=1, size(rows))], &
-         [(allocated(rows(s)%cpu), s=1, size(rows))]))
+      if (allocated(error)) rows = rows(pack([(i, i=1, size(rows))], &
+         [(allocated(rows(i)%cpu), i=1, size(rows))]))
    end subroutine measure_rows
 
    !> Takes what a run left, once it has ended; after the first one of a row, repetitions are due.
-   subroutine collect(slot, row, has_ended)
-      type(slot_type), intent(inout) :: slot
+   subroutine collect(self, row, has_ended)
+      type(row_run_type), intent(inout) :: self
       type(trade_row_type), intent(inout) :: row
       logical, intent(out) :: has_ended
       type(report_type) :: report
+      real(dp) :: longest
       integer :: i
 
-      associate (longest => max(patience*slot%task%command%limit, least_patience), &
-         ended => slot%child%end)
-         has_ended = slot%child%has_ended()
-         if (.not. has_ended .and. wall_seconds() - slot%since < longest) return
-         slot%runs_left = slot%runs_left - 1
-         report%status = int(status_internal, c_int)
-         if (has_ended) then
-            report = slot%child%report()
-            if (ended%signal /= 0 .or. report%is_whole == 0) then
-               report%status = int(status_internal, c_int)
-               call set_reason(report, slot%child%sudden_end())
-            end if
-            call slot%child%drop_files()
-         else
-            call slot%child%kill()
-            call set_reason(report, 'took longer than '//to_text(longest)//' s')
-         end if
+      longest = max(patience*self%task%command%limit, least_patience)
+      has_ended = self%child%has_ended()
+      if (has_ended) then
+         report = self%child%report()
+         call self%child%drop_files()
+      else if (wall_seconds() - self%since >= longest) then
+         call self%child%kill()
          has_ended = .true.
+         report%status = int(status_internal, c_int)
+         call set_reason(report, 'took longer than '//to_text(longest)//' s')
+      else
+         return
+      end if
+      self%runs_left = self%runs_left - 1
+      associate (ended => self%child%end)
          row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
          if (.not. allocated(row%cpu)) then
             row%cpu = [ended%cpu_seconds]
             row%status = int(report%status)
             row%reason = reason_of(report)
-            call load(slot%task, row)
-            if (row%status == 0) slot%runs_left = &
+            row%increments = int(report%increments)
+            row%passes = int(report%iterations)
+            row%values = self%task%values
+            if (row%status == 0) self%runs_left = &
                runs_within(count(ended%cpu_seconds > moments) + 1) - 1
          else if (report%status == 0) then
             row%cpu = [row%cpu, ended%cpu_seconds]
@@ -147,97 +156,68 @@ contains
       ! The median: the smallest that at least half of them do not exceed.
       row%cpu_seconds = minval(row%cpu, mask=[(2*count(row%cpu <= row%cpu(i)) >= size(row%cpu), &
          i=1, size(row%cpu))])
-      call close_descriptor(slot%file)
    end subroutine collect
 
-   !> Reads what a row found; a solved one that left no values fails.
-   subroutine load(task, row)
-      type(row_task_type), intent(in) :: task
-      type(trade_row_type), intent(inout) :: row
-      integer :: unit, io
-
-      allocate (row%values(size(task%items), size(task%instants)))
-      open (newunit=unit, file=task%found, access='stream', status='old', iostat=io)
-      if (io == 0) then
-         read (unit, iostat=io) row%increments, row%passes, row%values
-         close (unit)
-      end if
-      if (io /= 0 .and. row%status == 0) then
-         row%status = status_internal
-         row%reason = 'no values of the row'
-      end if
-   end subroutine load
-
-   !> Solves the row and leaves what it found in the file.
+   !> Solves the row, a round without estimates and without a request.
    subroutine execute(self, report)
       class(row_task_type), intent(inout) :: self
       type(report_type), intent(inout) :: report    !! how it ended
-      type(read_deck_type) :: deck
       type(model_type) :: model
       type(simulation_type) :: simulation
-      type(trade_row_type) :: row
+      type(adaptive_rounds_type) :: rounds
+      type(row_values_type) :: found
+      type(increment_record_type) :: record
+      type(number_index_type) :: index
       type(error_type), allocatable :: error
-      integer :: unit, io
+      integer :: i
 
-      call prepare_deck(self%path, self%command, deck, model, simulation, error, self%variation)
+      call prepare_deck(self%path, self%command, self%deck, model, simulation, error, &
+         self%variation)
       if (.not. allocated(error)) then
-         call solve(self, model, simulation, row, error)
-         open (newunit=unit, file=self%found, access='stream', status='old', iostat=io)
-         if (io == 0) then
-            write (unit, iostat=io) row%increments, row%passes, row%values
-            close (unit)
-         end if
-         if (io /= 0 .and. .not. allocated(error)) call set_error(error, status_internal, &
-            'no room for the values of the row')
+         model%estimates_errors = .false.
+         if (allocated(model%accuracy%targets)) deallocate (model%accuracy%targets)
+         call index%build(model%mesh%node_number)
+         found%nodes = [(index%find(self%nodes(i)), i=1, size(self%nodes))]
+         found%instants = self%instants
+         found%values => self%values
+         call simulation%reduce(model, error)
+         call rounds%solve_increments(model, simulation, found, record, error)
          if (allocated(error)) error%status = max(error%status, status_no_convergence)
       end if
+      report%increments = int(found%increments, c_int)
+      report%iterations = int(found%passes, c_int)
       if (.not. allocated(error)) return
       report%status = int(error%status, c_int)
       call set_reason(report, error%message)
    end subroutine execute
 
-   subroutine solve(self, model, simulation, row, error)
-      type(row_task_type), intent(in) :: self
-      type(model_type), intent(in) :: model
-      type(simulation_type), intent(inout) :: simulation
-      type(trade_row_type), intent(inout) :: row
-      type(error_type), allocatable, intent(out) :: error
-      type(increment_record_type) :: record
-      type(number_index_type) :: index
-      integer :: nodes(size(self%nodes)), instant, i
-
-      allocate (row%values(size(self%items), size(self%instants)), source=absent)
-      call index%build(model%mesh%node_number)
-      nodes = [(index%find(self%nodes(i)), i=1, size(nodes))]
-      call simulation%reduce(model, error)
-      do while (.not. (allocated(error) .or. simulation%finished(model)))
-         call simulation%advance(model, record, error)
-         if (allocated(record%iterations)) row%passes = row%passes + size(record%iterations)
-         if (allocated(error)) return
-         row%increments = row%increments + 1
-         instant = instant_at(self%instants, record%time)
-         if (instant > 0) row%values(:, instant) = compared_values(record, &
-            simulation%bodies%interfaces, nodes)
-      end do
-   end subroutine solve
-
-   !> Values of the items at an instant.
-   pure function compared_values(record, interfaces, nodes) result(values)
-      type(increment_record_type), intent(in) :: record     !! the increment that ends there
-      type(contact_points_type), intent(in) :: interfaces(:)
-      integer, intent(in) :: nodes(:)
+   !> Takes the values at the instants of comparison; their order is that of item_quantities.
+   subroutine take(self, simulation, record, error)
+      class(row_values_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), allocatable, intent(inout) :: error
       real(dp), allocatable :: values(:)
-      integer :: i, q
+      integer :: i, instant, q
 
-      allocate (values(0))
-      do i = 1, size(interfaces)
-         values = [values, (contact_values(traded(q)%name, interfaces(i), record%contacts(i)), &
-            q=1, figure_count), closed_length(record%contacts(i), interfaces(i)%arc_length)]
-      end do
-      if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
-         traded(q)%name == 'heat_rate'), q=1, figure_count), 0.0_dp]
-      values = [values, record%fields%temperature(nodes)]
+      if (allocated(record%iterations)) self%passes = self%passes + size(record%iterations)
+      if (allocated(error)) return
+      self%increments = self%increments + 1
+      instant = instant_at(self%instants, record%time)
+      if (instant == 0) return
+      associate (interfaces => simulation%bodies%interfaces)
+         allocate (values(0))
+         do i = 1, size(interfaces)
+            values = [values, (contact_values(traded(q)%name, interfaces(i), &
+               record%contacts(i)), q=1, figure_count), &
+               closed_length(record%contacts(i), interfaces(i)%arc_length)]
+         end do
+         if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
+            traded(q)%name == 'heat_rate'), q=1, figure_count), 0.0_dp]
+      end associate
+      values = [values, record%fields%temperature(self%nodes)]
       where (.not. ieee_is_finite(values)) values = absent
-   end function compared_values
+      self%values(:, instant) = values
+   end subroutine take
 
 end module trade_measurement

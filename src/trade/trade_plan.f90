@@ -1,7 +1,7 @@
 !> The rows of a trade-off study: the grid over mesh, increments and elements; meshes that are finer
 !> at the contact faces; one thing at a time around the deck as written.
 module trade_plan
-   use contact_definitions, only: pairing_name
+   use contact_definitions, only: pairing_name, pairing_nodes, pairing_surfaces
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
       method_names, solver_mumps, solver_skyline, thermal_scheme_type
    use element_kinds, only: side_node_count
@@ -15,7 +15,7 @@ module trade_plan
    use variations, only: variation_type, varied_increment
    implicit none
    private
-   public :: mesh_rows, single_rows, coarser_row, common_instants, instant_at
+   public :: mesh_rows, single_rows, common_instants, instant_at
    public :: factors, most_levels
 
    !> Factors on the increments of the deck, each half the one before.
@@ -58,12 +58,12 @@ contains
    end subroutine mesh_rows
 
    !> The rows that vary one thing, each where the deck has a use for it.
-   pure subroutine single_rows(model, other_pairing, rows)
+   pure subroutine single_rows(model, pairings, rows)
       type(model_type), intent(in) :: model        !! on the deck's mesh
-      integer, intent(in) :: other_pairing         !! pairing that the deck could have too, or 0
+      integer, intent(in) :: pairings(:)           !! (interfaces) as the deck has them
       type(trade_row_type), allocatable, intent(out) :: rows(:)
       type(variation_type) :: written
-      integer :: i, coupled, heated
+      integer :: i, coupled, heated, pairing
 
       allocate (rows(0))
       written = variation_type(order=min(model%written_order, highest_order(model)), &
@@ -86,9 +86,11 @@ contains
          call add(written, trim(method_names(i)), rows)
          rows(size(rows))%variation%method = i
       end do
-      if (other_pairing /= 0) then
-         call add(written, pairing_name(other_pairing), rows)
-         rows(size(rows))%variation%pairing = other_pairing
+      pairing = merge(pairing_surfaces, 0, all(pairings == pairing_nodes))
+      if (any(model%contacts%pairing == pairing_surfaces)) pairing = pairing_nodes
+      if (size(pairings) > 0 .and. pairing /= 0) then
+         call add(written, pairing_name(pairing), rows)
+         rows(size(rows))%variation%pairing = pairing
       end if
       call add(written, trim(merge('MUMPS  ', 'SKYLINE', model%solver == solver_skyline)), rows)
       rows(size(rows))%variation%solver = merge(solver_mumps, solver_skyline, &
@@ -106,23 +108,6 @@ contains
       row%reason = ''
       rows = [rows, row]
    end subroutine add
-
-   !> Index of the row on the next coarser mesh, with the same elements and increments; 0 for none.
-   pure integer function coarser_row(rows, variation) result(i)
-      type(trade_row_type), intent(in) :: rows(:)
-      type(variation_type), intent(in) :: variation   !! of the finer row
-      integer :: less
-
-      less = merge(1, 0, variation%contact_levels > 0)
-      do i = size(rows), 1, -1
-         associate (other => rows(i)%variation)
-            if (rows(i)%varied == '' .and. other%order == variation%order .and. &
-               other%contact_levels == variation%contact_levels - less .and. &
-               other%levels == variation%levels - (1 - less) .and. &
-               abs(other%increments - variation%increments) <= 0.0_dp) return
-         end associate
-      end do
-   end function coarser_row
 
    !> Order of the elements that the deck has.
    pure integer function highest_order(model)

@@ -43,9 +43,9 @@ the contact alone do not enter the reference.
 **A recommendation** is the cheapest row that meets the target, and the targets before it, in all
 quantities for which any row does; the other quantities are named beside it.
 
-**CPU seconds** are user and system time of a process that solves only this row, without output;
-those of one table compare its rows. They are medians of 7 runs below 0.1 s, 5 below 1 s, 3 below
-5 s. MB is the largest resident memory, some 9 MB of which are the program itself.
+**CPU seconds** are user and system time of a process that solves only this row, without reading the
+deck and without output; those of one table compare its rows. They are medians of 7 runs below 0.1
+s, 5 below 1 s, 3 below 5 s. MB is the largest resident memory, some 9 MB of which are the program itself.
 """
 LIMIT = "8"
 CYLINDER = """\
