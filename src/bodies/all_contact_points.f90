@@ -2,35 +2,42 @@
 !> the points of all ties, the nodes that hang and the equations of the deck.
 module all_contact_points
    use conductance_laws, only: is_constant, varies_with_temperature
-   use contact_pairs, only: make_contact_points
+   use contact_definitions, only: pairing_nodes, tie_definition_type
+   use contact_pairs, only: make_contact_points, make_tie_points
    use contact_points, only: contact_points_type
+   use element_kinds, only: side_node_count
    use equations, only: equation_type
    use errors, only: error_type
    use hanging_nodes, only: hanging_rows
    use kinds, only: dp
+   use mesh, only: mesh_type
    use model, only: model_type
    use sum_lists, only: sum_list_type
    use temperature_laws, only: law_jumps
-   use tie_points, only: joined_ties, make_tie_points, tie_points_type
    use transforms, only: partner_type
    implicit none
    private
-   public :: all_contact_points_type, match_surfaces, match_tie, joined_points
+   public :: all_contact_points_type, tie_points_type, match_surfaces, match_tie, joined_points
 
-   !> The contact points of all interfaces in one row.
-   type :: all_contact_points_type
+   real(dp), parameter :: opposite = 1.0e-3_dp   !! offset of nodes face to face, of the side
+
+   !> The points of all ties in one row.
+   type :: tie_points_type
+      integer, allocatable :: tie(:)            !! (n) index into the model's ties
+      integer, allocatable :: slave(:)          !! (n) node indexes
+      integer, allocatable :: master(:)         !! (n) the one opposite, or the nearest one
+      logical, allocatable :: is_opposite(:)    !! (n) whether these two are face to face
+      !> (n) whether it is a mortar point of a face without midside nodes
+      logical, allocatable :: is_linear(:)
+      real(dp), allocatable :: weight(:)        !! (n) tributary areas [length^2]
+      type(sum_list_type) :: difference         !! (n, nodes) slave's value less master's
+   end type tie_points_type
+
+   !> The contact points of all interfaces in one row, and what else joins nodes.
+   type, extends(contact_points_type) :: all_contact_points_type
       integer, allocatable :: interface_start(:)     !! (interfaces + 1) first contact point of each
-      integer, allocatable :: slave(:), master(:)             !! (m) node indexes
-      !> (m, nodes) slave's value less master's, as the mean that the contact point takes of each
-      type(sum_list_type) :: difference
-      !> (m, nodes) the same of displacements, as in contact_points_type; no sums where no normal of
-      !> any contact point turns
-      type(sum_list_type) :: along, across
-      !> (m, nodes) mean of both; no sums where no conductance law varies with the temperature
+      !> (m, nodes) mean of both faces; no sums where no conductance law varies with the temperature
       type(sum_list_type) :: mean
-      real(dp), allocatable :: weight(:)                      !! (m) tributary areas [length^2]
-      real(dp), allocatable :: initial_gap(:)                 !! (m) h [length]
-      real(dp), allocatable :: normal(:, :), tangent(:, :)    !! (2, m) unit vectors
       logical, allocatable :: cuts_hats(:) !! (interfaces) whether the edge of contact cuts hats
       !> nodes of both faces of these interfaces; unallocated where there are none
       integer, allocatable :: cut_nodes(:)
@@ -39,14 +46,8 @@ module all_contact_points
       type(equation_type), allocatable :: equations(:)        !! equations of the deck
       type(partner_type), allocatable :: partners(:)          !! nodes with axes of their own
    contains
-      procedure :: jumps
       procedure :: vary_with_temperature
       procedure :: means
-      procedure :: relative
-      procedure :: add_forces
-      procedure :: nodes_of
-      procedure :: means_of
-      procedure :: turns
    end type all_contact_points_type
 
 contains
@@ -94,42 +95,36 @@ contains
       type(contact_points_type), intent(in) :: of_ties(:)    !! (ties) in the order of the deck
       type(model_type), intent(in) :: model
       type(all_contact_points_type) :: row                  !! all their contact points
-      integer :: i, first, k, last, m
+      integer :: i, k
 
-      allocate (row%interface_start(size(interfaces) + 1))
-      row%interface_start(1) = 1
+      row%slave = [(interfaces(i)%slave, i=1, size(interfaces))]
+      row%master = [(interfaces(i)%master, i=1, size(interfaces))]
+      row%weight = [(interfaces(i)%weight, i=1, size(interfaces))]
+      row%initial_gap = [(interfaces(i)%initial_gap, i=1, size(interfaces))]
+      row%normal = reshape([(interfaces(i)%normal, i=1, size(interfaces))], [2, size(row%slave)])
+      row%tangent = reshape([(interfaces(i)%tangent, i=1, size(interfaces))], [2, size(row%slave)])
+      row%interface_start = [1]
+      call row%difference%reserve(size(row%slave), 2*size(row%slave))
       do i = 1, size(interfaces)
-         row%interface_start(i + 1) = row%interface_start(i) + size(interfaces(i)%slave_node)
-      end do
-      m = row%interface_start(size(interfaces) + 1) - 1
-      allocate (row%slave(m), row%master(m), row%weight(m), row%initial_gap(m), row%normal(2, m), &
-         row%tangent(2, m))
-      call row%difference%reserve(m, 2*m)
-      if (any([(interfaces(i)%across%count > 0, i=1, size(interfaces))])) then
-         call row%along%reserve(m, 2*m)
-         call row%across%reserve(m, 2*m)
-      end if
-      do i = 1, size(interfaces)
-         first = row%interface_start(i)
-         last = row%interface_start(i + 1) - 1
-         row%slave(first:last) = interfaces(i)%slave_node
-         row%master(first:last) = interfaces(i)%master_node
-         row%weight(first:last) = interfaces(i)%weight
-         row%initial_gap(first:last) = interfaces(i)%initial_gap
-         row%normal(:, first:last) = interfaces(i)%normal
-         row%tangent(:, first:last) = interfaces(i)%tangent
+         row%interface_start = [row%interface_start, row%interface_start(i) + &
+            size(interfaces(i)%slave)]
          call row%difference%add_sums(interfaces(i)%difference)
-         if (.not. row%turns()) cycle
-         if (interfaces(i)%across%count > 0) then
-            call row%along%add_sums(interfaces(i)%along)
-            call row%across%add_sums(interfaces(i)%across)
-         else
+      end do
+      if (any([(interfaces(i)%turns(), i=1, size(interfaces))])) then
+         call row%along%reserve(size(row%slave), 2*size(row%slave))
+         call row%across%reserve(size(row%slave), 2*size(row%slave))
+         do i = 1, size(interfaces)
+            if (interfaces(i)%turns()) then
+               call row%along%add_sums(interfaces(i)%along)
+               call row%across%add_sums(interfaces(i)%across)
+               cycle
+            end if
             call row%along%add_sums(interfaces(i)%difference)
-            do k = first, last
+            do k = 1, size(interfaces(i)%slave)
                call row%across%add([integer ::], [real(dp) ::])
             end do
-         end if
-      end do
+         end do
+      end if
       if (any(varies_with_temperature(model%interactions(model%contacts%interaction)%law))) then
          row%mean = means_of_faces(interfaces)
       end if
@@ -140,6 +135,33 @@ contains
       if (allocated(model%equations)) row%equations = model%equations
       call find_cut_faces(model, interfaces, row)
    end function joined_points
+
+   !> Puts the points of all ties in one row.
+   pure function joined_ties(mesh, ties, of_tie) result(row)
+      type(mesh_type), intent(in) :: mesh
+      type(tie_definition_type), intent(in) :: ties(:)
+      type(contact_points_type), intent(in) :: of_tie(:)    !! (ties) their points
+      type(tie_points_type) :: row
+      integer :: i
+
+      row%tie = [(spread(i, 1, size(of_tie(i)%slave)), i=1, size(ties))]
+      row%slave = [(of_tie(i)%slave, i=1, size(ties))]
+      row%master = [(of_tie(i)%master, i=1, size(ties))]
+      row%weight = [(of_tie(i)%weight, i=1, size(ties))]
+      allocate (row%is_opposite(0), row%is_linear(0))
+      call row%difference%reserve(0, 0)
+      do i = 1, size(ties)
+         associate (points => of_tie(i), &
+            face => mesh%surfaces(ties(i)%faces%slave)%faces(:, 1))
+            row%is_opposite = [row%is_opposite, abs(sum(points%tangent*(mesh%coordinates(:, &
+               points%master) - mesh%coordinates(:, points%slave)), dim=1)) <= &
+               opposite*points%edge]
+            row%is_linear = [row%is_linear, spread(points%pairing /= pairing_nodes .and. &
+               side_node_count(mesh%element_kind(face(1))) == 2, 1, size(points%slave))]
+            call row%difference%add_sums(points%difference)
+         end associate
+      end do
+   end function joined_ties
 
    !> The mean of slave's and master's value at all contact points.
    pure function means_of_faces(interfaces) result(means)
@@ -172,7 +194,7 @@ contains
       nodes = [integer ::]
       do i = 1, size(interfaces)
          if (.not. allocated(interfaces(i)%segments)) cycle
-         if (size(interfaces(i)%slave_node) < 2) cycle
+         if (size(interfaces(i)%slave) < 2) cycle
          associate (law => model%interactions(model%contacts(i)%interaction)%law)
             row%cuts_hats(i) = .not. (law_jumps(law) .or. is_constant(law))
          end associate
@@ -182,23 +204,6 @@ contains
       end do
       if (size(nodes) > 0) row%cut_nodes = nodes
    end subroutine find_cut_faces
-
-   !> Whether the normal turns along the face of some contact point.
-   pure logical function turns(self)
-      class(all_contact_points_type), intent(in) :: self
-
-      turns = allocated(self%across%start)
-   end function turns
-
-   !> Slave's value less master's of a field, at every contact point.
-   pure function jumps(self, field)
-      class(all_contact_points_type), intent(in) :: self
-      real(dp), intent(in) :: field(:)             !! (nodes)
-      real(dp) :: jumps(size(self%slave))          !! (m)
-
-      jumps = 0.0_dp
-      call self%difference%add_totals(field, jumps)
-   end function jumps
 
    !> Whether the conductance law of some contact point varies with the temperatures of its faces.
    pure logical function vary_with_temperature(self)
@@ -217,77 +222,5 @@ contains
       means = 0.0_dp
       if (self%vary_with_temperature()) call self%mean%add_totals(field, means)
    end function means
-
-   !> Slave's displacement less master's, at every contact point, in the directions of its normal:
-   !> the mean of displacements that are turned with the face.
-   pure function relative(self, displacement)
-      class(all_contact_points_type), intent(in) :: self
-      real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
-      real(dp) :: relative(2, size(self%slave))    !! (2, m) [length]
-      real(dp) :: across(2, size(self%slave))
-
-      relative(1, :) = self%jumps(displacement(1::2))
-      relative(2, :) = self%jumps(displacement(2::2))
-      if (.not. self%turns()) return
-      relative = 0.0_dp
-      across = 0.0_dp
-      call self%along%add_totals(displacement(1::2), relative(1, :))
-      call self%along%add_totals(displacement(2::2), relative(2, :))
-      call self%across%add_totals(displacement(1::2), across(1, :))
-      call self%across%add_totals(displacement(2::2), across(2, :))
-      relative = relative + reshape([across(2, :), -across(1, :)], shape(across), order=[2, 1])
-   end function relative
-
-   !> Adds the nodal forces of forces on the slave at the contact points, and of their opposites on
-   !> the master.
-   pure subroutine add_forces(self, on_slave, forces)
-      class(all_contact_points_type), intent(in) :: self
-      real(dp), intent(in) :: on_slave(:, :)       !! (2, m) [force]
-      real(dp), intent(inout) :: forces(:)         !! (2 nodes) [force]
-
-      if (.not. self%turns()) then
-         call self%difference%add_shares(on_slave(1, :), forces(1::2))
-         call self%difference%add_shares(on_slave(2, :), forces(2::2))
-         return
-      end if
-      call self%along%add_shares(on_slave(1, :), forces(1::2))
-      call self%along%add_shares(on_slave(2, :), forces(2::2))
-      call self%across%add_shares(on_slave(1, :), forces(2::2))
-      call self%across%add_shares(-on_slave(2, :), forces(1::2))
-   end subroutine add_forces
-
-   !> The nodes whose values a contact point takes.
-   pure function nodes_of(self, k) result(nodes)
-      class(all_contact_points_type), intent(in) :: self
-      integer, intent(in) :: k                     !! a contact point
-      integer, allocatable :: nodes(:)
-
-      nodes = self%difference%values_of(k)
-   end function nodes_of
-
-   !> What a contact point takes of its nodes' displacements: slave's less master's along an axis
-   !> are along.u of that axis, and across.u of the other one, added for x and subtracted for y.
-   pure subroutine means_of(self, k, nodes, along, across)
-      class(all_contact_points_type), intent(in) :: self
-      integer, intent(in) :: k                     !! a contact point
-      integer, allocatable, intent(out) :: nodes(:)   !! (n) each once
-      real(dp), allocatable, intent(out) :: along(:)  !! (n)
-      real(dp), allocatable, intent(out) :: across(:) !! (n) zero where no normal turns
-      integer :: i
-
-      if (.not. self%turns()) then
-         nodes = self%nodes_of(k)
-         along = self%difference%coefficients_of(k)
-         across = 0.0_dp*along
-         return
-      end if
-      associate (straight => self%along%values_of(k), turned => self%across%values_of(k))
-         nodes = [straight, pack(turned, [(all(straight /= turned(i)), i=1, size(turned))])]
-         along = [(sum(self%along%coefficients_of(k), mask=straight == nodes(i)), &
-            i=1, size(nodes))]
-         across = [(sum(self%across%coefficients_of(k), mask=turned == nodes(i)), &
-            i=1, size(nodes))]
-      end associate
-   end subroutine means_of
 
 end module all_contact_points

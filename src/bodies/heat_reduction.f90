@@ -12,7 +12,7 @@ module heat_reduction
    use reduced_bodies, only: reduced_bodies_type
    use sparse_matrix, only: sparse_matrix_type
    use unconstrained_bodies, only: undetermined_beside
-   use unconstrained_motions, only: balanced_load
+   use contact_system, only: balanced_load
    implicit none
    private
    public :: heat_reduction_type

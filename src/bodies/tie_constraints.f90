@@ -9,7 +9,7 @@ module tie_constraints
    use constraint_rows, only: constraint_rows_type, of_tie, row_origin_type
    use kinds, only: dp
    use sum_lists, only: add_terms
-   use tie_points, only: tie_points_type
+   use all_contact_points, only: tie_points_type
    implicit none
    private
    public :: add_ties, most_rows

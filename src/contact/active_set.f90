@@ -8,14 +8,17 @@
 !> where it was, and let go in steps, from the position that each step leads to (proximal point
 !> method), until the set that is found also holds without that. What drives off through all steps
 !> is unconstrained.
+!>
+!> A closed contact point whose force is rounding, although a body rests on it alone, is idle: it
+!> supports nothing, opened it leaves the body free, and no load drives the body. A force below
+!> rounding does not decide by itself, because a light load may leave no more than that beside the
+!> thermal forces. The load is judged instead: its resultants along the rigid motions are exact.
 module active_set
-   use contact_states, only: state_code, contact_state_type, contact_open, contact_slip, &
-      contact_stick, &
-      next_contact_state, response_type, rounding_type
+   use contact_states, only: contact_open, contact_state_type, next_contact_state, response_type, &
+      rounding_type, state_code
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
-   use idle_points, only: find_idle_points
    use kinds, only: dp
    use lemke_path, only: follow_lemke_path
    implicit none
@@ -29,6 +32,7 @@ module active_set
    real(dp), parameter :: least_hold = 1.0e-10_dp  !! the same in the last ones
    real(dp), parameter :: nothing = 1.0e-12_dp     !! part of the largest stiffness that is rounding
    real(dp), parameter :: barely = 10.0_dp  !! lengths of rounding by which a contact point overlaps
+   real(dp), parameter :: no_motion = 1.0e-6_dp   !! part of a motion that counts as none
    character(*), parameter :: unsettled = 'the contact zones do not settle'
 
 contains
@@ -252,5 +256,68 @@ contains
       force_rounding = max(1.0e-12_dp*maxval(abs(state%force)), 1.0e-13_dp*work%largest_term, &
          work%least_force(system)) + tiny(1.0_dp)
    end function force_rounding
+
+   !> Sets work%idle for a state that satisfies all conditions. No force is left of idle contact
+   !> points, and none of any closed contact point is negative.
+   subroutine find_idle_points(system, load, rounding, work, state)
+      type(contact_system_type), intent(in) :: system     ! the reduced system
+      real(dp), intent(in) :: load(:)                     ! (tail) c [force]
+      real(dp), intent(in) :: rounding                    ! of the contact forces [force]
+      type(contact_workspace_type), intent(inout) :: work ! as it was solved last
+      type(contact_state_type), intent(inout) :: state    ! solution
+
+      work%idle = state%contact_state /= contact_open .and. state%force <= rounding
+      if (any(work%idle)) call keep_unloaded(system, load, work, state, work%idle)
+      where (state%force <= 0.0_dp .or. work%idle)
+         state%force = 0.0_dp
+         state%shear_force = 0.0_dp
+      end where
+   end subroutine find_idle_points
+
+   !> Of the contact points given, keeps those that hinder a motion which no load drives once they
+   !> are open.
+   subroutine keep_unloaded(system, load, work, state, idle)
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(in) :: work
+      type(contact_state_type), intent(in) :: state
+      logical, intent(inout) :: idle(:)
+      type(contact_workspace_type) :: opened
+      type(contact_state_type) :: trial
+      type(error_type), allocatable :: error
+
+      opened = work%another()
+      do while (any(idle))
+         trial = state
+         where (idle)
+            trial%contact_state = contact_open
+            trial%direction = 0
+         end where
+         call opened%solve_set(system, load, trial, error)
+         if (opened%driven) then
+            idle = idle .and. .not. moved(system, opened%rows%free, &
+               abs(matmul(opened%unconstrained, opened%drive)))
+         else if (allocated(error) .or. size(opened%unconstrained, 2) == &
+            size(work%unconstrained, 2)) then
+            idle = .false.
+         else
+            idle = idle .and. moved(system, opened%rows%free, norm2(opened%unconstrained, dim=2))
+            exit
+         end if
+      end do
+   end subroutine keep_unloaded
+
+   !> Contact points that a motion of the free rows moves.
+   pure function moved(system, free, motion)
+      type(contact_system_type), intent(in) :: system
+      integer, intent(in) :: free(:)                ! rows that are sought
+      real(dp), intent(in) :: motion(:)             ! (free) lengths of the motion
+      logical :: moved(size(system%normal))         ! (m)
+      logical :: moves(0:size(system%schur, 1))
+
+      moves = .false.
+      moves(free) = motion > no_motion*maxval(motion)
+      moved = moves(system%normal) .or. moves(system%tangent)
+   end function moved
 
 end module active_set

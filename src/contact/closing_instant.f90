@@ -23,16 +23,24 @@
 !> Where the contact points that hold go on changing, every one that was closed on the way counts as
 !> one that holds. Then C stays, and only f can go on swinging; of each change half is made in the
 !> end.
+!>
+!> While all contact points keep their conditions, the instants follow the load. The row of a
+!> contact point that closes and sticks, r = (1 - f) (d_t - d_t,i) + a.lambda, has the derivative
+!>
+!>    dr = (1 - f) dd_t + (a + b).dlambda,
+!>
+!> with b the derivative of r by lambda through f(lambda) and a(lambda).
 module closing_instant
    use active_set, only: solve_contact
    use contact_states, only: closing_law_type, contact_state_type, contact_open, contact_stick
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
+   use dense, only: product_of
    use errors, only: error_type
    use kinds, only: dp
    implicit none
    private
-   public :: solve_increment
+   public :: contact_response, make_tangent, solve_increment
 
    integer, parameter :: most_passes = 60  !! passes over the closing laws
    !> of these, with the contact points holding that are closed
@@ -347,5 +355,58 @@ contains
       change = max(abs(new%fraction - old%fraction), &
          alone*maxval(abs(new%compliance - old%compliance)))
    end function law_change
+
+   !> Changes of gaps and normal forces with the condensed load, one column a change of load.
+   pure subroutine contact_response(system, tangent, state, load, gap, force)
+      type(contact_system_type), intent(in) :: system !! the reduced system
+      type(contact_workspace_type), intent(in) :: tangent !! of the state, as make_tangent left it
+      type(contact_state_type), intent(in) :: state   !! a solution
+      real(dp), intent(in) :: load(:, :)              !! (tail, n) changes of c [force]
+      real(dp), intent(out) :: gap(:, :)              !! (m, n) changes of the gaps [length]
+      real(dp), intent(out) :: force(:, :) !! (m, n) changes of the compressive forces [force]
+      real(dp), dimension(size(load, 1), size(load, 2)) :: taken_up, motion
+      integer :: k
+
+      taken_up = load
+      call tangent%solve_free(taken_up)
+      motion = 0.0_dp
+      motion(tangent%rows%free, :) = taken_up(tangent%rows%free, :)
+      taken_up = load - product_of(system%schur, motion)
+      gap = 0.0_dp
+      force = 0.0_dp
+      do k = 1, size(state%contact_state)
+         associate (row => system%normal(k))
+            if (state%contact_state(k) == contact_open) then
+               gap(k, :) = -motion(row, :)
+            else
+               force(k, :) = taken_up(row, :)
+            end if
+         end associate
+      end do
+   end subroutine contact_response
+
+   !> The factors of a solution, the instants of closing following its load.
+   pure subroutine make_tangent(system, work, state, tangent, sound)
+      type(contact_system_type), intent(in) :: system !! the reduced system
+      type(contact_workspace_type), intent(in) :: work !! as its last solution left it
+      type(contact_state_type), intent(in) :: state   !! that solution
+      type(contact_workspace_type), intent(out) :: tangent
+      logical, intent(out) :: sound                   !! whether the derivative exists
+      logical :: moves(size(state%contact_state)), singular
+      integer :: c, k
+
+      tangent = work
+      sound = .true.
+      moves = work%closing%acts .and. state%contact_state == contact_stick .and. system%tangent > 0
+      if (.not. any(moves)) return
+      do k = 1, size(moves)
+         if (.not. moves(k)) cycle
+         c = findloc(tangent%rows%closing, system%tangent(k), dim=1)
+         tangent%rows%arm(c, :) = tangent%rows%arm(c, :) + system%alone(k)*system%on_tail( &
+            work%closing(k)%rate)
+      end do
+      call tangent%factor_rows(system, singular)
+      sound = .not. singular
+   end subroutine make_tangent
 
 end module closing_instant

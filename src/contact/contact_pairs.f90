@@ -1,27 +1,32 @@
-!> The contact points of an interface: pairs of opposite nodes, as in the published method, where
-!> its faces match, mortar points (mortar_points) where they do not, or what the deck asks for.
+!> The contact points of a *CONTACT PAIR: pairs of opposite nodes, as in the published method, where
+!> its faces match, mortar points (mortar_points) where they do not, or what the deck asks for. The
+!> points of a *TIE, whose relative displacements and jumps of temperature are zero, are made alike.
 module contact_pairs
    use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, swept_areas, &
       tributary_lengths
-   use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces
+   use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces, &
+      tie_definition_type
    use contact_points, only: contact_points_type, no_radius
-   use element_kinds, only: axisymmetric
+   use element_kinds, only: axisymmetric, element_corner_count
    use errors, only: error_type, set_error, status_deck
-   use face_ends, only: one_goes_on
    use interface_checks, only: blame_corner, check_corner, check_covered, check_folds, &
       check_opposite, check_shared, check_sides, check_weights, compare_lines
    use interface_warnings, only: mismatch_of_pairs
    use kinds, only: dp
-   use mesh, only: mesh_type
+   use mesh, only: extent_of, mesh_type
    use mortar_points, only: set_mortar_points
-   use sum_lists, only: differences, single_values
+   use sum_lists, only: differences, single_values, sum_list_type
    use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
+   use text, only: to_text
    implicit none
    private
-   public :: make_contact_points
+   public :: make_contact_points, make_tie_points
 
+   real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
    real(dp), parameter :: weightless = 0.01_dp   !! part of its neighbour's weight below which the
    !! corner on the axis has none
+   !> Angle of a body from which on its outline goes on at a node: it turns away by 45 degrees.
+   real(dp), parameter :: going_on = 0.75_dp*acos(-1.0_dp)
 
 contains
 
@@ -38,8 +43,8 @@ contains
       integer :: first, k, last
 
       points%pairing = pairing_nodes
-      points%slave_node = slave%nodes
-      points%master_node = master%nodes
+      points%slave = slave%nodes
+      points%master = master%nodes
       call set_weights(mesh, slave, master, thickness, points%about_axis, points%weight)
       first = 1
       last = size(slave%nodes)
@@ -52,14 +57,14 @@ contains
       points%side_nodes = slave%side_nodes
       points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       call cut_ends(first, last, points)
-      call check_weights(mesh, definition%title(), points%slave_node, points%weight, error)
+      call check_weights(mesh, definition%title(), points%slave, points%weight, error)
       if (allocated(error)) return
-      points%difference = differences(points%slave_node, points%master_node)
-      points%slave_mean = single_values(points%slave_node)
-      points%master_mean = single_values(points%master_node)
-      points%face_node = [points%slave_node, points%master_node]
-      points%at_face_nodes = single_values([(k, k=1, size(points%slave_node)), &
-         (k, k=1, size(points%master_node))])
+      points%difference = differences(points%slave, points%master)
+      points%slave_mean = single_values(points%slave)
+      points%master_mean = single_values(points%master)
+      points%face_node = [points%slave, points%master]
+      points%at_face_nodes = single_values([(k, k=1, size(points%slave)), &
+         (k, k=1, size(points%master))])
    end subroutine set_node_pairs
 
    !> Weights on the line midway between the faces. On three-node sides the integral vanishes for a
@@ -135,8 +140,8 @@ contains
       integer, intent(in) :: first, last
       type(contact_points_type), intent(inout) :: points
 
-      points%slave_node = points%slave_node(first:last)
-      points%master_node = points%master_node(first:last)
+      points%slave = points%slave(first:last)
+      points%master = points%master(first:last)
       points%position = points%position(:, first:last)
       points%arc_length = points%arc_length(first:last) - points%arc_length(first)
       points%weight = points%weight(first:last)
@@ -189,7 +194,7 @@ contains
       else
          in_set = .false.
          in_set(mesh%node_sets(definition%adjusted_set)%members) = .true.
-         where (in_set(points%slave_node)) points%initial_gap = 0.0_dp
+         where (in_set(points%slave)) points%initial_gap = 0.0_dp
       end if
    end subroutine close_gaps
 
@@ -235,7 +240,87 @@ contains
       call check_corner(mesh, definition, slave, error)
       if (allocated(error)) return
       call set_mortar_points(mesh, slave, master, thickness, points)
-      call check_covered(mesh, definition, slave, master, size(points%slave_node), error)
+      call check_covered(mesh, definition, slave, master, size(points%slave), error)
    end subroutine find_points
+
+   !> Whether one face ends at a corner of its body and the other goes on, as a punch on a wider
+   !> body, at the first and at the last nodes of two lines: judged by the outlines beyond them.
+   pure function one_goes_on(mesh, slave, master) result(at_corner)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: slave, master   ! of equally many nodes
+      logical :: at_corner(2)
+      integer :: ends(2), i
+
+      at_corner = .false.
+      if (slave%closed .or. master%closed) return
+      ends = [1, size(slave%nodes)]
+      do i = 1, 2
+         at_corner(i) = body_angle(mesh, slave%nodes(ends(i))) > going_on .neqv. &
+            body_angle(mesh, master%nodes(ends(i))) > going_on
+      end do
+   end function one_goes_on
+
+   !> Angle that the elements at a corner fill.
+   pure real(dp) function body_angle(mesh, node)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: node
+      integer :: e, k
+
+      body_angle = 0.0_dp
+      do e = 1, size(mesh%element_number)
+         associate (n => element_corner_count(mesh%element_kind(e)))
+            k = findloc(mesh%element_nodes(:n, e), node, dim=1)
+            if (k == 0) cycle
+            associate (x => mesh%coordinates(:, mesh%element_nodes(:n, e)))
+               associate (leaving => x(:, mod(k, n) + 1) - x(:, k), &
+                  entering => x(:, mod(k + n - 2, n) + 1) - x(:, k))
+                  body_angle = body_angle + atan2(leaving(1)*entering(2) - &
+                     leaving(2)*entering(1), dot_product(leaving, entering))
+               end associate
+            end associate
+         end associate
+      end do
+   end function body_angle
+
+   !> The points of one *TIE. Those whose gap exceeds POSITION TOLERANCE= are left out.
+   !> Errors: as make_contact_points; no point within the tolerance.
+   subroutine make_tie_points(mesh, tie, thickness, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(tie_definition_type), intent(in) :: tie
+      real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
+      type(contact_points_type), intent(out) :: points
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: nearest
+
+      call make_contact_points(mesh, tie%faces, thickness, points, error)
+      if (allocated(error) .or. .not. tie%has_tolerance) return
+      nearest = minval(abs(points%initial_gap))
+      call keep_some(abs(points%initial_gap) <= tie%tolerance + &
+         rounding*extent_of(mesh%coordinates), points)
+      if (size(points%slave) == 0) call set_error(error, status_deck, tie%faces%title()// &
+         ': no point of the slave is within POSITION TOLERANCE='//to_text(tie%tolerance)// &
+         ' of the master, the nearest one is '//to_text(nearest)//' from it', tie%faces%card)
+   end subroutine make_tie_points
+
+   !> Keeps some of the points; of their geometry what ties have use for.
+   pure subroutine keep_some(kept, points)
+      logical, intent(in) :: kept(:)
+      type(contact_points_type), intent(inout) :: points
+      type(sum_list_type) :: difference
+      integer :: k
+
+      call difference%reserve(count(kept), size(points%difference%value))
+      do k = 1, size(kept)
+         if (kept(k)) call difference%add(points%difference%values_of(k), &
+            points%difference%coefficients_of(k))
+      end do
+      points%difference = difference
+      points%slave = pack(points%slave, kept)
+      points%master = pack(points%master, kept)
+      points%initial_gap = pack(points%initial_gap, kept)
+      points%weight = pack(points%weight, kept)
+      points%edge = pack(points%edge, kept)
+      points%tangent = reshape(pack(points%tangent, spread(kept, 1, 2)), [2, count(kept)])
+   end subroutine keep_some
 
 end module contact_pairs

@@ -20,8 +20,8 @@ module contact_points
       character(:), allocatable :: name        !! name of the *CONTACT PAIR
       integer :: pairing = pairing_nodes       !! pairing_nodes or pairing_surfaces
       character(:), allocatable :: mismatch    !! why the faces do not match; unallocated if they do
-      integer, allocatable :: slave_node(:)    !! (m) node indexes
-      integer, allocatable :: master_node(:)   !! (m) the one opposite, or the nearest one
+      integer, allocatable :: slave(:)         !! (m) node indexes
+      integer, allocatable :: master(:)        !! (m) the one opposite, or the nearest one
       !> (m, nodes) slave's value of a field less master's
       type(sum_list_type) :: difference
       !> (m, nodes) the same of displacements where the normal turns along the face of a contact
@@ -54,6 +54,13 @@ module contact_points
       type(edge_segment_type), allocatable :: segments(:)   !! of mortar points; none of node pairs
       type(hat_type), allocatable :: hats(:)   !! (m) hat functions of mortar points over these
       logical :: about_axis = .false.          !! whether the model is axisymmetric
+   contains
+      procedure :: turns
+      procedure :: jumps
+      procedure :: relative
+      procedure :: add_forces
+      procedure :: nodes_of
+      procedure :: means_of
    end type contact_points_type
 
    !> Part of the node spacing by which nodes may lie beside each other. An offset misplaces the
@@ -95,5 +102,94 @@ contains
       if (points%about_axis) on_axis = abs(points%position(1, k)) <= &
          no_radius*maxval(abs(points%position(1, :)))
    end function on_axis
+
+   !> Whether the normal turns along the face of some contact point.
+   pure logical function turns(self)
+      class(contact_points_type), intent(in) :: self
+
+      turns = allocated(self%across%start)
+   end function turns
+
+   !> Slave's value less master's of a field, at every contact point.
+   pure function jumps(self, field)
+      class(contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: field(:)             !! (nodes)
+      real(dp) :: jumps(size(self%slave))          !! (m)
+
+      jumps = 0.0_dp
+      call self%difference%add_totals(field, jumps)
+   end function jumps
+
+   !> Slave's displacement less master's, at every contact point, in the directions of its normal:
+   !> the mean of displacements that are turned with the face.
+   pure function relative(self, displacement)
+      class(contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
+      real(dp) :: relative(2, size(self%slave))    !! (2, m) [length]
+      real(dp) :: across(2, size(self%slave))
+
+      relative(1, :) = self%jumps(displacement(1::2))
+      relative(2, :) = self%jumps(displacement(2::2))
+      if (.not. self%turns()) return
+      relative = 0.0_dp
+      across = 0.0_dp
+      call self%along%add_totals(displacement(1::2), relative(1, :))
+      call self%along%add_totals(displacement(2::2), relative(2, :))
+      call self%across%add_totals(displacement(1::2), across(1, :))
+      call self%across%add_totals(displacement(2::2), across(2, :))
+      relative = relative + reshape([across(2, :), -across(1, :)], shape(across), order=[2, 1])
+   end function relative
+
+   !> Adds the nodal forces of forces on the slave at the contact points, and of their opposites on
+   !> the master.
+   pure subroutine add_forces(self, on_slave, forces)
+      class(contact_points_type), intent(in) :: self
+      real(dp), intent(in) :: on_slave(:, :)       !! (2, m) [force]
+      real(dp), intent(inout) :: forces(:)         !! (2 nodes) [force]
+
+      if (.not. self%turns()) then
+         call self%difference%add_shares(on_slave(1, :), forces(1::2))
+         call self%difference%add_shares(on_slave(2, :), forces(2::2))
+         return
+      end if
+      call self%along%add_shares(on_slave(1, :), forces(1::2))
+      call self%along%add_shares(on_slave(2, :), forces(2::2))
+      call self%across%add_shares(on_slave(1, :), forces(2::2))
+      call self%across%add_shares(-on_slave(2, :), forces(1::2))
+   end subroutine add_forces
+
+   !> The nodes whose values a contact point takes.
+   pure function nodes_of(self, k) result(nodes)
+      class(contact_points_type), intent(in) :: self
+      integer, intent(in) :: k                     !! a contact point
+      integer, allocatable :: nodes(:)
+
+      nodes = self%difference%values_of(k)
+   end function nodes_of
+
+   !> What a contact point takes of its nodes' displacements: slave's less master's along an axis
+   !> are along.u of that axis, and across.u of the other one, added for x and subtracted for y.
+   pure subroutine means_of(self, k, nodes, along, across)
+      class(contact_points_type), intent(in) :: self
+      integer, intent(in) :: k                     !! a contact point
+      integer, allocatable, intent(out) :: nodes(:)   !! (n) each once
+      real(dp), allocatable, intent(out) :: along(:)  !! (n)
+      real(dp), allocatable, intent(out) :: across(:) !! (n) zero where no normal turns
+      integer :: i
+
+      if (.not. self%turns()) then
+         nodes = self%nodes_of(k)
+         along = self%difference%coefficients_of(k)
+         across = 0.0_dp*along
+         return
+      end if
+      associate (straight => self%along%values_of(k), turned => self%across%values_of(k))
+         nodes = [straight, pack(turned, [(all(straight /= turned(i)), i=1, size(turned))])]
+         along = [(sum(self%along%coefficients_of(k), mask=straight == nodes(i)), &
+            i=1, size(nodes))]
+         across = [(sum(self%across%coefficients_of(k), mask=turned == nodes(i)), &
+            i=1, size(nodes))]
+      end associate
+   end subroutine means_of
 
 end module contact_points

@@ -24,7 +24,8 @@
 !> Supports may leave bodies free to move as rigid ones: S has these motions as null vectors. Where
 !> an active set does not hold them either, the system is solved beside the motions, bordered by
 !> them. A load that drives one of them has no solution; without such a load the least motion is
-!> taken.
+!> taken. Which motions a set leaves free is told by the rows that it holds, not by a pivot:
+!> stiffness against bending may be as small as rounding.
 !>
 !> The rows of an active set say which of d are sought, and what forces and displacements enter the
 !> row of each. A slipping contact point's tangential row is lambda_t + share lambda_n = 0, or
@@ -35,11 +36,19 @@
 module contact_system
    use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
       contact_stick, is_capped
-   use dense, only: product_of
+   use dense, only: least_squares, null_space, product_of
    use kinds, only: dp
    implicit none
    private
    public :: contact_system_type, contact_rows_type, rows_of
+   public :: free_motions, is_driven, balanced_load, least_drive
+
+   !> Spring of a row, as part of the contact point's stiffness, that does not hold a body.
+   real(dp), parameter :: slack = 1.0e-9_dp
+   !> Force along a motion that is rounding, as part of the terms that it is the sum of.
+   real(dp), parameter :: rounding = 1.0e-13_dp
+   !> Part of the applied forces that cancel which coordinates and loads of a deck leave over.
+   real(dp), parameter :: cancelled = 1.0e-10_dp
 
    !> The reduced system, which no increment changes.
    type :: contact_system_type
@@ -149,5 +158,68 @@ contains
       if (size(self%closing) > 0) rows(self%closing, :) = rows(self%closing, :) + &
          product_of(self%arm, columns)
    end function combine
+
+   !> The unsupported motions that no row of the active set holds, orthonormal on the free rows.
+   pure function free_motions(motion, free, spring, schur) result(unheld)
+      real(dp), intent(in) :: motion(:, :)   !! (tail, q) unsupported motions, orthonormal
+      integer, intent(in) :: free(:)         !! (n) rows that are sought
+      real(dp), intent(in) :: spring(:)      !! (tail) what holds free rows [force/length]
+      real(dp), intent(in) :: schur(:, :)    !! (tail, tail) S [force/length]
+      real(dp), allocatable :: unheld(:, :) !! (n, l)
+      logical :: held(size(motion, 1))
+      integer :: i
+
+      if (size(motion, 2) == 0) then
+         allocate (unheld(size(free), 0))
+         return
+      end if
+      held = .true.
+      do i = 1, size(free)
+         held(free(i)) = spring(free(i)) > slack*abs(schur(free(i), free(i)))
+      end do
+      associate (tail_rows => pack([(i, i=1, size(held))], held))
+         unheld = matmul(motion(free, :), null_space(motion(tail_rows, :)))
+      end associate
+   end function free_motions
+
+   !> Whether forces drive the motions, by more than rounding. Each row is judged by the terms
+   !> that its own motion collects: those of another body may be far larger.
+   pure logical function is_driven(unheld, unbalanced, terms, least)
+      real(dp), intent(in) :: unheld(:, :)   !! (n, l) orthonormal motions of the free rows
+      real(dp), intent(in) :: unbalanced(:)  !! (l) forces along the motions [force]
+      real(dp), intent(in) :: terms(:) !! (n) sums without signs of the forces' terms [force]
+      real(dp), intent(in) :: least(:)       !! (n) drive that counts as none [force]
+
+      is_driven = any(abs(matmul(unheld, unbalanced)) > least + &
+         rounding*matmul(abs(matmul(unheld, transpose(unheld))), terms))
+   end function is_driven
+
+   !> A condensed load with the exact resultants along the unsupported motions. Temperatures and
+   !> prescribed displacements have none; what the elimination makes of theirs is rounding.
+   function balanced_load(load, rigid, motion, resultant) result(balanced)
+      real(dp), intent(in) :: load(:)        !! (tail) c [force]
+      real(dp), intent(in) :: rigid(:, :)    !! (tail, q) unsupported motions
+      real(dp), intent(in) :: motion(:, :)   !! (tail, q) the same, orthonormal
+      real(dp), intent(in) :: resultant(:)   !! (q) of the applied forces along `rigid` [force]
+      real(dp) :: balanced(size(load))       !! (tail) [force]
+
+      balanced = load
+      if (size(motion, 2) == 0) return
+      balanced = load - matmul(motion, matmul(load, motion)) + &
+         least_squares(transpose(rigid), resultant)
+   end function balanced_load
+
+   !> Forces along the unsupported motions that count as none.
+   pure function least_drive(rigid, sums) result(least)
+      real(dp), intent(in) :: rigid(:, :) !! (tail, q) unsupported motions, each of one body
+      real(dp), intent(in) :: sums(:)     !! (q) resultants of the forces without signs [force]
+      real(dp) :: least(size(rigid, 1))   !! (tail) [force]
+      integer :: q
+
+      least = 0.0_dp
+      do q = 1, size(sums)
+         least = least + cancelled*sums(q)*abs(rigid(:, q))/max(sum(rigid(:, q)**2), tiny(1.0_dp))
+      end do
+   end function least_drive
 
 end module contact_system

@@ -5,12 +5,12 @@ module contact_workspace
    use contact_factors, only: contact_factors_type
    use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
       contact_stick, is_capped, slip_force, state_code
-   use contact_system, only: contact_rows_type, contact_system_type, rows_of
+   use contact_system, only: contact_rows_type, contact_system_type, free_motions, is_driven, &
+      rows_of
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use friction_laws, only: friction_law_type
    use kinds, only: dp
-   use unconstrained_motions, only: free_motions, is_driven
    implicit none
    private
    public :: contact_workspace_type, relief_type

@@ -9,7 +9,7 @@
 module edge_segments
    use conductance_laws, only: conductance, conductance_law_type
    use kinds, only: dp
-   use mortar_sides, only: face_line_type, opposed_shapes, opposed_shapes_type, side_type
+   use mortar_sides, only: face_line_type, opposed_shapes, opposed_shapes_type, slave_side_type
    use quadrature, only: gauss_point_10, gauss_weight_10
    implicit none
    private
@@ -131,7 +131,7 @@ contains
 
    !> The segments of two faces that lie opposite each other.
    pure function edge_segments_of(side, master, nodes, section, point_of) result(segments)
-      type(side_type), intent(in) :: side(:)  !! of the slave
+      type(slave_side_type), intent(in) :: side(:)  !! of the slave
       type(face_line_type), intent(in) :: master
       integer, intent(in) :: nodes(:)         !! of the slave, then of the master
       real(dp), intent(in) :: section         !! thickness, 0 about an axis [length]
@@ -153,7 +153,7 @@ contains
 
    contains
       pure function segment_of(side, k) result(segment)
-         type(side_type), intent(in) :: side
+         type(slave_side_type), intent(in) :: side
          integer, intent(in) :: k
          type(edge_segment_type) :: segment
          type(opposed_shapes_type) :: shapes

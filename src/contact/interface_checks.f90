@@ -283,10 +283,10 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points     !! node pairs of one interface
       type(error_type), allocatable, intent(out) :: error !! the first such contact point
-      real(dp) :: offset(size(points%slave_node))
+      real(dp) :: offset(size(points%slave))
       integer :: k
 
-      associate (slave => points%slave_node, master => points%master_node)
+      associate (slave => points%slave, master => points%master)
          offset = abs(sum(points%tangent*(mesh%coordinates(:, master) - &
             mesh%coordinates(:, slave)), dim=1))
          k = findloc(offset > 0.5_dp*max(points%edge, abs(points%initial_gap)) .or. &

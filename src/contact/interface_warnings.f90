@@ -1,14 +1,16 @@
 !> Contact points that can be solved, but perhaps not as meant: nodes beside each other, bodies
-!> inside each other.
+!> inside each other; and what ties hold.
 module interface_warnings
-   use contact_definitions, only: pairing_nodes
+   use contact_definitions, only: pairing_nodes, tie_definition_type
    use contact_points, only: contact_points_type, small_offset
+   use element_kinds, only: side_nodes
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
    use text, only: percent, to_text
    implicit none
    private
    public :: clearance_warning, gap_range, mismatch_of_pairs, offset_warning, overlap_warning
+   public :: distance_warning, tie_words
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
    !> Part of a face by which a clearance may differ from the gap of the mesh: overlaps of press
@@ -66,8 +68,8 @@ contains
       integer :: k
 
       do k = 1, size(offset)
-         apart = mesh%coordinates(:, points%master_node(k)) - &
-            mesh%coordinates(:, points%slave_node(k))
+         apart = mesh%coordinates(:, points%master(k)) - &
+            mesh%coordinates(:, points%slave(k))
          offset(k) = abs(dot_product(points%tangent(:, k), apart))
          part(k) = offset(k)/(points%edge(k)/(points%side_nodes - 1))
          if (offset(k) <= 0.5_dp*abs(normal_distance(mesh, points, k))) part(k) = 0.0_dp
@@ -141,8 +143,8 @@ contains
       type(contact_points_type), intent(in) :: points
       integer, intent(in) :: k
 
-      distance = dot_product(points%normal(:, k), mesh%coordinates(:, points%master_node(k)) - &
-         mesh%coordinates(:, points%slave_node(k)))
+      distance = dot_product(points%normal(:, k), mesh%coordinates(:, points%master(k)) - &
+         mesh%coordinates(:, points%slave(k)))
    end function normal_distance
 
    !> Smallest and largest initial gap; one within the rounding of coordinates is 0.
@@ -161,8 +163,73 @@ contains
       integer, intent(in) :: k
       character(:), allocatable :: words
 
-      words = 'slave node '//to_text(mesh%node_number(points%slave_node(k)))// &
-         ' and master node '//to_text(mesh%node_number(points%master_node(k)))
+      words = 'slave node '//to_text(mesh%node_number(points%slave(k)))// &
+         ' and master node '//to_text(mesh%node_number(points%master(k)))
    end function nodes_of
+
+   !> Tells what a tie holds: how many points, how far apart, and which part of the slave is free.
+   pure function tie_words(mesh, tie, points) result(words)
+      type(mesh_type), intent(in) :: mesh
+      type(tie_definition_type), intent(in) :: tie
+      type(contact_points_type), intent(in) :: points    !! its points
+      character(:), allocatable :: words
+      integer :: all_nodes
+      real(dp) :: apart
+
+      all_nodes = slave_nodes(mesh, tie, points%pairing == pairing_nodes)
+      words = tie%faces%title()//': '//to_text(size(points%slave))//' '// &
+         trim(merge('node pairs   ', 'mortar points', points%pairing == pairing_nodes))
+      apart = maxval(abs(points%initial_gap))
+      if (apart > rounding*extent_of(mesh%coordinates)) words = words//', up to '// &
+         to_text(apart)//' apart; the gap is not closed'
+      if (size(points%slave) == all_nodes) return
+      words = words//'; '//to_text(all_nodes - size(points%slave))// &
+         trim(merge(' slave nodes  ', ' slave corners', points%pairing == pairing_nodes))// &
+         ' are not tied: '
+      if (tie%has_tolerance) words = words//'farther from the master than POSITION TOLERANCE='// &
+         to_text(tie%tolerance)//', or '
+      words = words//'no face of the master lies opposite'
+   end function tie_words
+
+   !> Nodes of a slave face, or its corners.
+   pure integer function slave_nodes(mesh, tie, with_midside)
+      type(mesh_type), intent(in) :: mesh
+      type(tie_definition_type), intent(in) :: tie
+      logical, intent(in) :: with_midside
+      logical :: found(size(mesh%node_number))
+      integer :: f
+
+      found = .false.
+      associate (faces => mesh%surfaces(tie%faces%slave)%faces)
+         do f = 1, size(faces, 2)
+            associate (kind => mesh%element_kind(faces(1, f)))
+               associate (nodes => mesh%element_nodes(side_nodes(kind, faces(2, f)), faces(1, f)))
+                  found(nodes([1, size(nodes)])) = .true.
+                  if (with_midside) found(nodes) = .true.
+               end associate
+            end associate
+         end do
+      end associate
+      slave_nodes = count(found)
+   end function slave_nodes
+
+   !> Warns of a tie over a gap wider than the slave's sides, where no tolerance says that it is
+   !> meant; empty where there is none.
+   pure function distance_warning(mesh, tie, points) result(warning)
+      type(mesh_type), intent(in) :: mesh
+      type(tie_definition_type), intent(in) :: tie
+      type(contact_points_type), intent(in) :: points    !! its points
+      character(:), allocatable :: warning
+      integer :: k
+
+      warning = ''
+      if (tie%has_tolerance) return
+      if (all(abs(points%initial_gap) <= points%edge)) return
+      k = maxloc(abs(points%initial_gap)/points%edge, dim=1)
+      warning = tie%faces%title()//': slave node '// &
+         to_text(mesh%node_number(points%slave(k)))//' is tied over a gap of '// &
+         to_text(abs(points%initial_gap(k)))//', more than the element edge of '// &
+         to_text(points%edge(k))//'; POSITION TOLERANCE= limits the distance of tied faces'
+   end function distance_warning
 
 end module interface_warnings

@@ -2,15 +2,15 @@
 !> master lies opposite to. Gap, relative displacement and jump of temperature of a point are the
 !> means of slave less master with its hat function (mortar_segments).
 module mortar_points
-   use chain_geometry, only: arc_lengths, edge_lengths
+   use chain_geometry, only: arc_lengths, edge_lengths, side_positions
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type, small_offset
    use edge_segments, only: edge_segments_of, hats_of
-   use face_interpolation, only: interpolate_on_faces
    use kinds, only: dp
    use mesh, only: mesh_type
    use mortar_segments, only: integrate_segments, mortar_integrals_type
-   use mortar_sides, only: face_line_type, side_type, sides_of
+   use mortar_sides, only: beside_line, face_line_type, hats, opposite_coordinate, side_opposite, &
+      slave_side_type, sides_of
    use sparse_matrix, only: sparse_matrix_type
    use sum_lists, only: sum_list_type
    use surface_chains, only: surface_chain_type
@@ -26,6 +26,9 @@ module mortar_points
 
    !> Sine of an angle between normals that is rounding of coordinates.
    real(dp), parameter :: no_turn = 1.0e-12_dp
+   !> Step along a side's coordinate to either side of a node: at a node itself two sides meet.
+   real(dp), parameter :: aside = 1.0e-6_dp
+   real(dp), parameter :: on_normal = 1.0e-9_dp   !! part of a side's length that is rounding
 
 contains
 
@@ -38,7 +41,7 @@ contains
       type(contact_points_type), intent(inout) :: points !! its name and its axis are set
       type(mortar_integrals_type) :: integrals
       type(face_line_type) :: slave_line, master_line
-      type(side_type), allocatable :: side(:)
+      type(slave_side_type), allocatable :: side(:)
       integer, allocatable :: corner(:), owner(:), kept(:), point_of(:)
       integer :: c
 
@@ -56,7 +59,7 @@ contains
       points%node_spacings = slave%side_nodes - 1
       points%corners = size(corner)
       points%open_corners = count(owner == 0)
-      points%slave_node = corner(kept)
+      points%slave = corner(kept)
       points%position = integrals%position(:, kept)
       associate (x => mesh%coordinates(:, slave%nodes), n => slave%side_nodes)
          associate (s => arc_lengths(x, n, slave%closed), edge => edge_lengths(x, n, slave%closed))
@@ -74,11 +77,12 @@ contains
       points%segments = edge_segments_of(side, master_line, [slave%nodes, master%nodes], &
          merge(0.0_dp, thickness, points%about_axis), point_of)
       points%hats = hats_of(points%segments, size(kept))
-      points%initial_gap = initial_gaps(points, mesh%coordinates)
+      points%initial_gap = -sum(points%normal*points%relative(reshape(mesh%coordinates, &
+         [size(mesh%coordinates)])), dim=1)
       if (size(kept) > 0) call set_ends(mesh%coordinates, slave, master, points)
-      allocate (points%master_node, mold=points%slave_node)
+      allocate (points%master, mold=points%slave)
       do c = 1, size(kept)
-         points%master_node(c) = master%nodes(minloc(norm2(mesh%coordinates(:, master%nodes) - &
+         points%master(c) = master%nodes(minloc(norm2(mesh%coordinates(:, master%nodes) - &
             spread(points%position(:, c), 2, size(master%nodes)), dim=1), dim=1))
       end do
 
@@ -174,7 +178,7 @@ contains
          call sums%reserve(size(kept), size(kept)*2*(slave%side_nodes + master%side_nodes))
          do k = 1, size(kept)
             ! The corner's own node comes first.
-            nodes = points%slave_node(k:k)
+            nodes = points%slave(k:k)
             share = [0.0_dp]
             do c = 1, size(owner)
                if (owner(c) /= kept(k)) cycle
@@ -192,7 +196,7 @@ contains
 
    !> The nodes of both faces that carry contact quantities.
    pure subroutine set_face_nodes(side, master, nodes, point_of, own_point, points)
-      type(side_type), intent(in) :: side(:)           ! of the slave
+      type(slave_side_type), intent(in) :: side(:)           ! of the slave
       type(face_line_type), intent(in) :: master
       integer, intent(in) :: nodes(:)                  ! of the slave, then of the master
       integer, intent(in) :: point_of(:)               ! (corners) contact point of each; 0 for none
@@ -225,7 +229,7 @@ contains
       real(dp) :: distance(2)
       integer :: m
 
-      m = size(points%slave_node)
+      m = size(points%slave)
       distance = max(0.0_dp, [dot_product(points%tangent(:, 1), points%position(:, 1) - &
          ends(:, 1)), dot_product(points%tangent(:, m), ends(:, 2) - points%position(:, m))])
    end function ends_beyond
@@ -236,34 +240,11 @@ contains
       type(contact_points_type), intent(in) :: points
       logical :: are_apart(2)
 
-      associate (last => [1, size(points%slave_node)])
+      associate (last => [1, size(points%slave)])
          are_apart = abs(sum(points%tangent(:, last)*apart, dim=1)) > small_offset* &
             points%edge(last)
       end associate
    end function ends_apart
-
-   !> Mean distance of master and slave along the normals.
-   pure function initial_gaps(points, x) result(gap)
-      type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: x(:, :)                  ! (2, nodes) [length]
-      real(dp) :: gap(size(points%weight))
-      real(dp), dimension(size(points%weight)) :: across_x, across_y, mean_x, mean_y
-
-      mean_x = 0.0_dp
-      mean_y = 0.0_dp
-      across_x = 0.0_dp
-      across_y = 0.0_dp
-      if (points%across%count > 0) then
-         call points%along%add_totals(x(1, :), mean_x)
-         call points%along%add_totals(x(2, :), mean_y)
-         call points%across%add_totals(x(1, :), across_x)
-         call points%across%add_totals(x(2, :), across_y)
-      else
-         call points%difference%add_totals(x(1, :), mean_x)
-         call points%difference%add_totals(x(2, :), mean_y)
-      end if
-      gap = -points%normal(1, :)*(mean_x + across_y) - points%normal(2, :)*(mean_y - across_x)
-   end function initial_gaps
 
    !> Adds a multiple of a row of a matrix to a sum of nodal values.
    pure subroutine add_row(matrix, row, node, factor, nodes, share)
@@ -284,5 +265,132 @@ contains
          share(i) = share(i) + factor*matrix%value(k)
       end do
    end subroutine add_row
+
+   !> Sums over the contact points that give each node of both faces its contact quantities: linear
+   !> along each side of the slave, as the multipliers are; at a node of the master those of the
+   !> slave's point whose normal meets it. Without terms where the node is outside the covered part.
+   pure subroutine interpolate_on_faces(side, master, point_of, own_point, on_slave, on_master)
+      type(slave_side_type), intent(in) :: side(:)  ! of the slave
+      type(face_line_type), intent(in) :: master
+      integer, intent(in) :: point_of(:)      ! (corners) contact point of each; 0 for none
+      logical, intent(in) :: own_point(:)     ! (corners) whether the point is the corner itself
+      type(sum_list_type), intent(out) :: on_slave    ! (nodes of the slave, contact points)
+      type(sum_list_type), intent(out) :: on_master   ! (nodes of the master, contact points)
+      real(dp) :: xi
+      integer :: corner, k, nodes, per_side, s
+
+      per_side = size(side(1)%nodes) - 1
+      nodes = maxval(side(size(side))%nodes)
+      call on_slave%reserve(nodes, 2*nodes)
+      do k = 1, nodes
+         s = min((k - 1)/per_side + 1, size(side))
+         xi = 2.0_dp*(k - 1 - (s - 1)*per_side)/per_side - 1.0_dp
+         if (modulo(k - 1, per_side) == 0) then
+            corner = (k - 1)/per_side + 1
+            if (.not. own_point(corner)) then
+               if (.not. is_covered(k)) s = 0
+            end if
+         else if (.not. is_covered(k)) then
+            s = 0
+         end if
+         call add_node(side, s, xi, point_of, on_slave)
+      end do
+      call on_master%reserve(size(master%x, 2), 2*size(master%x, 2))
+      do k = 1, size(master%x, 2)
+         call find_opposite(side, master, k, s, xi)
+         call add_node(side, s, xi, point_of, on_master)
+      end do
+
+   contains
+      !> Whether the master lies opposite a node of the slave or beside it.
+      pure logical function is_covered(node)
+         integer, intent(in) :: node
+         integer :: i
+
+         is_covered = .false.
+         do i = 1, size(side)
+            if (all(side(i)%nodes /= node)) cycle
+            associate (at => 2.0_dp*(findloc(side(i)%nodes, node, dim=1) - 1)/per_side - 1.0_dp)
+               is_covered = is_covered .or. side_opposite(side(i), max(at - aside, -1.0_dp), &
+                  master) > 0 .or. side_opposite(side(i), min(at + aside, 1.0_dp), master) > 0
+            end associate
+         end do
+      end function is_covered
+   end subroutine interpolate_on_faces
+
+   !> Adds the sum of a point of the slave: the values of the corners of its side, by their hats.
+   pure subroutine add_node(side, s, xi, point_of, sums)
+      type(slave_side_type), intent(in) :: side(:)
+      integer, intent(in) :: s                ! side, 0 for none
+      real(dp), intent(in) :: xi
+      integer, intent(in) :: point_of(:)
+      type(sum_list_type), intent(inout) :: sums
+      integer :: points(2)
+      real(dp) :: hat(2)
+
+      points = 0
+      if (s > 0) points = point_of(side(s)%corners)
+      hat = 0.5_dp*[1.0_dp - xi, 1.0_dp + xi]
+      if (s > 0) then
+         if (side(s)%covered(1) < side(s)%covered(2)) hat = hats(side(s), xi)
+      end if
+      if (s == 0 .or. any(points == 0 .and. abs(hat) > 0.0_dp)) then
+         call sums%add([integer ::], [real(dp) ::])
+      else if (points(1) == points(2)) then
+         call sums%add(points(:1), [1.0_dp])
+      else
+         call sums%add(points, hat)
+      end if
+   end subroutine add_node
+
+   !> The point of the slave opposite a node of the master: the nearest one whose normal meets it
+   !> and sees it; side 0 where there is none.
+   pure subroutine find_opposite(side, master, node, s, xi)
+      type(slave_side_type), intent(in) :: side(:)
+      type(face_line_type), intent(in) :: master
+      integer, intent(in) :: node             ! position along the master's line
+      integer, intent(out) :: s
+      real(dp), intent(out) :: xi
+      real(dp) :: apart, at, ends(2), nearest
+      integer :: i
+
+      s = 0
+      xi = 0.0_dp
+      nearest = huge(nearest)
+      do i = 1, size(side)
+         associate (x => master%x(:, node), n => size(side(i)%nodes))
+            ends = [beside_line(side(i)%normal(:, 1), side(i)%x(:, 1), master%x(:, node:node)), &
+               beside_line(side(i)%normal(:, n), side(i)%x(:, n), master%x(:, node:node))]
+            where (abs(ends) <= on_normal*norm2(side(i)%x(:, n) - side(i)%x(:, 1))) ends = 0.0_dp
+            if (abs(ends(1)) <= 0.0_dp) then
+               at = -1.0_dp
+            else if (abs(ends(2)) <= 0.0_dp) then
+               at = 1.0_dp
+            else if (ends(1)*ends(2) < 0.0_dp) then
+               at = opposite_coordinate(side(i), x, ends)
+            else
+               cycle
+            end if
+            apart = norm2(x - side(i)%x(:, merge(1, n, at < 0.0_dp)))
+         end associate
+         if (apart >= nearest) cycle
+         if (.not. (sees(max(at - aside, -1.0_dp)) .or. sees(min(at + aside, 1.0_dp)))) cycle
+         nearest = apart
+         s = i
+         xi = at
+      end do
+
+   contains
+      !> Whether a side of the master that has the node lies opposite.
+      pure logical function sees(from)
+         real(dp), intent(in) :: from
+         integer :: opposite
+
+         opposite = side_opposite(side(i), from, master)
+         sees = .false.
+         if (opposite > 0) sees = any(side_positions(opposite, master%side_nodes, &
+            size(master%x, 2)) == node)
+      end function sees
+   end subroutine find_opposite
 
 end module mortar_points

@@ -26,7 +26,7 @@
 module mortar_segments
    use chain_geometry, only: length_between, side_positions, two_pi
    use kinds, only: dp
-   use mortar_sides, only: face_line_type, hats, outward_normals, project, side_type
+   use mortar_sides, only: face_line_type, hats, outward_normals, project, slave_side_type
    use quadrature, only: gauss_point_10, gauss_weight_10
    use shape_functions, only: side_shape, side_slope
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
@@ -65,7 +65,7 @@ contains
    !> Integrates over all segments.
    pure subroutine integrate_segments(slave, master, side, thickness, about_axis, integrals)
       type(face_line_type), intent(in) :: slave, master
-      type(side_type), intent(in) :: side(:)  !! of the slave
+      type(slave_side_type), intent(in) :: side(:)  !! of the slave
       real(dp), intent(in) :: thickness       !! not used about an axis [length]
       logical, intent(in) :: about_axis       !! whether areas are swept round the axis x = 0
       type(mortar_integrals_type), intent(out) :: integrals
@@ -114,7 +114,7 @@ contains
 
    !> Adds the integrals over one segment; without a master opposite, the area of the hats alone.
    pure subroutine add_segment(side, segment, master, master_normal, section, sums)
-      type(side_type), intent(in) :: side
+      type(slave_side_type), intent(in) :: side
       integer, intent(in) :: segment
       type(face_line_type), intent(in) :: master
       real(dp), intent(in) :: master_normal(:, :)  ! (2, nodes)
@@ -170,7 +170,7 @@ contains
    !> Where the hats of a side's corners are 1, and the normals there, if this segment lies nearer
    !> to the corner than those before.
    pure subroutine find_positions(side, segment, x, master_normal, sums)
-      type(side_type), intent(in) :: side
+      type(slave_side_type), intent(in) :: side
       integer, intent(in) :: segment
       real(dp), intent(in) :: x(:, :), master_normal(:, :)  ! (2, nodes) of the side opposite
       type(segment_sums_type), intent(inout) :: sums

@@ -5,7 +5,7 @@ module mortar_sides
    use shape_functions, only: side_shape, side_slope
    implicit none
    private
-   public :: face_line_type, opposed_shapes_type, side_type
+   public :: face_line_type, opposed_shapes_type, slave_side_type
    public :: beside_line, hats, opposed_shapes, opposite_coordinate, outward_normals, project, &
       side_opposite, sides_of
 
@@ -23,7 +23,7 @@ module mortar_sides
    end type face_line_type
 
    !> One side of the slave, with its nodes' normals.
-   type :: side_type
+   type :: slave_side_type
       integer, allocatable :: nodes(:)        !! places of its nodes along the line
       integer :: corners(2) = 0               !! its corners
       real(dp), allocatable :: x(:, :)        !! (2, nodes) [length]
@@ -31,7 +31,7 @@ module mortar_sides
       real(dp), allocatable :: kinks(:)       !! its coordinates where segments end, ascending
       integer, allocatable :: opposite(:)     !! (segments) side of the master, 0 for none
       real(dp) :: covered(2) = [1.0_dp, -1.0_dp] !! its coordinates where the covered part ends
-   end type side_type
+   end type slave_side_type
 
    !> Shape functions of both faces at two points that lie opposite each other.
    type :: opposed_shapes_type
@@ -46,7 +46,7 @@ contains
    !> The sides of the slave, with the normals of their nodes and their segments.
    pure function sides_of(slave, master) result(side)
       type(face_line_type), intent(in) :: slave, master
-      type(side_type), allocatable :: side(:)
+      type(slave_side_type), allocatable :: side(:)
       real(dp) :: normal(2, size(slave%x, 2))
       integer :: corners, s
 
@@ -64,7 +64,7 @@ contains
 
    !> Shape functions of both faces at a point of a segment, and the area per coordinate.
    pure function opposed_shapes(side, segment, xi, master, section) result(shapes)
-      type(side_type), intent(in) :: side
+      type(slave_side_type), intent(in) :: side
       integer, intent(in) :: segment               !! one with a master opposite
       real(dp), intent(in) :: xi                   !! coordinate of the side
       type(face_line_type), intent(in) :: master
@@ -86,7 +86,7 @@ contains
    !> Hat functions of the corners of a side that the master covers at least in part; outside the
    !> covered part their values at its end.
    pure function hats(side, xi)
-      type(side_type), intent(in) :: side
+      type(slave_side_type), intent(in) :: side
       real(dp), intent(in) :: xi              !! coordinate of the side
       real(dp) :: hats(2)
 
@@ -128,7 +128,7 @@ contains
    !> Finds where the segments of a slave's side end, its own ends and where corners of the master
    !> lie opposite, and what lies opposite them.
    pure subroutine find_kinks(side, master)
-      type(side_type), intent(inout) :: side
+      type(slave_side_type), intent(inout) :: side
       type(face_line_type), intent(in) :: master
       real(dp) :: at_ends(size(master%x, 2), 2), ends(2), xi
       integer :: j, n
@@ -157,7 +157,7 @@ contains
    !> Divides the segments between sides of which one is curved or has its midside node off the
    !> middle: there the integrand is no polynomial.
    pure subroutine divide_segments(side, master)
-      type(side_type), intent(inout) :: side
+      type(slave_side_type), intent(inout) :: side
       type(face_line_type), intent(in) :: master
       real(dp), allocatable :: kinks(:)
       integer, allocatable :: opposite(:)
@@ -193,7 +193,7 @@ contains
 
    !> How far a point lies beside the normal at a point of a side.
    pure real(dp) function beside_normal(side, xi, x)
-      type(side_type), intent(in) :: side
+      type(slave_side_type), intent(in) :: side
       real(dp), intent(in) :: xi              !! coordinate of the side
       real(dp), intent(in) :: x(2)            !! the point [length]
       real(dp) :: psi(size(side%nodes))
@@ -216,7 +216,7 @@ contains
    !> Coordinate of a side whose normal meets a point, by the Illinois method: false position, in
    !> which an end that stays counts half as much each time.
    pure function opposite_coordinate(side, x, at_ends) result(xi)
-      type(side_type), intent(in) :: side
+      type(slave_side_type), intent(in) :: side
       real(dp), intent(in) :: x(2)            !! the point [length]
       real(dp), intent(in) :: at_ends(2)      !! beside_normal at the side's ends, of opposite signs
       real(dp) :: xi
@@ -245,7 +245,7 @@ contains
    !> Side of the master that the normal at a point of the slave meets nearest to it, of those that
    !> face the slave; 0 where none does.
    pure integer function side_opposite(side, xi, master)
-      type(side_type), intent(in) :: side
+      type(slave_side_type), intent(in) :: side
       real(dp), intent(in) :: xi              !! coordinate of the slave's side
       type(face_line_type), intent(in) :: master
       real(dp) :: beside_it(size(master%x, 2)), psi(size(side%nodes))
@@ -277,7 +277,7 @@ contains
    !> Coordinate eta of the master's side x at which the normal at xi of a slave's side meets it, by
    !> Newton's method.
    pure subroutine project(side, xi, x, eta)
-      type(side_type), intent(in) :: side
+      type(slave_side_type), intent(in) :: side
       real(dp), intent(in) :: xi              !! coordinate of the slave's side
       real(dp), intent(in) :: x(:, :)         !! (2, nodes) [length]
       real(dp), intent(inout) :: eta          !! in: a guess

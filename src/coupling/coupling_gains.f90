@@ -4,7 +4,7 @@ module coupling_gains
    use arnoldi, only: arnoldi_type
    use conductance_graph, only: conductance_graph_type
    use contact_heat, only: heat_by_omega
-   use contact_tangent, only: make_tangent
+   use closing_instant, only: make_tangent
    use contact_workspace, only: contact_workspace_type
    use dense, only: lu_type
    use gap_temperatures, only: changes_by_temperature

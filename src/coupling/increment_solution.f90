@@ -27,7 +27,7 @@ module increment_solution
    use temperature_laws, only: is_below_zero, law_jumps
    use text, only: to_text
    use thermal_matrix, only: heat_equation_type
-   use unconstrained_motions, only: balanced_load, least_drive
+   use contact_system, only: balanced_load, least_drive
    implicit none
    private
    public :: begin_increment, solve_points, recover_fields

@@ -9,7 +9,7 @@ module opening_derivatives
    use contact_heat, only: jump_derivatives_type
    use contact_operator, only: law_pressure
    use contact_states, only: contact_state_type, contact_open
-   use contact_tangent, only: contact_response, make_tangent
+   use closing_instant, only: contact_response, make_tangent
    use contact_workspace, only: contact_workspace_type
    use dense, only: product_of
    use heat_reduction, only: heat_reduction_type

@@ -65,7 +65,7 @@ contains
       end do
       do i = 1, size(simulation%bodies%interfaces)
          associate (points => simulation%bodies%interfaces(i))
-            call line('contact pair '//points%name, to_text(size(points%slave_node))// &
+            call line('contact pair '//points%name, to_text(size(points%slave))// &
                ' '//points_words(points)//', initial gaps '// &
                from_to(gap_range(model%mesh, points)))
             call line('pairing of '//points%name, pairing_words(model%contacts(i)%pairing, points))

@@ -53,12 +53,12 @@ contains
       integer, allocatable :: ends(:), interface_of(:)
       integer :: first, i, k, m
 
-      allocate (points(3, sum([(size(interfaces(i)%slave_node), i=1, size(interfaces))])), &
+      allocate (points(3, sum([(size(interfaces(i)%slave), i=1, size(interfaces))])), &
          source=0.0_dp)
       first = 0
       allocate (ends(0), interface_of(0))
       do i = 1, size(interfaces)
-         m = size(interfaces(i)%slave_node)
+         m = size(interfaces(i)%slave)
          points(:2, first + 1:first + m) = interfaces(i)%position
          ends = [ends, [(first + k, first + k + 1, k=1, m - 1)]]
          interface_of = [interface_of, [(i, k=1, m - 1)]]

@@ -335,7 +335,7 @@ contains
 
       if (.not. allocated(summary%contacts)) return
       do i = 1, size(interfaces)
-         associate (m => size(interfaces(i)%slave_node))
+         associate (m => size(interfaces(i)%slave))
             far = pack([(k, k=1, m)], never_approached(interfaces(i)%initial_gap, &
                summary%contacts(i)%smallest_gap))
             if (size(far) == 0) cycle
@@ -344,8 +344,8 @@ contains
          end associate
          line = 'slave and master nodes'
          do k = 1, min(size(far), most)
-            line = line//' '//to_text(node_number(interfaces(i)%slave_node(far(k))))//'-'// &
-               to_text(node_number(interfaces(i)%master_node(far(k))))
+            line = line//' '//to_text(node_number(interfaces(i)%slave(far(k))))//'-'// &
+               to_text(node_number(interfaces(i)%master(far(k))))
          end do
          if (size(far) > most) line = line//' and '//to_text(size(far) - most)//' more'
          call print_wrapped(unit, '   ', line)

@@ -108,7 +108,7 @@ contains
          write (unit, '(/, 3x, 2a)') 'INTERFACE ', interfaces(i)%name
          call print_entry(unit, 'pairing', pairing_words(model%contacts(i)%pairing, interfaces(i)))
          call print_entry(unit, points_words(interfaces(i)), &
-            to_text(size(interfaces(i)%slave_node)))
+            to_text(size(interfaces(i)%slave)))
          if (len(open_words(interfaces(i))) > 0) call print_entry(unit, 'note', &
             open_words(interfaces(i)))
          call print_entry(unit, 'length', to_text(maxval(interfaces(i)%arc_length)))

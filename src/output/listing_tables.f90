@@ -49,7 +49,7 @@ contains
          quantities%width > 0 .and. (quantities%needs /= needs_heat .or. &
          allocated(contact%conductance)))
       n = size(columns)
-      allocate (values(size(points%slave_node), n))
+      allocate (values(size(points%slave), n))
       do i = 1, n
          if (columns(i)%is_geometry) then
             values(:, i) = geometry_values(columns(i)%name, points, node_number)

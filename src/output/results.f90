@@ -117,7 +117,7 @@ contains
       call self%fields%start(model, interfaces, point_node, has, expected)
       self%has_contact = n > 0
       if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
-         [quantity_type ::], sum([(size(interfaces(i)%slave_node), i=1, n)]), 0, expected, &
+         [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected, &
          model%units)
       has_errors = self%has_contact .and. model%estimates_errors
       allocate (self%tables(merge(3 + 2*n, 2 + n, has_errors)))
@@ -129,7 +129,7 @@ contains
          do i = 1, n
             call tables(2 + i)%start('/contact/'//interfaces(i)%name, &
                [datasets(of_contact_points, has), datasets(of_interface, has)], &
-               size(interfaces(i)%slave_node), expected, units)
+               size(interfaces(i)%slave), expected, units)
          end do
          if (.not. has_errors) return
          call tables(3 + n)%start('/errors', [step_time], 0, steps, units)

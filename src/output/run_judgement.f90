@@ -145,8 +145,8 @@ contains
             do last = 1, 2
                if (self%past(last, i) <= 0.0_dp) cycle
                call append(lines, 'contact pair '//points%name//': slave node '// &
-                  to_text(model%mesh%node_number(points%slave_node(merge(1, &
-                  size(points%slave_node), last == 1))))//' slides past the end of the master '// &
+                  to_text(model%mesh%node_number(points%slave(merge(1, &
+                  size(points%slave), last == 1))))//' slides past the end of the master '// &
                   'surface by more than a twentieth of its side; contact is solved as if it '// &
                   'stayed opposite: extend the master, or exchange slave and master')
             end do

@@ -90,7 +90,7 @@ contains
       integer :: m, panels, width, first, last, row, k
       character(13) :: load
 
-      m = size(points%slave_node)
+      m = size(points%slave)
       write (unit, '(/, 3a, i0, 2a, /, a)') 'ZONE DIAGRAM OF ', points%name, ': ', m, &
          ' contact points in columns, from s = 0 to s = ', to_text(points%arc_length(m)), &
          'I open, II slip, III stick'

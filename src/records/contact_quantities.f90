@@ -89,7 +89,7 @@ contains
       case ('heat_rate')
          values = [contact%heat_rate]
       case ('peak_pressure')
-         values = [maxval(or_nan(contact%pressure, size(points%slave_node)))]
+         values = [maxval(or_nan(contact%pressure, size(points%slave)))]
       case ('edge_contact')
          values = [contact%edge_contact]
       case ('edge_stick')
@@ -101,21 +101,21 @@ contains
       case ('status')
          values = real(contact%contact_state, dp)
       case ('gap')
-         values = or_nan(contact%gap, size(points%slave_node))
+         values = or_nan(contact%gap, size(points%slave))
       case ('pressure')
-         values = or_nan(contact%pressure, size(points%slave_node))
+         values = or_nan(contact%pressure, size(points%slave))
       case ('shear')
-         values = or_nan(contact%shear, size(points%slave_node))
+         values = or_nan(contact%shear, size(points%slave))
       case ('slip')
-         values = or_nan(contact%slip, size(points%slave_node))
+         values = or_nan(contact%slip, size(points%slave))
       case ('slave_temperature')
-         values = or_nan(contact%slave_temperature, size(points%slave_node))
+         values = or_nan(contact%slave_temperature, size(points%slave))
       case ('master_temperature')
-         values = or_nan(contact%master_temperature, size(points%slave_node))
+         values = or_nan(contact%master_temperature, size(points%slave))
       case ('conductance')
-         values = or_nan(contact%conductance, size(points%slave_node))
+         values = or_nan(contact%conductance, size(points%slave))
       case ('heat_flux')
-         values = or_nan(contact%heat_flux, size(points%slave_node))
+         values = or_nan(contact%heat_flux, size(points%slave))
       case default
          allocate (values(0))
       end select
@@ -143,9 +143,9 @@ contains
 
       select case (name)
       case ('slave_node')
-         values = real(node_number(points%slave_node), dp)
+         values = real(node_number(points%slave), dp)
       case ('master_node')
-         values = real(node_number(points%master_node), dp)
+         values = real(node_number(points%master), dp)
       case ('x')
          values = points%position(1, :)
       case ('y')

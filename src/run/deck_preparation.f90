@@ -252,8 +252,8 @@ contains
             k = findloc(too_much(first:last), .true., dim=1)
             if (k > 0) then
                reason = cards_at(model, row, supports, first + k - 1)//' the motion of '// &
-                  'slave node '//to_text(number(points%slave_node(k)))//' and master node '// &
-                  to_text(number(points%master_node(k)))//' towards each other, so that their '// &
+                  'slave node '//to_text(number(points%slave(k)))//' and master node '// &
+                  to_text(number(points%master(k)))//' towards each other, so that their '// &
                   'contact force is undetermined; free one of the two nodes along the normal '// &
                   'of the faces'
             else if (points%pairing == pairing_surfaces) then

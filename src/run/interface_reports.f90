@@ -8,11 +8,11 @@ module interface_reports
    use contact_definitions, only: contact_definition_type
    use element_kinds, only: axisymmetric, plane_stress
    use errors, only: error_type
-   use interface_warnings, only: clearance_warning, offset_warning, overlap_warning
+   use interface_warnings, only: clearance_warning, distance_warning, offset_warning, &
+      overlap_warning, tie_words
    use kinds, only: dp
    use model, only: model_type
    use text, only: append, read_real, string_type, to_text, to_upper
-   use tie_points, only: distance_warning, tie_words
    use verification, only: is_on_interface
    implicit none
    private
@@ -43,8 +43,8 @@ contains
          end if
          call warn_of_interface(model, i, interfaces(i), report)
          known = size(slave)
-         slave = [slave, interfaces(i)%slave_node]
-         master = [master, interfaces(i)%master_node]
+         slave = [slave, interfaces(i)%slave]
+         master = [master, interfaces(i)%master]
          normal = reshape([normal, interfaces(i)%normal], [2, size(slave)])
          repeated = first_repeated(slave, master, normal)
          if (repeated == 0) cycle

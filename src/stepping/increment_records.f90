@@ -118,7 +118,7 @@ contains
       type(contact_record_type) :: record
       type(contact_state_type) :: contact
       type(conductance_law_type) :: law
-      logical :: closed(size(bodies%interfaces(i)%slave_node)), touches(size(closed))
+      logical :: closed(size(bodies%interfaces(i)%slave)), touches(size(closed))
       integer :: first, k, last
 
       first = bodies%points%interface_start(i)

@@ -3,13 +3,13 @@ that all decks need, which exist for that part only."""
 
 CONTACT_FOLDER = {
     "active_set", "contact_tractions", "chain_geometry", "closing_instant", "lemke_path",
-    "contact_factors", "contact_pairs", "contact_states", "contact_system", "contact_tangent",
-    "contact_workspace", "interface_checks", "interface_warnings", "surface_chains",
-    "unconstrained_motions", "zone_edges",
+    "contact_factors", "contact_pairs", "contact_states", "contact_system", "contact_workspace",
+    "interface_checks", "interface_warnings", "surface_chains", "zone_edges",
 }
 COUPLING = {
     "accelerators", "arnoldi", "conductance_graph", "contact_operator:contact_operator_pass",
-    "contact_operator:residual_floor", "contact_tangent", "coupled_increment", "coupling_gains",
+    "contact_operator:residual_floor", "closing_instant:contact_response",
+    "closing_instant:make_tangent", "coupled_increment", "coupling_gains",
     "fixed_point", "increment_iteration", "jump_loads", "newton",
     "opening_derivatives", "resting_points",
 }
@@ -44,7 +44,7 @@ PARTS = {
         "increment_records:contact_record",
         "friction_memory", "increment_solution:conduct",
         "listing_increments:print_interface", "listing_tables:print_contact_table",
-        "interface_reports", "all_contact_points", "result_fields:face_values",
+        "interface_reports", "all_contact_points", "contact_laws", "contact_points", "result_fields:face_values",
         "result_fields:find_faces", "zone_diagram",
     },
     "friction": {
@@ -55,7 +55,8 @@ PARTS = {
                        "linear_constraints:stiffen_links"},
     "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
-                                  "unconstrained_motions"},
+                                  "contact_system:free_motions", "contact_system:is_driven",
+                                  "contact_system:balanced_load", "contact_system:least_drive"},
     "films": {"loads:film_matrix", "unit_loads:film_matrix", "unit_loads:film_sides"},
     "estimated errors": {
         "companion_steps", "divided_mesh", "doubled_increments", "error_estimator",
