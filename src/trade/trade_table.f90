@@ -6,11 +6,10 @@ module trade_table
    use kinds, only: dp
    use messages, only: print_line
    use open_files, only: write_file
-   use recommendation, only: same_time
    use reported_quantities, only: traded
    use text, only: few_digits, percent, to_text, with_decimals
-   use trade_study, only: is_there, quantity_count, target_count, targets, trade_row_type, &
-      trade_type
+   use trade_study, only: is_there, quantity_count, same_time, target_count, targets, &
+      trade_row_type, trade_type
    implicit none
    private
    public :: print_trade, write_trade
