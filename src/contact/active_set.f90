@@ -147,12 +147,16 @@ contains
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: soft
-      real(dp) :: hold, position(size(system%motion, 2)), way(size(system%motion, 2))
-      integer :: step
+      real(dp) :: hold, position(size(system%motion, 2)), softest, way(size(system%motion, 2))
+      integer :: i, step
 
       position = matmul(positions(system, work, state), system%motion)
+      ! Contact points that close a cycle, and those that move a rigid body, have no stiffness.
+      associate (own => [(system%schur(i, i), i=1, size(load)), system%alone])
+         softest = minval(own, mask=own > nothing*maxval(own))
+      end associate
       do step = 1, soft_steps
-         hold = max(first_hold*0.1_dp**(step - 1), least_hold)*stiffness_of_points(system)
+         hold = max(first_hold*0.1_dp**(step - 1), least_hold)*softest
          soft = work%another()
          soft%hold = hold
          associate (soft_load => load + hold*matmul(system%motion, position))
@@ -209,17 +213,6 @@ contains
          if (system%tangent(k) > 0) d(system%tangent(k)) = state%tangential(k)
       end do
    end function positions
-
-   !> Stiffness of the softest contact point, alone; contact points that close a cycle, and those
-   !> that move a rigid body, have none of their own.
-   pure real(dp) function stiffness_of_points(system)
-      type(contact_system_type), intent(in) :: system
-      integer :: i
-
-      associate (own => [(system%schur(i, i), i=1, size(system%schur, 1)), system%alone])
-         stiffness_of_points = minval(own, mask=own > nothing*maxval(own))
-      end associate
-   end function stiffness_of_points
 
    !> The state that each contact point should have, and by how much it violates the present one.
    subroutine judge(system, work, state, next, excess)

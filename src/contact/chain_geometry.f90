@@ -6,7 +6,7 @@ module chain_geometry
    use shape_functions, only: side_shape, side_slope
    implicit none
    private
-   public :: arc_lengths, edge_lengths, tributary_lengths, swept_areas, chain_tangents
+   public :: arc_lengths, edge_lengths, tributary_areas, chain_tangents
    public :: at_tips, length_between, side_positions, side_total, turns_back, two_pi
 
    !> Angle of a full turn [rad].
@@ -83,32 +83,14 @@ contains
       end do
    end function edge_lengths
 
-   !> Integral of each node's shape function along the line. A constant pressure so has constant
+   !> Integral of each node's shape function over the face. A constant pressure so has constant
    !> nodal force over weight, which is what makes the lumped recovery pass the patch test.
-   pure function tributary_lengths(x, side_nodes, closed) result(weight)
+   pure function tributary_areas(x, side_nodes, closed, section) result(weight)
       real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
       logical, intent(in) :: closed       !! whether it is a closed face
-      real(dp) :: weight(size(x, 2))      !! (nodes) [length]
-
-      weight = integrals(x, side_nodes, closed, .false.)
-   end function tributary_lengths
-
-   !> The same over the surface that the line sweeps round the axis x = 0: times 2 pi x.
-   pure function swept_areas(x, side_nodes, closed) result(weight)
-      real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
-      integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
-      logical, intent(in) :: closed       !! whether it is a closed face
+      real(dp), intent(in) :: section     !! thickness; 0 where the line sweeps round x = 0 [length]
       real(dp) :: weight(size(x, 2))      !! (nodes) [length^2]
-
-      weight = integrals(x, side_nodes, closed, .true.)
-   end function swept_areas
-
-   pure function integrals(x, side_nodes, closed, about_axis) result(weight)
-      real(dp), intent(in) :: x(:, :)
-      integer, intent(in) :: side_nodes
-      logical, intent(in) :: closed, about_axis
-      real(dp) :: weight(size(x, 2))
       real(dp) :: factor, psi(side_nodes)
       integer :: g, position(side_nodes), side
 
@@ -118,12 +100,13 @@ contains
          do g = 1, 3
             psi = side_shape(side_nodes, gauss_point_3(g))
             factor = 1.0_dp
-            if (about_axis) factor = two_pi*dot_product(psi, x(1, position))
+            if (section <= 0.0_dp) factor = two_pi*dot_product(psi, x(1, position))
             weight(position) = weight(position) + factor*gauss_weight_3(g)*psi* &
                norm2(matmul(x(:, position), side_slope(side_nodes, gauss_point_3(g))))
          end do
       end do
-   end function integrals
+      if (section > 0.0_dp) weight = section*weight
+   end function tributary_areas
 
    !> Corners that are the tip of all sides that meet there: these have quarter points, and the
    !> integral of the corner's shape function along the line is 0.

@@ -2,8 +2,7 @@
 !> its faces match, mortar points (mortar_points) where they do not, or what the deck asks for. The
 !> points of a *TIE, whose relative displacements and jumps of temperature are zero, are made alike.
 module contact_pairs
-   use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, swept_areas, &
-      tributary_lengths
+   use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, tributary_areas
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
    use contact_points, only: contact_points_type, no_radius
@@ -56,7 +55,7 @@ contains
       points%at_corner = one_goes_on(mesh, slave, master)
       points%side_nodes = slave%side_nodes
       points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
-      call cut_ends(first, last, points)
+      call keep_points([(k, k=first, last)], points)
       call check_weights(mesh, definition%title(), points%slave, points%weight, error)
       if (allocated(error)) return
       points%difference = differences(points%slave, points%master)
@@ -84,14 +83,11 @@ contains
       n = size(slave%nodes)
       middle = 0.5_dp*(mesh%coordinates(:, slave%nodes) + mesh%coordinates(:, master%nodes))
       without = at_tips(middle, slave%side_nodes, slave%closed)
-      if (about_axis) then
-         weight = swept_areas(middle, slave%side_nodes, slave%closed)
-         if (slave%side_nodes == 3 .and. .not. slave%closed) then
-            without(1) = without(1) .or. is_bare(1, 2)
-            without(n) = without(n) .or. is_bare(n, n - 1)
-         end if
-      else
-         weight = thickness*tributary_lengths(middle, slave%side_nodes, slave%closed)
+      weight = tributary_areas(middle, slave%side_nodes, slave%closed, merge(0.0_dp, thickness, &
+         about_axis))
+      if (about_axis .and. slave%side_nodes == 3 .and. .not. slave%closed) then
+         without(1) = without(1) .or. is_bare(1, 2)
+         without(n) = without(n) .or. is_bare(n, n - 1)
       end if
       do k = 1, n
          if (.not. without(k)) cycle
@@ -134,22 +130,6 @@ contains
          points%initial_gap = sum((x(:, master%nodes) - points%position)*points%normal, dim=1)
       end associate
    end subroutine set_geometry
-
-   !> Keeps the contact points first..last; s begins there.
-   pure subroutine cut_ends(first, last, points)
-      integer, intent(in) :: first, last
-      type(contact_points_type), intent(inout) :: points
-
-      points%slave = points%slave(first:last)
-      points%master = points%master(first:last)
-      points%position = points%position(:, first:last)
-      points%arc_length = points%arc_length(first:last) - points%arc_length(first)
-      points%weight = points%weight(first:last)
-      points%normal = points%normal(:, first:last)
-      points%tangent = points%tangent(:, first:last)
-      points%initial_gap = points%initial_gap(first:last)
-      points%edge = points%edge(first:last)
-   end subroutine cut_ends
 
    !> The contact points of one *CONTACT PAIR. Without PAIRING= they are node pairs where the two
    !> lines have equally many nodes that lie opposite each other.
@@ -291,36 +271,42 @@ contains
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: nearest
+      integer :: k
 
       call make_contact_points(mesh, tie%faces, thickness, points, error)
       if (allocated(error) .or. .not. tie%has_tolerance) return
       nearest = minval(abs(points%initial_gap))
-      call keep_some(abs(points%initial_gap) <= tie%tolerance + &
-         rounding*extent_of(mesh%coordinates), points)
+      call keep_points(pack([(k, k=1, size(points%slave))], abs(points%initial_gap) <= &
+         tie%tolerance + rounding*extent_of(mesh%coordinates)), points)
       if (size(points%slave) == 0) call set_error(error, status_deck, tie%faces%title()// &
          ': no point of the slave is within POSITION TOLERANCE='//to_text(tie%tolerance)// &
          ' of the master, the nearest one is '//to_text(nearest)//' from it', tie%faces%card)
    end subroutine make_tie_points
 
-   !> Keeps some of the points; of their geometry what ties have use for.
-   pure subroutine keep_some(kept, points)
-      logical, intent(in) :: kept(:)
+   !> Keeps some of the contact points; s begins at the first of them.
+   pure subroutine keep_points(kept, points)
+      integer, intent(in) :: kept(:)
       type(contact_points_type), intent(inout) :: points
       type(sum_list_type) :: difference
       integer :: k
 
-      call difference%reserve(count(kept), size(points%difference%value))
+      points%slave = points%slave(kept)
+      points%master = points%master(kept)
+      points%position = points%position(:, kept)
+      points%arc_length = points%arc_length(kept)
+      if (size(kept) > 0) points%arc_length = points%arc_length - points%arc_length(1)
+      points%weight = points%weight(kept)
+      points%normal = points%normal(:, kept)
+      points%tangent = points%tangent(:, kept)
+      points%initial_gap = points%initial_gap(kept)
+      points%edge = points%edge(kept)
+      if (points%difference%count == 0) return
+      call difference%reserve(size(kept), size(points%difference%value))
       do k = 1, size(kept)
-         if (kept(k)) call difference%add(points%difference%values_of(k), &
-            points%difference%coefficients_of(k))
+         call difference%add(points%difference%values_of(kept(k)), &
+            points%difference%coefficients_of(kept(k)))
       end do
       points%difference = difference
-      points%slave = pack(points%slave, kept)
-      points%master = pack(points%master, kept)
-      points%initial_gap = pack(points%initial_gap, kept)
-      points%weight = pack(points%weight, kept)
-      points%edge = pack(points%edge, kept)
-      points%tangent = reshape(pack(points%tangent, spread(kept, 1, 2)), [2, count(kept)])
-   end subroutine keep_some
+   end subroutine keep_points
 
 end module contact_pairs

@@ -34,20 +34,11 @@ contains
          if (points%weight(k) > 0.0_dp .or. closed(k)) cycle
          if (.not. any(closed(max(k - 1, 1):min(k + 1, size(closed))))) cycle
          lacking = stiffness(k)*max(gap(k) - no_gap*points%edge(k), 0.0_dp)
-         contact(k) = lacking <= limit(points, pressure, k)*area_beside(points, k)
+         ! The contact points beside it have two thirds of each side, of which it has a thirtieth.
+         contact(k) = lacking <= limit(points, pressure, k)* &
+            (sum(points%weight(max(k - 1, 1):min(k + 1, size(closed))))/20)
       end do
    end function in_contact
-
-   !> Nodal force at a contact point of weight 0 by which its pressure exceeds that at the far ends
-   !> of its sides, over that excess: the integral of N1^2, a thirtieth of the sides. Those of N1 N2
-   !> and N1 (N1 + N3) vanish, and N2, of the contact point in the middle of a side, has two thirds
-   !> of the side.
-   pure real(dp) function area_beside(points, k)
-      type(contact_points_type), intent(in) :: points
-      integer, intent(in) :: k
-
-      area_beside = sum(points%weight(max(k - 1, 1):min(k + 1, size(points%weight))))/20
-   end function area_beside
 
    !> Nodal force over weight. A closed contact point of weight 0 has the limit of the profile, no
    !> further than 0 where the contact points beside it press, and what carries the rest of its
@@ -94,7 +85,10 @@ contains
       if (area > 0.0_dp) lone_pressure = max(force, 0.0_dp)/area
    end function lone_pressure
 
-   !> Nodal force of the profile at a contact point of weight 0 (area_beside), if that presses.
+   !> Nodal force of the profile at a contact point of weight 0, if that presses. It is the excess
+   !> of its pressure over that at the far ends of its sides, times the integral of N1^2, a
+   !> thirtieth of the sides. Those of N1 N2 and N1 (N1 + N3) vanish, and N2, of the contact point
+   !> in the middle of a side, has two thirds of the side.
    pure real(dp) function profile_force(points, pressure, k)
       type(contact_points_type), intent(in) :: points
       real(dp), intent(in) :: pressure(:)

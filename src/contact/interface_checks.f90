@@ -39,11 +39,28 @@ contains
       type(surface_chain_type), intent(in) :: slave           !! line of the slave
       type(surface_chain_type), intent(in) :: master !! line of the master, along the slave's
       type(error_type), allocatable, intent(out) :: error     !! the node
-      character(:), allocatable :: message
+      logical :: of_slave(size(mesh%node_number))
+      integer :: inner, k
 
-      message = shared_node(mesh, slave, master)
-      if (len(message) > 0) call set_error(error, status_deck, &
-         definition%title()//': '//message)
+      inner = 0
+      of_slave = .false.
+      of_slave(slave%nodes) = .true.
+      do k = 1, size(master%nodes)
+         associate (node => master%nodes(k))
+            if (.not. of_slave(node)) then
+               inner = inner + 1
+            else if (slave%closed .or. master%closed .or. .not. ((k == 1 .and. &
+               node == slave%nodes(1)) .or. (k == size(master%nodes) .and. &
+               node == slave%nodes(size(slave%nodes))))) then
+               call set_error(error, status_deck, definition%title()//': node '// &
+                  to_text(mesh%node_number(node))//' belongs to both surfaces; only common '// &
+                  'ends, as at the tip of a crack, may: end them there')
+               return
+            end if
+         end associate
+      end do
+      if (inner == 0) call set_error(error, status_deck, definition%title()// &
+         ': both surfaces consist of the same nodes')
    end subroutine check_shared
 
    !> Refuses a line whose side runs back: it has no normal there.
@@ -91,27 +108,20 @@ contains
             advice = '; let both be rings or both open, or take PAIRING=SURFACES'
          else if (size(slave%nodes) /= size(master%nodes)) then
             message = to_text(size(slave%nodes))//' slave nodes but '// &
-               to_text(size(master%nodes))//' master nodes; '//without_partner(mesh, slave%nodes, &
-               master%nodes)
+               to_text(size(master%nodes))//' master nodes; '
+            if (size(slave%nodes) > size(master%nodes)) then
+               message = message//'slave node '//to_text(first_alone(mesh, slave%nodes, &
+                  master%nodes))//' has no partner'
+            else
+               message = message//'master node '//to_text(first_alone(mesh, master%nodes, &
+                  slave%nodes))//' has no partner'
+            end if
          end if
       end associate
    end subroutine compare_lines
 
-   !> Names the first node of the longer line that has no partner: to the node of the other line
+   !> Number of the first node of the longer line that has no partner: to the node of the other line
    !> that is nearest to it, another one is nearer.
-   function without_partner(mesh, slave, master) result(message)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: slave(:), master(:)
-      character(:), allocatable :: message
-
-      if (size(slave) > size(master)) then
-         message = 'slave node '//to_text(first_alone(mesh, slave, master))
-      else
-         message = 'master node '//to_text(first_alone(mesh, master, slave))
-      end if
-      message = message//' has no partner'
-   end function without_partner
-
    pure integer function first_alone(mesh, long, short)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: long(:), short(:)
@@ -132,34 +142,6 @@ contains
       nearest_position = minloc((mesh%coordinates(1, nodes) - mesh%coordinates(1, node))**2 + &
          (mesh%coordinates(2, nodes) - mesh%coordinates(2, node))**2, dim=1)
    end function nearest_position
-
-   !> Says which node both lines have, unless both end in it; empty where there is none.
-   function shared_node(mesh, slave, master) result(message)
-      type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(in) :: slave, master
-      character(:), allocatable :: message
-      logical, allocatable :: of_slave(:)
-      integer :: inner, k
-
-      message = ''
-      inner = 0
-      allocate (of_slave(size(mesh%node_number)), source=.false.)
-      of_slave(slave%nodes) = .true.
-      do k = 1, size(master%nodes)
-         associate (node => master%nodes(k))
-            if (.not. of_slave(node)) then
-               inner = inner + 1
-            else if (slave%closed .or. master%closed .or. .not. ((k == 1 .and. &
-               node == slave%nodes(1)) .or. (k == size(master%nodes) .and. &
-               node == slave%nodes(size(slave%nodes))))) then
-               message = 'node '//to_text(mesh%node_number(node))//' belongs to both '// &
-                  'surfaces; only common ends, as at the tip of a crack, may: end them there'
-               return
-            end if
-         end associate
-      end do
-      if (inner == 0) message = 'both surfaces consist of the same nodes'
-   end function shared_node
 
    !> Refuses faces that look the same way somewhere, and those that do not face each other on the
    !> average: their normals are at 90 degrees or less.

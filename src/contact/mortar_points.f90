@@ -96,17 +96,22 @@ contains
       end function line_of
    end subroutine set_mortar_points
 
-   !> How far the master goes on beyond the contact points, and where one face alone ends.
+   !> How far the first and the last contact point lie from the ends of the master, along the
+   !> slave, 0 where they lie beyond it; and whether the faces end at different places, as a punch
+   !> on a wider body.
    subroutine set_ends(coordinates, slave, master, points)
       real(dp), intent(in) :: coordinates(:, :)         ! (2, nodes)
       type(surface_chain_type), intent(in) :: slave, master
       type(contact_points_type), intent(inout) :: points
+      real(dp), dimension(2, 2) :: tangent, ends
 
-      associate (s => slave%nodes, m => master%nodes)
-         if (.not. master%closed) points%to_end = ends_beyond(coordinates(:, m([1, size(m)])), &
-            points)
-         if (.not. slave%closed) points%at_corner = master%closed .or. ends_apart(coordinates(:, &
-            s([1, size(s)])) - coordinates(:, m([1, size(m)])), points)
+      associate (last => [1, size(points%slave)], s => slave%nodes, m => master%nodes)
+         tangent = points%tangent(:, last)
+         ends = coordinates(:, m([1, size(m)]))
+         if (.not. master%closed) points%to_end = max(0.0_dp, [1, -1]*sum(tangent* &
+            (points%position(:, last) - ends), dim=1))
+         if (.not. slave%closed) points%at_corner = master%closed .or. abs(sum(tangent* &
+            (coordinates(:, s([1, size(s)])) - ends), dim=1)) > small_offset*points%edge(last)
       end associate
    end subroutine set_ends
 
@@ -220,31 +225,6 @@ contains
          n = n + on_face(i)%count
       end do
    end subroutine set_face_nodes
-
-   !> How far the first and the last contact point lie from the ends of the master, along the slave;
-   !> 0 where they lie beyond it.
-   pure function ends_beyond(ends, points) result(distance)
-      real(dp), intent(in) :: ends(2, 2)               ! [length]
-      type(contact_points_type), intent(in) :: points
-      real(dp) :: distance(2)
-      integer :: m
-
-      m = size(points%slave)
-      distance = max(0.0_dp, [dot_product(points%tangent(:, 1), points%position(:, 1) - &
-         ends(:, 1)), dot_product(points%tangent(:, m), ends(:, 2) - points%position(:, m))])
-   end function ends_beyond
-
-   !> Whether the faces end at different places, as a punch on a wider body.
-   pure function ends_apart(apart, points) result(are_apart)
-      real(dp), intent(in) :: apart(2, 2)              ! slave's ends less master's [length]
-      type(contact_points_type), intent(in) :: points
-      logical :: are_apart(2)
-
-      associate (last => [1, size(points%slave)])
-         are_apart = abs(sum(points%tangent(:, last)*apart, dim=1)) > small_offset* &
-            points%edge(last)
-      end associate
-   end function ends_apart
 
    !> Adds a multiple of a row of a matrix to a sum of nodal values.
    pure subroutine add_row(matrix, row, node, factor, nodes, share)
