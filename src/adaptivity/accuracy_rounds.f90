@@ -6,7 +6,7 @@
 !> whatever the changes are, and where it is at a corner, no round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use accuracy_targets, only: accuracy_request_type, accuracy_target_type
+   use accuracy_targets, only: accuracy_request_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
    use interface_quantities, only: closed_length, is_end_of_face, peak_is_at_end, peaks_at_corner
@@ -87,14 +87,14 @@ module accuracy_rounds
 
 contains
 
-   !> Begins a round; the first one takes what is requested.
+   !> Begins a round; the first one takes what is requested, of one interface or of all.
    subroutine begin_round(self, request, interfaces, steps)
       class(accuracy_rounds_type), intent(inout) :: self
       type(accuracy_request_type), intent(in) :: request
       integer, intent(in) :: interfaces                      !! number of them
       integer, intent(in) :: steps                           !! number of them
       type(accuracy_round_type), allocatable :: rounds(:)
-      integer :: i, n
+      integer :: i, k, n
 
       if (.not. allocated(self%courses)) allocate (self%courses(steps))
       self%is_on = allocated(request%targets)
@@ -102,15 +102,21 @@ contains
       if (.not. allocated(self%demands)) then
          allocate (self%demands(0), self%rounds(0))
          do i = 1, size(request%targets)
-            call add_demands(request%targets(i), interfaces, self%demands)
+            associate (target => request%targets(i))
+               do k = 1, interfaces
+                  if (all(target%interface /= [0, k])) cycle
+                  self%demands = [self%demands, demand_type(find_quantity(estimated, &
+                     target%quantity), k, target%bound, target%is_relative)]
+               end do
+            end associate
          end do
+         allocate (self%largest(size(self%demands)), source=0.0_dp)
       end if
       n = size(self%rounds)
       allocate (rounds(n + 1))
       rounds(:n) = self%rounds
       allocate (rounds(n + 1)%findings(size(self%demands), steps))
       call move_alloc(rounds, self%rounds)
-      if (.not. allocated(self%largest)) allocate (self%largest(size(self%demands)), source=0.0_dp)
    end subroutine begin_round
 
    !> Drops the present round, which did not come to its end.
@@ -120,35 +126,12 @@ contains
       self%rounds = self%rounds(:size(self%rounds) - 1)
    end subroutine drop_round
 
-   !> Adds the target of one interface or of all.
-   subroutine add_demands(target, interfaces, demands)
-      type(accuracy_target_type), intent(in) :: target
-      integer, intent(in) :: interfaces
-      type(demand_type), allocatable, intent(inout) :: demands(:)
-      type(demand_type), allocatable :: longer(:)
-      integer :: first, i, last, n
-
-      first = merge(1, target%interface, target%interface == 0)
-      last = merge(interfaces, target%interface, target%interface == 0)
-      n = size(demands)
-      allocate (longer(n + last - first + 1))
-      longer(:n) = demands
-      do i = first, last
-         n = n + 1
-         longer(n)%quantity = find_quantity(estimated, target%quantity)
-         longer(n)%interface = i
-         longer(n)%target = target%bound
-         longer(n)%is_relative = target%is_relative
-         longer(n)%idle = ''
-      end do
-      call move_alloc(longer, demands)
-   end subroutine add_demands
-
    !> Follows an accepted increment; the end of a step is judged.
    subroutine follow(self, interfaces, record)
       class(accuracy_rounds_type), intent(inout) :: self
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(increment_record_type), intent(in) :: record
+      type(quantity_type) :: quantity
       real(dp) :: scale, value(1)
       integer :: d, n
 
@@ -156,20 +139,24 @@ contains
       n = size(self%rounds)
       self%rounds(n)%increments = record%increment
       do d = 1, size(self%demands)
+         quantity = estimated(self%demands(d)%quantity)
          associate (points => interfaces(self%demands(d)%interface), &
             contact => record%contacts(self%demands(d)%interface))
-            value = contact_values(estimated(self%demands(d)%quantity)%name, points, contact)
-            scale = scale_of(self%demands(d), value(1), points, contact)
-            if (.not. ieee_is_nan(scale)) self%largest(d) = max(self%largest(d), scale)
-            if (.not. allocated(record%errors)) cycle
+            ! A relative target refers to the value, or of an edge to the length of the contact.
+            value = contact_values(quantity%name, points, contact)
+            scale = abs(value(1))
+            if (quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(scale)) scale = &
+               closed_length(contact, points%arc_length)
             if (ieee_is_nan(scale)) scale = 0.0_dp
+            self%largest(d) = max(self%largest(d), scale)
+            if (.not. allocated(record%errors)) cycle
             scale = max(scale, early*self%largest(d), beside_others*maxval(self%largest, &
                mask=self%demands%quantity == self%demands(d)%quantity))
             associate (finding => self%rounds(n)%findings(d, record%step))
                finding = found(self%demands(d), points, &
                   record%errors(self%demands(d)%interface), scale)
-               finding%instead = instead_of(estimated(self%demands(d)%quantity), contact)
-               if (is_peak(self%demands(d))) then
+               finding%instead = instead_of(quantity, contact)
+               if (quantity%name == 'peak_pressure') then
                   finding%is_at_end = any(peak_is_at_end(contact))
                   finding%is_at_corner = peaks_at_corner(points, contact)
                   finding%has_limit = .not. (finding%is_at_corner .or. &
@@ -180,22 +167,6 @@ contains
          end associate
       end do
    end subroutine follow
-
-   !> What a relative target refers to: the value, or of an edge the length of the contact; NaN
-   !> where there is no value.
-   function scale_of(demand, value, points, contact) result(scale)
-      type(demand_type), intent(in) :: demand
-      real(dp), intent(in) :: value
-      type(contact_points_type), intent(in) :: points
-      type(contact_record_type), intent(in) :: contact
-      type(quantity_type) :: quantity
-      real(dp) :: scale
-
-      quantity = estimated(demand%quantity)
-      scale = abs(value)
-      if (quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(scale)) scale = &
-         closed_length(contact, points%arc_length)
-   end function scale_of
 
    !> The bounds of one quantity at the end of a step. Where an edge is the end of the interface
    !> there is nothing to judge.
@@ -250,12 +221,6 @@ contains
          now%bound = now%mesh + now%increment
       end associate
    end subroutine add_change
-
-   logical function is_peak(demand)
-      type(demand_type), intent(in) :: demand
-
-      is_peak = demand%quantity == find_quantity(estimated, 'peak_pressure')
-   end function is_peak
 
    !> Whether a quantity whose changes are all that is known of the mesh grew in the last two
    !> rounds, in the last one by no less than before.
@@ -335,11 +300,16 @@ contains
       class(accuracy_rounds_type), intent(inout) :: self
       integer, intent(in) :: most_rounds
       logical, intent(in) :: nothing_is_left     !! whether there is nothing to refine
+      logical :: only_corners_are_missed
 
       call name_idle(self)
       self%reason = ''
       if (self%is_reached()) return
-      if (only_corners_are_missed(self%rounds(size(self%rounds))%findings)) then
+      associate (findings => self%rounds(size(self%rounds))%findings)
+         ! No mesh brings a pressure at a corner to its target.
+         only_corners_are_missed = all(findings%is_met() .or. findings%is_at_corner)
+      end associate
+      if (only_corners_are_missed) then
          self%reason = 'a pressure without a limit meets no target, and *ACCURACY can '// &
             'leave it out'
       else if (self%stands_still()) then
@@ -352,13 +322,6 @@ contains
          self%goes_on = .true.
       end if
    end subroutine conclude
-
-   !> Whether all that misses its target is a pressure at a corner, which no mesh brings there.
-   pure logical function only_corners_are_missed(findings)
-      type(finding_type), intent(in) :: findings(:, :)
-
-      only_corners_are_missed = all(findings%is_met() .or. findings%is_at_corner)
-   end function only_corners_are_missed
 
    !> Whether the last two rounds brought no target nearer that is not met, as where pressures grow
    !> without limit.
@@ -379,26 +342,20 @@ contains
    !> Says of each demand that no step of the present round has what there is instead.
    subroutine name_idle(self)
       class(accuracy_rounds_type), intent(inout) :: self
-      integer :: d
+      character(:), allocatable :: words
+      integer :: d, s
 
       do d = 1, size(self%demands)
-         self%demands(d)%idle = ''
          associate (findings => self%rounds(size(self%rounds))%findings(d, :))
-            if (.not. any(findings%is_there)) self%demands(d)%idle = all_instead(findings)
+            words = ''
+            do s = 1, merge(0, size(findings), any(findings%is_there))
+               if (index(words, findings(s)%instead) > 0) cycle
+               if (words /= '') words = words//' or '
+               words = words//findings(s)%instead
+            end do
          end associate
+         self%demands(d)%idle = words
       end do
    end subroutine name_idle
-
-   !> What there is at the ends of the steps in place of a value to judge.
-   pure function all_instead(findings) result(words)
-      type(finding_type), intent(in) :: findings(:)   ! (steps) all without it
-      character(:), allocatable :: words
-      integer :: s
-
-      words = findings(1)%instead
-      do s = 2, size(findings)
-         if (index(words, findings(s)%instead) == 0) words = words//' or '//findings(s)%instead
-      end do
-   end function all_instead
 
 end module accuracy_rounds

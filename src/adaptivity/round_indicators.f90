@@ -72,14 +72,23 @@ contains
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
          if (finding%is_met() .or. finding%is_at_corner) cycle
          self%halvings = max(self%halvings, halvings_for(finding))
-         levels = levels_for(finding)
-         if (levels == 0) cycle
-         associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity)
-            if (ieee_is_nan(record%errors(i)%mesh(q))) call mark_faces(self, model, i)
+         levels = 1
+         if (.not. ieee_is_nan(finding%mesh)) then
+            ! Not where the mesh leaves the increments half of the target.
+            if (finding%mesh <= 0.5_dp*finding%allowed) cycle
+            if (finding%mesh > far*finding%allowed) levels = 2
+         end if
+         associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity, &
+            of_elements => self%division%levels)
+            ! Where no error of the mesh is known, the change by sides of half the size tells it.
+            if (ieee_is_nan(record%errors(i)%mesh(q))) where (elements_at_surfaces(model%mesh, &
+               [model%contacts(i)%slave, model%contacts(i)%master])) of_elements = &
+               max(of_elements, 1)
             call mark_edges(self, interfaces(i), edges_for(q, interfaces(i), record%contacts(i)), &
                max(levels, levels_of_edges(interfaces(i), record, i, q, finding%allowed)))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
-            call mark_elements(self, model%mesh, record, weight, levels)
+            where (largest_part(weight*squared_errors(model%mesh, record), marked)) &
+               of_elements = max(of_elements, levels)
          end associate
       end do
    end subroutine take
@@ -97,16 +106,6 @@ contains
             log(2.0_dp)))
       end if
    end function halvings_for
-
-   !> How often elements are divided: not where the mesh leaves the increments half of the target.
-   pure integer function levels_for(finding) result(levels)
-      type(finding_type), intent(in) :: finding
-
-      levels = 1
-      if (ieee_is_nan(finding%mesh)) return
-      if (finding%mesh <= 0.5_dp*finding%allowed) levels = 0
-      if (finding%mesh > far*finding%allowed) levels = 2
-   end function levels_for
 
    !> How often the sides at an edge must be divided for its resolution.
    function levels_of_edges(points, record, i, q, allowed) result(levels)
@@ -164,19 +163,6 @@ contains
       end do
    end function influence
 
-   !> Marks the elements along both faces of an interface: where no error of the mesh is known, the
-   !> change by sides of half the size tells it.
-   subroutine mark_faces(self, model, i)
-      class(round_indicators_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: i
-
-      associate (contact => model%contacts(i), levels => self%division%levels)
-         where (elements_at_surfaces(model%mesh, [contact%slave, contact%master])) levels = &
-            max(levels, 1)
-      end associate
-   end subroutine mark_faces
-
    !> Marks the edges of zones on both faces, where elements are divided so often.
    subroutine mark_edges(self, points, edges, levels)
       class(round_indicators_type), intent(inout) :: self
@@ -209,20 +195,6 @@ contains
       vector = (1.0_dp - part_of_way)*first + part_of_way*second
    end function between
 
-   !> Marks the elements with the largest errors of stress and heat flux.
-   subroutine mark_elements(self, mesh, record, weight, levels)
-      class(round_indicators_type), intent(inout) :: self
-      type(mesh_type), intent(in) :: mesh
-      type(increment_record_type), intent(in) :: record
-      real(dp), intent(in) :: weight(:)   ! (elements) of squared errors
-      integer, intent(in) :: levels
-
-      associate (of_elements => self%division%levels)
-         where (largest_part(weight*squared_errors(mesh, record), marked)) of_elements = max( &
-            of_elements, levels)
-      end associate
-   end subroutine mark_elements
-
    !> Whether no other mesh and no other increments would help.
    pure logical function asks_for_nothing(self)
       class(round_indicators_type), intent(in) :: self
@@ -235,16 +207,10 @@ contains
    subroutine add_to(self, variation)
       class(round_indicators_type), intent(in) :: self
       type(variation_type), intent(inout) :: variation
-      type(marked_elements_type), allocatable :: divisions(:)
-      integer :: n
 
       variation%increments = variation%increments*0.5_dp**self%halvings
-      n = 0
-      if (allocated(variation%divisions)) n = size(variation%divisions)
-      allocate (divisions(n + 1))
-      if (n > 0) divisions(:n) = variation%divisions
-      divisions(n + 1) = self%division
-      call move_alloc(divisions, variation%divisions)
+      if (.not. allocated(variation%divisions)) allocate (variation%divisions(0))
+      variation%divisions = [variation%divisions, self%division]
    end subroutine add_to
 
 end module round_indicators

@@ -19,7 +19,7 @@ module variations
    use local_refinement, only: choose_neighbours, elements_at_points, elements_in_region
    use memory_calls, only: check_memory
    use memory_needs, only: memory_needed
-   use model, only: model_type, verify_type
+   use model, only: model_type
    use order_reduction, only: reduce_order
    use refined_regions, only: refined_region_type
    use refinement, only: numbering_fault, refine, refine_chosen
@@ -265,9 +265,8 @@ contains
    !> Leaves the *VERIFY cards of steps with fixed increments out.
    pure subroutine keep_landings(model)
       type(model_type), intent(inout) :: model
-      type(verify_type), allocatable :: kept(:)
       logical :: lands(size(model%verifications))
-      integer :: i, n
+      integer :: i
 
       do i = 1, size(lands)
          associate (check => model%verifications(i))
@@ -275,14 +274,7 @@ contains
             if (lands(i)) lands(i) = .not. model%steps(step_at(model, check%when))%direct
          end associate
       end do
-      allocate (kept(count(lands)))
-      n = 0
-      do i = 1, size(lands)
-         if (.not. lands(i)) cycle
-         n = n + 1
-         kept(n) = model%verifications(i)
-      end do
-      call move_alloc(kept, model%verifications)
+      model%verifications = model%verifications(pack([(i, i=1, size(lands))], lands))
    end subroutine keep_landings
 
    !> The step in which a total time lies.

@@ -36,18 +36,18 @@ module batch
    end type deck_task_type
 
    !> A deck that is running.
-   type :: slot_type
-      integer :: deck = 0                    !! its number, 0 where the slot is free
+   type :: running_deck_type
+      integer :: deck = 0                    !! its number, 0 where none is
       real(dp) :: since = 0.0_dp             !! when it began [s]
       logical :: is_killed = .false.         !! whether the batch was told twice to end
       type(child_type) :: child              !! its process
-   end type slot_type
+   end type running_deck_type
 
    !> All that a batch knows.
    type :: batch_type
       type(command_type) :: command                      !! decks and options
       type(deck_outcome_type), allocatable :: outcomes(:) !! (decks) how each ended
-      type(slot_type), allocatable :: slots(:)           !! (jobs)
+      type(running_deck_type), allocatable :: running(:)   !! (jobs)
       type(progress_type) :: progress                    !! progress line
       integer :: started = 0                             !! decks that were started
       integer :: ended = 0                               !! decks that have ended
@@ -66,7 +66,7 @@ contains
       integer, intent(out) :: status              !! the largest of all
       type(batch_type) :: self
       type(error_type), allocatable :: error
-      integer :: lock
+      integer :: i, lock
       logical :: has_collected
       real(dp) :: since
 
@@ -74,16 +74,25 @@ contains
       call check_names(command, status)
       if (status /= 0) return
       call catch_signals(outlives_pipes=.true.)
-      call prepare(self, command)
+      self%command = command
+      associate (decks => size(command%decks))
+         allocate (self%outcomes(decks), self%running(min(command%jobs, decks)))
+      end associate
+      do i = 1, size(self%outcomes)
+         self%outcomes(i)%path = command%decks(i)%value
+         self%outcomes(i)%ending = 'not run'
+         self%outcomes(i)%reason = ''
+      end do
+      call self%progress%start(command%quiet)
       call begin_table(self, lock, error)
       if (allocated(error)) then
          call print_error('thercon', error%message)
          status = error%status
          return
       end if
-      do while (any(self%slots%deck > 0) .or. &
+      do while (any(self%running%deck > 0) .or. &
          self%started < size(self%outcomes) .and. caught_signal() == '')
-         call fill_slots(self)
+         call start_decks(self)
          call collect(self, has_collected)
          call pass_on_signals(self)
          call show_progress(self)
@@ -181,63 +190,39 @@ contains
       call inputs%check(outputs, error)
    end subroutine check_inputs
 
-   subroutine prepare(self, command)
+   !> Starts decks where others have ended. One for which the system has no process has ended, too.
+   subroutine start_decks(self)
       type(batch_type), intent(inout) :: self
-      type(command_type), intent(in) :: command
-      integer :: i, decks
-
-      decks = size(command%decks)
-      self%command = command
-      allocate (self%outcomes(decks), self%slots(min(command%jobs, decks)))
-      do i = 1, decks
-         self%outcomes(i)%path = command%decks(i)%value
-         self%outcomes(i)%ending = 'not run'
-         self%outcomes(i)%reason = ''
-      end do
-      call self%progress%start(command%quiet)
-   end subroutine prepare
-
-   !> Starts decks where slots are free.
-   subroutine fill_slots(self)
-      type(batch_type), intent(inout) :: self
+      type(deck_task_type) :: task
+      type(error_type), allocatable :: error
       integer :: s
 
-      do s = 1, size(self%slots)
-         if (self%slots(s)%deck > 0) cycle
+      task%command = self%command
+      do s = 1, size(self%running)
+         if (self%running(s)%deck > 0) cycle
          if (self%started == size(self%outcomes) .or. caught_signal() /= '') return
          self%started = self%started + 1
          self%has_news = .true.
-         call start_deck(self, self%started, self%slots(s))
+         associate (outcome => self%outcomes(self%started), running => self%running(s))
+            task%path = outcome%path
+            running%since = wall_seconds()
+            running%is_killed = .false.
+            call running%child%start(task, error)
+            outcome%is_running = .not. allocated(error)
+            if (outcome%is_running) then
+               outcome%ending = 'running'
+               running%deck = self%started
+               cycle
+            end if
+            outcome%status = status_internal
+            outcome%reason = error%message
+            self%ended = self%ended + 1
+            self%failed = self%failed + 1
+            call self%progress%clear()
+            call print_error(outcome%path, error%message)
+         end associate
       end do
-   end subroutine fill_slots
-
-   !> A deck for which the system has no process has ended already.
-   subroutine start_deck(self, deck, slot)
-      type(batch_type), intent(inout) :: self
-      integer, intent(in) :: deck
-      type(slot_type), intent(out) :: slot
-      type(deck_task_type) :: task
-      type(error_type), allocatable :: error
-
-      associate (outcome => self%outcomes(deck))
-         task%path = outcome%path
-         task%command = self%command
-         slot%since = wall_seconds()
-         call slot%child%start(task, error)
-         outcome%is_running = .not. allocated(error)
-         if (outcome%is_running) then
-            outcome%ending = 'running'
-            slot%deck = deck
-            return
-         end if
-         outcome%status = status_internal
-         outcome%reason = error%message
-         self%ended = self%ended + 1
-         self%failed = self%failed + 1
-         call self%progress%clear()
-         call print_error(outcome%path, error%message)
-      end associate
-   end subroutine start_deck
+   end subroutine start_decks
 
    !> Takes what has ended.
    subroutine collect(self, has_collected)
@@ -247,12 +232,12 @@ contains
       integer :: s
 
       has_collected = .false.
-      do s = 1, size(self%slots)
-         if (self%slots(s)%deck == 0) cycle
-         if (.not. self%slots(s)%child%has_ended()) cycle
+      do s = 1, size(self%running)
+         if (self%running(s)%deck == 0) cycle
+         if (.not. self%running(s)%child%has_ended()) cycle
          has_collected = .true.
-         associate (outcome => self%outcomes(self%slots(s)%deck))
-            call take_end(self%slots(s), outcome, printed)
+         associate (outcome => self%outcomes(self%running(s)%deck))
+            call take_end(self%running(s), outcome, printed)
             self%ended = self%ended + 1
             if (outcome%status /= 0) self%failed = self%failed + 1
             call self%progress%clear()
@@ -261,30 +246,31 @@ contains
                call outcome%print(results_of(outcome%path, self%command))
             end if
          end associate
-         self%slots(s)%deck = 0
+         self%running(s)%deck = 0
       end do
       self%has_news = self%has_news .or. has_collected
    end subroutine collect
 
    !> How a deck ended. Why a process ended before the deck did is added to what it printed.
-   subroutine take_end(slot, outcome, printed)
-      type(slot_type), intent(inout) :: slot
+   subroutine take_end(running, outcome, printed)
+      type(running_deck_type), intent(inout) :: running
       type(deck_outcome_type), intent(inout) :: outcome
       character(:), allocatable, intent(out) :: printed   !! messages, without last line end
       type(report_type) :: report
 
-      report = slot%child%report()
+      report = running%child%report()
       call outcome%take(report)
-      call slot%child%take_messages(printed)
+      call running%child%take_messages(printed)
       outcome%is_running = .false.
       outcome%has_run = .true.
-      outcome%seconds = merge(report%seconds, wall_seconds() - slot%since, report%seconds > 0.0_dp)
+      outcome%seconds = report%seconds
+      if (report%seconds <= 0.0_dp) outcome%seconds = wall_seconds() - running%since
       deallocate (outcome%ending)
-      associate (child => slot%child)
+      associate (child => running%child)
          outcome%cpu_seconds = child%end%cpu_seconds
          outcome%peak_bytes = child%end%peak_bytes
          if (report%is_whole == 1) return
-         if (slot%is_killed) then
+         if (running%is_killed) then
             outcome%status = status_interrupted
             outcome%reason = 'killed because a second signal came'
          else if (child%end%is_crash == 1) then
@@ -309,10 +295,10 @@ contains
       self%forwarded = caught_times()
       if (is_first) self%signalled = wall_seconds()
       if (.not. is_first .and. wall_seconds() - self%signalled < one_signal) return
-      do s = 1, size(self%slots)
-         if (self%slots(s)%deck == 0) cycle
-         self%slots(s)%is_killed = .not. is_first
-         call self%slots(s)%child%send_signal(kills=.not. is_first)
+      do s = 1, size(self%running)
+         if (self%running(s)%deck == 0) cycle
+         self%running(s)%is_killed = .not. is_first
+         call self%running(s)%child%send_signal(kills=.not. is_first)
       end do
    end subroutine pass_on_signals
 
@@ -321,7 +307,7 @@ contains
       character(:), allocatable :: line
 
       line = to_text(self%ended)//' of '//counted(size(self%outcomes), 'deck')//' ended, '// &
-         to_text(count(self%slots%deck > 0))//' running, '//to_text(self%failed)//' failed'
+         to_text(count(self%running%deck > 0))//' running, '//to_text(self%failed)//' failed'
       if (caught_signal() /= '') line = line//'; ending after their increments, again to kill'
       call self%progress%say(line)
    end subroutine show_progress
@@ -333,11 +319,11 @@ contains
       integer :: s
 
       if (wall_seconds() - self%written < merge(shortest_pause, table_pause, self%has_news)) return
-      do s = 1, size(self%slots)
-         if (self%slots(s)%deck == 0) cycle
-         associate (outcome => self%outcomes(self%slots(s)%deck))
-            call outcome%take(self%slots(s)%child%report())
-            outcome%seconds = wall_seconds() - self%slots(s)%since
+      do s = 1, size(self%running)
+         if (self%running(s)%deck == 0) cycle
+         associate (outcome => self%outcomes(self%running(s)%deck))
+            call outcome%take(self%running(s)%child%report())
+            outcome%seconds = wall_seconds() - self%running(s)%since
          end associate
       end do
       call write_batch(self%command%folder, self%outcomes, ignored)

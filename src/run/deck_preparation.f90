@@ -110,8 +110,12 @@ contains
       call read_deck(path, command%width, command%settings, deck%cards, deck%report)
       if (is_skipped(command, deck)) return
       call build_model(deck%cards, verifiable, estimated, deck%model, deck%report)
-      if (command%accuracy > 0.0_dp .and. .not. deck%report%has_errors()) call request_accuracy( &
-         deck%cards%last, command%accuracy, deck%model, deck%report)
+      if (command%accuracy <= 0.0_dp .or. deck%report%has_errors()) return
+      ! What --accuracy asks for takes the place of the deck's targets.
+      deck%model%estimates_errors = .true.
+      deck%model%accuracy%targets = whole_request(command%accuracy)
+      if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &
+         'the deck has no *CONTACT PAIR: there is no quantity whose accuracy could be requested')
    end subroutine read_model
 
    !> Whether a file is no deck but one that decks include.
@@ -120,33 +124,8 @@ contains
       type(read_deck_type), intent(in) :: deck            ! read
 
       is_skipped = size(command%decks) > 1 .and. .not. (deck%report%has_errors() .or. &
-         has_card('STEP', deck%cards))
+         size(step_cards(deck%cards)) > 0)
    end function is_skipped
-
-   !> What --accuracy asks for takes the place of the deck's targets.
-   subroutine request_accuracy(last, bound, model, report)
-      type(place_type), intent(in) :: last
-      real(dp), intent(in) :: bound
-      type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
-
-      model%estimates_errors = .true.
-      model%accuracy%targets = whole_request(bound)
-      if (size(model%contacts) == 0) call report%error(last, 'the deck has no *CONTACT PAIR: '// &
-         'there is no quantity whose accuracy could be requested')
-   end subroutine request_accuracy
-
-   pure logical function has_card(name, cards)
-      character(*), intent(in) :: name
-      type(cards_type), intent(in) :: cards
-      integer :: i
-
-      has_card = .true.
-      do i = 1, size(cards%keywords)
-         if (cards%keywords(i)%name == name) return
-      end do
-      has_card = .false.
-   end function has_card
 
    !> Reports an error at the card that it names.
    subroutine report_at_card(error, report)
@@ -168,33 +147,32 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(deck_report_type), intent(inout) :: report
       type(loads_type) :: loads
+      integer, allocatable :: begins(:)
       integer :: step
 
       loads = simulation%loads
+      begins = step_cards(cards)
       do step = 1, size(model%steps)
          call loads%begin_step(model%steps(step), simulation%state%displacement, &
             simulation%state%temperature)
          associate (points => simulation%bodies%points)
-            call check_step(step_place(cards, step), model, simulation, laws_of_step(model, &
-               points%interface_start, points%weight, step), loads, step, report)
+            call check_step(cards%keywords(begins(step))%place, model, simulation, &
+               laws_of_step(model, points%interface_start, points%weight, step), loads, step, &
+               report)
          end associate
          if (report%has_errors()) return
       end do
    end subroutine check_supports
 
-   !> Where a step begins.
-   pure type(place_type) function step_place(cards, step)
+   !> Which of the keyword cards begin steps.
+   pure function step_cards(cards) result(list)
       type(cards_type), intent(in) :: cards
-      integer, intent(in) :: step
-      integer :: k, n
+      integer, allocatable :: list(:)
+      integer :: k
 
-      n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'STEP') cycle
-         n = n + 1
-         if (n == step) step_place = cards%keywords(k)%place
-      end do
-   end function step_place
+      list = pack([(k, k=1, size(cards%keywords))], [(cards%keywords(k)%name == 'STEP', &
+         k=1, size(cards%keywords))])
+   end function step_cards
 
    subroutine check_step(place, model, simulation, laws, loads, step, report)
       type(place_type), intent(in) :: place
@@ -290,11 +268,7 @@ contains
          call join_name(words, support_name(model, supports, dofs(i)))
       end do
       if (len(words) == 0) words = 'the axis of symmetry'
-      if (index(words, ' and ') > 0) then
-         words = words//' prescribe'
-      else
-         words = words//' prescribes'
-      end if
+      words = words//trim(merge(' prescribe ', ' prescribes', index(words, ' and ') > 0))
    end function cards_at
 
 end module deck_preparation

@@ -141,8 +141,15 @@ contains
             call inputs%check(outputs_of(self%path, self%command), error)
          end if
          if (.not. (allocated(error) .or. is_later)) call reserve_files(self, error)
-         if (.not. allocated(error)) call reduce_bodies(self, error)
-         if (.not. allocated(error)) return
+         if (.not. allocated(error)) then
+            call self%output%progress%start(self%command%quiet)
+            call self%output%progress%say('assembling')
+            call self%simulation%assemble(self%model)
+            call self%output%progress%say('reducing')
+            call self%simulation%reduce(self%model, error)
+            if (.not. allocated(error)) return
+            call say_when(self, error)
+         end if
          if (is_later) call self%output%fail(error%message, increment_record_type())
       end associate
       call report_failure(self, error, is_told)
@@ -162,22 +169,6 @@ contains
       call prepare_end(self, end_at_once)
       call self%end%hold(.false.)
    end subroutine reserve_files
-
-   !> What the first step needs before its first increment.
-   !> Error: as simulation_type's reduce.
-   subroutine reduce_bodies(self, error)
-      type(deck_run_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: error
-
-      associate (progress => self%output%progress)
-         call progress%start(self%command%quiet)
-         call progress%say('assembling')
-         call self%simulation%assemble(self%model)
-         call progress%say('reducing')
-         call self%simulation%reduce(self%model, error)
-         if (allocated(error)) call say_when(self, error)
-      end associate
-   end subroutine reduce_bodies
 
    !> All increments, with their output.
    subroutine solve_deck(self, rounds, error)

@@ -39,6 +39,7 @@ contains
       type(read_deck_type), target :: deck
       type(model_type) :: model
       type(simulation_type) :: simulation
+      type(input_files_type) :: inputs
       type(row_run_type) :: runs(command%jobs)
       type(trade_type) :: trade
       type(error_type), allocatable :: error
@@ -55,7 +56,10 @@ contains
       pairings = simulation%bodies%interfaces%pairing
       call simulation%release()
       table = results_of(path, command)//'.trade.csv'
-      call prepare_table(table, path, command, deck, error)
+      call inputs%add(path, deck%cards%files)
+      call inputs%check([string_type(table)], error)
+      if (.not. allocated(error)) call make_folder(command%folder, error)
+      if (.not. allocated(error)) call try_file(table, error)
       do i = 1, size(runs)
          runs(i)%task%path = path
          runs(i)%task%command = command
@@ -93,21 +97,6 @@ contains
       if (status /= 0) call print_error(path, 'the deck as written fails: '// &
          trade%rows(i)%reason)
    end subroutine trade_deck
-
-   !> Sees whether the table can be written.
-   !> Errors: a file of the deck is in its place, the folder or the file cannot be written.
-   subroutine prepare_table(table, path, command, deck, error)
-      character(*), intent(in) :: table, path
-      type(command_type), intent(in) :: command
-      type(read_deck_type), intent(in) :: deck
-      type(error_type), allocatable, intent(out) :: error
-      type(input_files_type) :: inputs
-
-      call inputs%add(path, deck%cards%files)
-      call inputs%check([string_type(table)], error)
-      if (.not. allocated(error)) call make_folder(command%folder, error)
-      if (.not. allocated(error)) call try_file(table, error)
-   end subroutine prepare_table
 
    !> Runs the grid level by level, then meshes with ever more levels at the contact faces, both as
    !> far as that is affordable, then the single variations.
