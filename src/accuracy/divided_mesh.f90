@@ -10,8 +10,7 @@ module divided_mesh
    use equations, only: equation_nodes
    use errors, only: error_type
    use heat_reduction, only: heat_reduction_type
-   use increments, only: simulation_type
-   use initial_state, only: make_initial_state
+   use increments, only: make_initial_state, simulation_type
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
    use load_histories, only: end_of_step

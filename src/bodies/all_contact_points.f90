@@ -181,7 +181,7 @@ contains
    end function means_of_faces
 
    !> Hats are cut of mortar points whose conductance varies without a jump, where it follows from
-   !> gap and pressure alone: the means of the faces (gap_temperatures) go by jumps of whole hats.
+   !> gap and pressure alone: the means of the faces (contact_heat) go by jumps of whole hats.
    pure subroutine find_cut_faces(model, interfaces, row)
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)

@@ -9,13 +9,12 @@
 !> and their relations depend on each other. They therefore have a small part of the bodies'
 !> compliance.
 module contact_constraints
-   use constraint_elimination, only: eliminate
    use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_hanging, &
       of_support, row_origin_type
    use equations, only: equation_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
-   use linear_constraints, only: linear_constraints_type, node_stiffness
+   use linear_constraints, only: eliminate, linear_constraints_type, node_stiffness
    use all_contact_points, only: all_contact_points_type
    use held_points, only: held_directions, over_constrained
    use sparse_matrix, only: sparse_matrix_type

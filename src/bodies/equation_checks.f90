@@ -1,9 +1,9 @@
 !> Whether the equations of the deck say something new, and leave the relative motion of contact
-!> points free.
+!> points free; names of supports in messages.
 module equation_checks
    use all_contact_points, only: all_contact_points_type
    use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_support, of_tie, &
-      row_origin_type
+      origins_of, row_origin_type
    use contact_constraints, only: displacement_rows, first_tied, temperature_rows
    use errors, only: error_type, set_error, status_deck
    use linear_constraints, only: linear_constraints_type
@@ -11,13 +11,13 @@ module equation_checks
    use loads, only: loads_type
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
-   use row_origins, only: origins_of
    use steps, only: solves_heat, solves_mechanics
-   use support_names, only: join_name, support_name
    use text, only: to_text
    implicit none
    private
-   public :: check_equations
+   public :: check_equations, support_name, join_name
+
+
 
 contains
 
@@ -144,5 +144,27 @@ contains
          call join_name(names, name)
       end do
    end subroutine name_origins
+
+   !> The card that prescribes a degree of freedom, in words; empty for the axis of symmetry.
+   pure function support_name(model, supports, dof) result(name)
+      type(model_type), intent(in) :: model
+      type(load_history_type), intent(in) :: supports   !! of the step
+      integer, intent(in) :: dof                        !! prescribed
+      character(:), allocatable :: name
+
+      name = ''
+      if (supports%card(dof) > 0) name = '*BOUNDARY, '// &
+         model%boundary_places(supports%card(dof))%value
+   end function support_name
+
+   !> Adds a name to names joined by "and", once.
+   pure subroutine join_name(names, name)
+      character(:), allocatable, intent(inout) :: names
+      character(*), intent(in) :: name
+
+      if (len(name) == 0 .or. index(names//' and ', name//' and ') > 0) return
+      if (len(names) > 0) names = names//' and '
+      names = names//name
+   end subroutine join_name
 
 end module equation_checks

@@ -1,21 +1,26 @@
-!> Equilibrium reduced to the contact points: factors, and the contact system from their Schur
-!> complement.
+!> Equilibrium reduced to the contact points: factors, the contact system from their Schur
+!> complement, and why a stiffness is singular although the rigid motions of its bodies are held.
 module equilibrium_reduction
-   use contact_constraints, only: in_cycle, cycle_compliance, stiffness_alone
+   use all_contact_points, only: all_contact_points_type
+   use contact_constraints, only: cycle_compliance, in_cycle, stiffness_alone
    use contact_system, only: contact_system_type
    use dense, only: column_space
-   use errors, only: error_type
+   use element_kinds, only: axisymmetric, quad8_reduced
+   use errors, only: error_type, status_deck
    use field_problem, only: field_problem_type, field_reduction_type
    use kinds, only: dp
    use linear_constraints, only: node_stiffness
+   use mesh, only: extent_of
+   use mesh_bodies, only: body_name
+   use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
-   use all_contact_points, only: all_contact_points_type
+   use text, only: to_text
    implicit none
    private
+   public :: equilibrium_reduction_type
 
    !> Part of the bodies' stiffness at its nodes below which a contact point's is rounding.
    real(dp), parameter :: strainless = 1.0e-10_dp
-   public :: equilibrium_reduction_type
 
    !> Equilibrium, (2.4), reduced for a set of supports.
    type, extends(field_reduction_type) :: equilibrium_reduction_type
@@ -24,24 +29,36 @@ module equilibrium_reduction
       procedure :: reduce
    end type equilibrium_reduction_type
 
+   real(dp), parameter :: rounding = 1.0e-15_dp  !! of coordinates, in the extent of the model
+
+   !> Ratio of the stiffnesses of two bodies from which rounding of the one hides the other
+   real(dp), parameter :: hidden = 1.0e12_dp
+
 contains
 
    !> Factors the stiffness, and forms the contact system.
    !> Errors: unconstrained bodies, a failure of the solver.
-   subroutine reduce(self, mechanical, points, rigid, solver_kind, node_rank, error)
+   subroutine reduce(self, model, mechanical, points, rigid, node_rank, error)
       class(equilibrium_reduction_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       type(field_problem_type), intent(in) :: mechanical  !! equilibrium, numbered
       type(all_contact_points_type), intent(in) :: points !! all contact points
       real(dp), intent(in) :: rigid(:, :) !! (2 nodes, motions) that the supports leave free
-      integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: words
 
       call self%release()
-      call self%factor(mechanical, sparse_matrix_type(), solver_kind, node_rank, error)
-      if (allocated(error)) return
+      call self%factor(mechanical, sparse_matrix_type(), model%solver, node_rank, error)
+      if (allocated(error)) then
+         words = weakness_of_bodies(model)
+         if (error%status == status_deck .and. len(words) > 0) error%message = &
+            error%message//'; '//words
+         return
+      end if
       call make_system(mechanical, points, rigid, self%solver%schur, self%contact)
+      self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
    end subroutine reduce
 
    !> The contact system, nothing closed, from the mechanical Schur complement.
@@ -121,5 +138,42 @@ contains
          end do
       end associate
    end subroutine set_cycles
+
+   !> The first body whose elements or material explain a singular matrix, and what to do; empty
+   !> where none does.
+   pure function weakness_of_bodies(model) result(words)
+      type(model_type), intent(in) :: model
+      character(:), allocatable :: words   !! such as 'body 1 (...) is ...: take CPE8'
+      real(dp) :: stiffness(model%mesh%body_count)
+      integer :: body, e
+
+      words = ''
+      associate (mesh => model%mesh)
+         stiffness = 0.0_dp
+         do e = 1, size(mesh%element_body)
+            associate (own => stiffness(mesh%element_body(e)))
+               own = max(own, maxval(abs(model%materials(model%sections( &
+                  mesh%element_section(e))%material)%elasticity)))
+            end associate
+         end do
+         do body = 1, mesh%body_count
+            if (stiffness(body) < maxval(stiffness)/hidden) then
+               words = body_name(model, body)//' is '//to_text(maxval(stiffness)/stiffness(body)) &
+                  //' times softer than '//body_name(model, maxloc(stiffness, dim=1))// &
+                  ': check the values and units of *ELASTIC'
+               return
+            end if
+            if (count(mesh%element_body == body) > 1) cycle
+            e = findloc(mesh%element_body, body, dim=1)
+            if (mesh%element_kind(e) /= quad8_reduced) cycle
+            if (mesh%element_plane(e) == axisymmetric) cycle
+            words = body_name(model, body)//' has a single element, '// &
+               to_text(mesh%element_number(e))//', with reduced integration, which can deform '// &
+               'without stress (hourglass mode): take CPE8 in place of CPE8R, or CPS8 in place '// &
+               'of CPS8R, or a finer mesh'
+            return
+         end do
+      end associate
+   end function weakness_of_bodies
 
 end module equilibrium_reduction

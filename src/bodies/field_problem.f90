@@ -1,14 +1,15 @@
 !> A linear field problem, thermal or mechanical, and its reduction to the contact unknowns.
 !>
-!> The problem is the matrix of the bodies and the numbering of its unknowns. A reduction is made of
-!> it once, for one numbering and for what is added to the matrix, such as films; whoever needs
-!> another one makes one of its own.
+!> The problem is the matrix of the bodies and the numbering of its unknowns; either may change while
+!> the other stays. A reduction is made of it for one numbering, once for given values of the matrix
+!> and of what is added to it, such as films; whoever needs another one makes one of its own. Loads
+!> that were solved for are kept with what became of them: a load that they make up needs no
+!> solution of its own.
 module field_problem
    use controls, only: solver_mumps
    use errors, only: error_type, status_deck
    use finite_values, only: check_finite
    use kinds, only: dp
-   use known_loads, only: known_loads_type
    use linear_constraints, only: linear_constraints_type
    use linear_solver, only: linear_solver_type
    use mumps_solver, only: mumps_solver_type
@@ -20,6 +21,7 @@ module field_problem
 
    !> Part of a load, in its largest entry, that is rounding.
    real(dp), parameter :: rounding = 64*epsilon(1.0_dp)
+   integer, parameter :: most_kept = 4   !! loads that were solved for
 
    !> What acts on a field at the end of an increment.
    type :: field_load_type
@@ -28,15 +30,20 @@ module field_problem
       real(dp), allocatable :: condensed(:) !! (tail) right-hand side condensed on the tail
    end type field_load_type
 
-   !> Matrix of the bodies and numbering of the unknowns.
-   type :: field_problem_type
+   !> Matrix of the bodies.
+   type :: field_operator_type
       type(sparse_matrix_type) :: matrix !! (dofs, dofs) bodies alone, both triangles
       real(dp) :: largest_entry = 0.0_dp                      !! of this matrix
+      integer :: values = 0                                   !! which values it has, counted
+   contains
+      procedure :: set_matrix
+   end type field_operator_type
+
+   !> The matrix and the numbering of the unknowns.
+   type, extends(field_operator_type) :: field_problem_type
       type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
       integer :: numbering = 0                                !! which numbering, counted
    contains
-      procedure :: set_matrix
-      procedure :: finish_numbering
       procedure :: matrix_of_unknowns
       procedure :: leading_nodes
    end type field_problem_type
@@ -44,6 +51,7 @@ module field_problem
    !> Factors of a problem, its unknowns condensed on the tail.
    type :: field_reduction_type
       integer :: numbering = 0                                !! of the unknowns; 0 at first
+      integer :: values = 0                                   !! of the matrix likewise
       !> (dofs, dofs) what was added to the matrix; without values where there was nothing
       type(sparse_matrix_type) :: added = sparse_matrix_type()
       !> (leading) the order in which solvers eliminate the unknowns of this numbering, once made
@@ -64,11 +72,18 @@ module field_problem
       procedure :: release
    end type field_reduction_type
 
-   !> Known loads of a field, and the reduction that they were solved with.
-   type, extends(known_loads_type) :: solved_loads_type
+   !> Orthonormal loads that were solved for, the latest last, and the reduction that they were
+   !> solved with.
+   type :: solved_loads_type
       private
-      integer :: numbering = 0
+      integer :: numbering = 0, values = 0
       type(sparse_matrix_type) :: added = sparse_matrix_type()
+      real(dp), allocatable :: rhs(:, :)           !! (equations, n)
+      real(dp), allocatable :: condensed(:, :)     !! (tail, n)
+      real(dp), allocatable :: solution(:, :)      !! (equations, n), or none
+   contains
+      procedure :: take_off
+      procedure :: keep
    end type solved_loads_type
 
 contains
@@ -91,7 +106,7 @@ contains
       type(field_problem_type), intent(in) :: problem
       type(sparse_matrix_type), intent(in) :: added       !! (dofs, dofs), or without values
 
-      is_for = self%numbering == problem%numbering
+      is_for = self%numbering == problem%numbering .and. self%values == problem%values
       if (is_for) is_for = same_values(self%added, added)
    end function is_for
 
@@ -117,7 +132,7 @@ contains
    end function same_values
 
    !> Factors the matrix with what is added to it. Unknowns are ordered and their pattern analysed
-   !> once for a numbering: films lie on sides of elements, whose nodes the matrix joins already.
+   !> once for a numbering, whatever values the matrix is given: films lie on sides of elements, whose nodes the matrix joins already.
    !> Errors: the matrix or its factors overflow; as the solver's analyse and factor.
    subroutine factor(self, problem, added, solver_kind, node_rank, error)
       class(field_reduction_type), intent(inout) :: self
@@ -131,6 +146,7 @@ contains
 
       call self%renumber(problem)
       self%is_factored = .false.
+      self%values = problem%values
       self%added = added
       call check_finite(problem%matrix%value, 'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
@@ -153,23 +169,15 @@ contains
       if (allocated(error)) call self%release()
    end subroutine factor
 
-   !> Sets the matrix, whose stiffness scales the links of the numbering.
+   !> Gives the matrix new values.
    subroutine set_matrix(self, matrix)
-      class(field_problem_type), intent(inout) :: self
+      class(field_operator_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) both triangles
 
       self%matrix = matrix
       self%largest_entry = maxval(abs(matrix%value))
-      if (allocated(self%map%link_stiffness)) call self%map%stiffen_links(matrix)
+      self%values = self%values + 1
    end subroutine set_matrix
-
-   !> Counts a new numbering, whose links are scaled by the stiffness of the matrix, if it is there.
-   subroutine finish_numbering(self)
-      class(field_problem_type), intent(inout) :: self
-
-      self%numbering = self%numbering + 1
-      if (allocated(self%matrix%value)) call self%map%stiffen_links(self%matrix)
-   end subroutine finish_numbering
 
    !> The matrix on the unknowns, its lower triangle.
    pure function matrix_of_unknowns(self, added) result(lower)
@@ -177,11 +185,14 @@ contains
       type(sparse_matrix_type), intent(in) :: added       !! (dofs, dofs), or without values
       type(sparse_matrix_type) :: lower                   !! (equations, equations)
 
-      if (allocated(added%value)) then
-         lower = self%map%transform(linear_combination(1.0_dp, self%matrix, 1.0_dp, added))
-      else
-         lower = self%map%transform(self%matrix)
-      end if
+      associate (stiffness => self%map%link_stiffness(self%matrix))
+         if (allocated(added%value)) then
+            lower = self%map%transform(linear_combination(1.0_dp, self%matrix, 1.0_dp, added), &
+               stiffness)
+         else
+            lower = self%map%transform(self%matrix, stiffness)
+         end if
+      end associate
    end function matrix_of_unknowns
 
    !> Nodes of the leading unknowns.
@@ -200,16 +211,14 @@ contains
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
       type(field_load_type) :: load                       !! not condensed
-      real(dp) :: supported(size(given))
+      real(dp), dimension(size(given)) :: acting, supported
 
       load%given = given
       supported = problem%map%supported(given)
-      allocate (load%rhs(problem%map%equations, 1))
-      if (.not. any(abs(supported) > 0.0_dp)) then
-         load%rhs(:, 1) = problem%map%load(forces, given)
-         return
-      end if
-      load%rhs(:, 1) = problem%map%load(forces - problem%matrix%multiply(supported), given)
+      acting = forces
+      if (any(abs(supported) > 0.0_dp)) acting = forces - problem%matrix%multiply(supported)
+      load%rhs = reshape(problem%map%load(acting, given, &
+         problem%map%link_stiffness(problem%matrix)), [problem%map%equations, 1])
       if (allocated(self%added%value)) load%rhs(:, 1) = load%rhs(:, 1) - &
          problem%map%restrict(self%added%multiply(supported))
    end function load_of
@@ -225,9 +234,11 @@ contains
       real(dp) :: rest(problem%map%equations, 1), condensed(problem%map%tail, 1)
       real(dp), allocatable :: solution(:, :)
 
-      if (known%numbering /= self%numbering .or. .not. same_values(known%added, self%added)) then
+      if (known%numbering /= self%numbering .or. known%values /= self%values .or. &
+         .not. same_values(known%added, self%added)) then
          known = solved_loads_type()
          known%numbering = self%numbering
+         known%values = self%values
          known%added = self%added
       end if
       allocate (load%condensed(problem%map%tail), source=0.0_dp)
@@ -320,5 +331,49 @@ contains
       call self%solver%release()
       deallocate (self%solver)
    end subroutine release
+
+   !> Takes from a load its parts along known ones, twice for their rounding, and adds these parts'
+   !> condensed loads and solutions.
+   pure subroutine take_off(self, rhs, condensed, solution)
+      class(solved_loads_type), intent(in) :: self
+      real(dp), intent(inout) :: rhs(:)         !! (equations)
+      real(dp), intent(inout) :: condensed(:)   !! (tail)
+      real(dp), intent(inout) :: solution(:)    !! (equations), or none
+      real(dp) :: part
+      integer :: j, turn
+
+      if (.not. allocated(self%rhs)) return
+      do turn = 1, 2
+         do j = 1, size(self%rhs, 2)
+            part = dot_product(self%rhs(:, j), rhs)
+            rhs = rhs - part*self%rhs(:, j)
+            condensed = condensed + part*self%condensed(:, j)
+            solution = solution + part*self%solution(:, j)
+         end do
+      end do
+   end subroutine take_off
+
+   !> Keeps a load that is orthogonal to the known ones, in the place of the oldest where there are
+   !> many.
+   pure subroutine keep(self, rhs, condensed, solution)
+      class(solved_loads_type), intent(inout) :: self
+      real(dp), intent(in) :: rhs(:)            !! (equations), not zero
+      real(dp), intent(in) :: condensed(:)      !! (tail)
+      real(dp), intent(in) :: solution(:)       !! (equations), or none
+      real(dp) :: length
+
+      length = norm2(rhs)
+      if (.not. allocated(self%rhs)) then
+         allocate (self%rhs(size(rhs), 0), self%condensed(size(condensed), 0), &
+            self%solution(size(solution), 0))
+      end if
+      associate (n => size(self%rhs, 2), oldest => 1 + size(self%rhs, 2)/most_kept)
+         self%rhs = reshape([self%rhs(:, oldest:), rhs/length], [size(rhs), n + 2 - oldest])
+         self%condensed = reshape([self%condensed(:, oldest:), condensed/length], &
+            [size(condensed), n + 2 - oldest])
+         self%solution = reshape([self%solution(:, oldest:), solution/length], &
+            [size(solution), n + 2 - oldest])
+      end associate
+   end subroutine keep
 
 end module field_problem

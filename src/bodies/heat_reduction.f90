@@ -30,7 +30,8 @@ module heat_reduction
       !> of both was made
       integer, allocatable :: node_rank(:)
       integer, private :: ranked_displacements = 0   !! numbering of those in node_rank
-      integer, private :: displacements = 0   !! numbering of those in jump_load, 0 without it
+      !> numbering and values of equilibrium in jump_load, 0 without it
+      integer, private :: equilibrium(2) = 0
       logical, private :: is_balanced = .false.   !! whether jump_load is
    contains
       procedure :: serves
@@ -58,8 +59,8 @@ contains
       class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
 
-      has_loads = allocated(self%jump_load) .and. &
-         self%displacements == bodies%mechanical%numbering
+      has_loads = allocated(self%jump_load) .and. all(self%equilibrium == &
+         [bodies%mechanical%numbering, bodies%mechanical%values])
    end function has_loads
 
    !> Reduces heat for given films, as far as it does not serve for films, supports and step.
@@ -88,7 +89,7 @@ contains
       if (allocated(error) .or. .not. bodies%is_coupled) return
       if (.not. has_loads(self, bodies)) call loads_by_solves(bodies%thermal, self, &
          bodies%mechanical, bodies%equilibrium, bodies%thermal_load, self%jump_load)
-      self%displacements = bodies%mechanical%numbering
+      self%equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
       if (.not. self%is_balanced) call balance_jump_load(self, bodies)
    end subroutine reduce
 
@@ -104,19 +105,21 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call self%renumber_both(bodies)
-      if (.not. self%is_for(bodies%thermal, film)) self%displacements = 0
+      if (.not. self%is_for(bodies%thermal, film)) self%equilibrium = 0
       if (has_loads(self, bodies) .or. .not. bodies%is_coupled) return
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       self%is_balanced = .false.
       if (model%solver /= solver_mumps) return
       if (.not. self%is_of(bodies%thermal, film)) then
          call self%release()
+         self%values = bodies%thermal%values
          self%added = film
       end if
       self%ranked_displacements = bodies%mechanical%numbering
       call loads_by_elimination(bodies%thermal, film, bodies%mechanical, bodies%thermal_load, &
          self%node_rank, self%jump_load, error)
-      if (.not. allocated(error)) self%displacements = bodies%mechanical%numbering
+      if (.not. allocated(error)) self%equilibrium = [bodies%mechanical%numbering, &
+         bodies%mechanical%values]
    end subroutine eliminate
 
    !> Forgets what is of other numberings of the bodies.
@@ -126,7 +129,7 @@ contains
 
       if (allocated(self%node_rank) .and. (self%numbering /= bodies%thermal%numbering .or. &
          self%ranked_displacements /= bodies%mechanical%numbering)) deallocate (self%node_rank)
-      if (self%numbering /= bodies%thermal%numbering) self%displacements = 0
+      if (self%numbering /= bodies%thermal%numbering) self%equilibrium = 0
       call self%renumber(bodies%thermal)
    end subroutine renumber_both
 

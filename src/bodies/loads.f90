@@ -5,13 +5,12 @@ module loads
    use kinds, only: dp
    use load_histories, only: load_history_type, step_clock_type
    use all_contact_points, only: all_contact_points_type
-   use load_locations, only: entries_of, find_locations, load_locations_type
    use mesh, only: mesh_type
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
-   use steps, only: analysis_static, dof_temperature, load_film_sink, load_temperature, &
+   use steps, only: analysis_static, dof_temperature, load_film_sink, load_temperature, load_type, &
       step_type
-   use unit_loads, only: integrated, unit_loads_type
+   use unit_loads, only: entries_of, find_locations, integrated, same_location, unit_loads_type
    implicit none
    private
    public :: loads_type
@@ -25,7 +24,7 @@ module loads
       !> (interfaces) overlaps that are allowed, or factors of the initial ones [length or -]
       type(load_history_type) :: interference
       logical, allocatable :: shrinks(:)       !! (interfaces) which of the two
-      type(load_locations_type) :: locations   !! (locations) what they act on
+      type(load_type), allocatable :: locations(:)   !! (locations) what they act on
       type(unit_loads_type) :: unit            !! nodal forces and heat of unit loads
       integer :: card_count = 0                !! number of the last data card of a load
    contains
@@ -88,14 +87,14 @@ contains
 
    !> Values of loads that are not given: the nodes' temperatures for *TEMPERATURE, else zero.
    pure function values_at(locations, temperature) result(values)
-      type(load_locations_type), intent(in) :: locations
+      type(load_type), intent(in) :: locations(:)
       real(dp), intent(in) :: temperature(:)
-      real(dp) :: values(size(locations%kind))
+      real(dp) :: values(size(locations))
       integer :: i
 
       values = 0.0_dp
       do i = 1, size(values)
-         if (locations%kind(i) == load_temperature) values(i) = temperature(locations%item(i))
+         if (locations(i)%kind == load_temperature) values(i) = temperature(locations(i)%item)
       end do
    end function values_at
 
@@ -163,7 +162,7 @@ contains
    pure subroutine apply_step(self, step)
       class(loads_type), intent(inout) :: self
       type(step_type), intent(in) :: step
-      logical :: given(size(self%locations%kind)), ends
+      logical :: given(size(self%locations)), ends
       integer :: entries(size(step%loads)), i
 
       given = .false.
@@ -172,9 +171,10 @@ contains
       ends = .false.
       do i = 1, size(given)
          ! The entries of a location that a step gives are its first ones.
-         ends = self%locations%is_repeated(i) .and. (ends .or. given(max(1, i - 1)))
+         ends = i > 1 .and. (ends .or. given(max(1, i - 1))) .and. &
+            same_location(self%locations(i), self%locations(max(1, i - 1)))
          if (given(i)) cycle
-         associate (kind => self%locations%kind(i))
+         associate (kind => self%locations(i)%kind)
             if (kind == load_temperature .and. step%analysis /= analysis_static) then
                call self%applied%remove(i)
             else if (self%applied%active(i) .and. (ends .or. step%ends_loads(kind)) .and. &
@@ -225,7 +225,7 @@ contains
    !> Present values of the loads; of those that do not act zero.
    pure function present_values(self) result(values)
       class(loads_type), intent(in) :: self
-      real(dp) :: values(size(self%locations%kind))
+      real(dp) :: values(size(self%locations))
 
       values = merge(self%applied%value, 0.0_dp, self%applied%active)
    end function present_values
@@ -278,7 +278,7 @@ contains
       class(loads_type), intent(in) :: self
       real(dp), intent(in) :: temperature(:)    !! (nodes) [temperature]
       real(dp) :: rates(self%card_count)        !! (cards) by their running numbers [power]
-      real(dp) :: of_location(size(self%locations%kind))
+      real(dp) :: of_location(size(self%locations))
       integer :: i
 
       of_location = self%unit%location_heat(present_values(self), temperature)
@@ -297,9 +297,9 @@ contains
       real(dp), intent(inout) :: temperature(:)        !! (nodes) [temperature]
       integer :: i
 
-      do i = 1, size(self%locations%kind)
-         if (self%locations%kind(i) /= load_temperature .or. .not. self%applied%active(i)) cycle
-         temperature(self%locations%item(i)) = self%applied%value(i)
+      do i = 1, size(self%locations)
+         if (self%locations(i)%kind /= load_temperature .or. .not. self%applied%active(i)) cycle
+         temperature(self%locations(i)%item) = self%applied%value(i)
       end do
    end subroutine set_temperatures
 

@@ -8,11 +8,10 @@ module reduced_bodies
    use contact_points, only: contact_points_type
    use element_kinds, only: element_node_count
    use equilibrium_reduction, only: equilibrium_reduction_type
-   use errors, only: error_type, status_deck
+   use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use loads, only: loads_type
-   use mesh, only: extent_of
    use model, only: model_type
    use all_contact_points, only: all_contact_points_type, joined_points, match_surfaces, match_tie
    use held_points, only: held_directions
@@ -21,12 +20,10 @@ module reduced_bodies
    use steps, only: load_temperature, solves_heat, solves_mechanics
    use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_conduction
-   use weak_bodies, only: weakness_of_bodies
    implicit none
    private
    public :: reduced_bodies_type
 
-   real(dp), parameter :: rounding = 1.0e-15_dp  !! of coordinates, in the extent of the model
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
 
    !> The reduced bodies.
@@ -149,12 +146,12 @@ contains
                self%laws%friction%coefficient > 0.0_dp, slave_is_stiffer(model, points, .true.), &
                self%mechanical%map, error)
             if (allocated(error)) return
-            call self%mechanical%finish_numbering()
+            self%mechanical%numbering = self%mechanical%numbering + 1
          end if
          if (.not. heat) return
          call constrain_temperatures(used, held_temperature, points, &
             slave_is_stiffer(model, points, .false.), self%thermal%map)
-         call self%thermal%finish_numbering()
+         self%thermal%numbering = self%thermal%numbering + 1
          self%jump_index = self%thermal%map%tail_index(self%thermal%map%introduced)
       end associate
    end subroutine number
@@ -199,18 +196,9 @@ contains
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: words
 
       if (self%equilibrium%is_of(self%mechanical, sparse_matrix_type())) return
-      call self%equilibrium%reduce(self%mechanical, self%points, self%rigid, model%solver, &
-         node_rank, error)
-      if (allocated(error)) then
-         words = weakness_of_bodies(model)
-         if (error%status == status_deck .and. len(words) > 0) error%message = &
-            error%message//'; '//words
-         return
-      end if
-      self%equilibrium%contact%least_length = rounding*extent_of(model%mesh%coordinates)
+      call self%equilibrium%reduce(model, self%mechanical, self%points, self%rigid, node_rank, error)
    end subroutine reduce
 
    !> Assembles the matrices that the steps of the model solve with, where that is not done.

@@ -1,15 +1,19 @@
-!> What loads of unit strength do to the nodes, integrated once, and what their present values make
-!> of it.
+!> Locations on which the steps of a model put loads, and what loads of unit strength do to the
+!> nodes there, integrated once. A location is a kind of load on a component of a node or element;
+!> one that a step loads several times has as many entries, one behind the other.
 module unit_loads
+   use element_integrals, only: body_moments, body_weights, side_mass, side_pressure, side_weights
+   use element_kinds, only: axisymmetric, element_node_count, side_nodes
    use kinds, only: dp
-   use load_integrals, only: film_side, unit_forces, unit_heat
-   use load_locations, only: load_locations_type
    use model, only: model_type
+   use sorting, only: sort_order
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
-   use steps, only: load_film_coefficient
+   use steps, only: load_body_force, load_body_heat, load_centrifugal, load_face_heat, &
+      load_film_coefficient, load_force, load_gravity, load_nodal_heat, load_pressure, &
+      load_traction, load_type, step_type
    implicit none
    private
-   public :: integrated, unit_loads_type
+   public :: find_locations, entries_of, same_location, integrated, unit_loads_type
 
    integer, parameter :: most_side_nodes = 3   !! nodes of a quadratic side
 
@@ -37,57 +41,128 @@ module unit_loads
 
 contains
 
-   !> Integrates a unit load on each location.
+   !> Locations of all steps, ordered by kind, item and component.
+   pure function find_locations(steps) result(locations)
+      type(step_type), intent(in) :: steps(:)
+      type(load_type), allocatable :: locations(:)   !! each with the entries of its fullest step
+      type(load_type), allocatable :: loads(:), all(:)
+      integer, allocatable :: ranks(:), order(:)
+      logical, allocatable :: first(:)
+      integer :: s, i
+
+      allocate (all(0), ranks(0))
+      do s = 1, size(steps)
+         if (.not. allocated(steps(s)%loads)) cycle
+         loads = steps(s)%loads(location_order(steps(s)%loads))
+         all = [all, loads]
+         ranks = [ranks, entry_ranks(loads)]
+      end do
+      order = sort_order(ranks)
+      order = order(location_order(all(order)))
+      all = all(order)
+      ranks = ranks(order)
+      allocate (first(size(all)), source=.true.)
+      do i = 2, size(all)
+         first(i) = ranks(i) /= ranks(i - 1) .or. .not. same_location(all(i), all(i - 1))
+      end do
+      locations = pack(all, first)
+   end function find_locations
+
+   !> The order of loads by kind, item and component; loads on one location keep theirs.
+   pure function location_order(loads) result(order)
+      type(load_type), intent(in) :: loads(:)
+      integer :: order(size(loads))
+
+      order = sort_order(loads%component)
+      order = order(sort_order(loads(order)%item))
+      order = order(sort_order(loads(order)%kind))
+   end function location_order
+
+   !> Whether two loads or entries are of one location.
+   pure logical function same_location(one, other)
+      type(load_type), intent(in) :: one, other
+
+      same_location = one%kind == other%kind .and. one%item == other%item .and. &
+         one%component == other%component
+   end function same_location
+
+   !> How manieth load of its location each one is.
+   pure function entry_ranks(loads) result(ranks)
+      type(load_type), intent(in) :: loads(:)   ! in the order of their locations
+      integer :: ranks(size(loads))
+      integer :: i
+
+      ranks = 1
+      do i = 2, size(loads)
+         if (same_location(loads(i), loads(i - 1))) ranks(i) = ranks(i - 1) + 1
+      end do
+   end function entry_ranks
+
+   !> Entry that each load of a step takes.
+   pure function entries_of(locations, loads) result(entries)
+      type(load_type), intent(in) :: locations(:)    !! locations that hold all of the loads
+      type(load_type), intent(in) :: loads(:)        !! (m) loads of one step
+      integer :: entries(size(loads))                !! (m) each entry once
+      integer :: order(size(loads)), i, location
+
+      order = location_order(loads)
+      location = 0
+      do i = 1, size(loads)
+         location = location + 1
+         do while (.not. same_location(locations(location), loads(order(i))))
+            location = location + 1
+         end do
+         entries(order(i)) = location
+      end do
+   end function entries_of
+
+   !> Integrates a unit load on each location. Cards give coefficients and sinks of films for the same
+   !> sides, in one order.
    pure function integrated(model, locations) result(unit)
       type(model_type), intent(in) :: model
-      type(load_locations_type), intent(in) :: locations   !! what the loads act on
+      type(load_type), intent(in) :: locations(:)          !! what the loads act on
       type(unit_loads_type) :: unit
-
-      unit%films = film_sides(model, locations)
-      call integrate_columns(unit, model, locations)
-   end function integrated
-
-   !> The sides with films; cards give coefficients and sinks for the same sides, in one order.
-   pure function film_sides(model, locations) result(films)
-      type(model_type), intent(in) :: model
-      type(load_locations_type), intent(in) :: locations
-      type(film_side_type), allocatable :: films(:)
+      real(dp), allocatable :: x(:, :)
+      real(dp) :: thickness
       integer :: first, i, n
+      logical :: round
 
       n = count(locations%kind == load_film_coefficient)
       first = findloc(locations%kind, load_film_coefficient, dim=1)
-      allocate (films(n))
+      allocate (unit%films(n))
       do i = 1, n
-         associate (film => films(i), location => first + i - 1)
-            film%coefficient = location
-            film%sink = location + n
-            call film_side(model, locations%item(location), locations%component(location), &
-               film%nodes, film%mass)
+         associate (film => unit%films(i), location => locations(first + i - 1))
+            film%coefficient = first + i - 1
+            film%sink = film%coefficient + n
+            call find_domain(model, location%item, location%component, film%nodes, x, thickness, &
+               round)
+            film%mass = side_mass(x, thickness, round)
          end associate
       end do
-   end function film_sides
+      call integrate_columns(unit, model, locations)
+   end function integrated
 
    !> Nodal forces and heat, a column for each location.
    pure subroutine integrate_columns(unit, model, locations)
       type(unit_loads_type), intent(inout) :: unit
       type(model_type), intent(in) :: model
-      type(load_locations_type), intent(in) :: locations
+      type(load_type), intent(in) :: locations(:)
       type(triplet_list_type) :: forces, heat
       integer, allocatable :: nodes(:)
       real(dp), allocatable :: unit_force(:, :), rate(:)
       integer :: i
 
-      associate (n => size(locations%kind), most_nodes => size(model%mesh%element_nodes, 1))
+      associate (n => size(locations), most_nodes => size(model%mesh%element_nodes, 1))
          call forces%reserve(2*most_nodes*n)
          call heat%reserve(most_nodes*n)
          do i = 1, n
-            call unit_forces(model, locations%kind(i), locations%item(i), locations%component(i), &
-               nodes, unit_force)
-            call forces%add_block(2*nodes - 1, [i], transpose(unit_force(1:1, :)))
-            call forces%add_block(2*nodes, [i], transpose(unit_force(2:2, :)))
-            call unit_heat(model, locations%kind(i), locations%item(i), locations%component(i), &
-               nodes, rate)
-            call heat%add_block(nodes, [i], reshape(rate, [size(rate), 1]))
+            call integrate(model, locations(i), nodes, unit_force, rate)
+            if (allocated(unit_force)) then
+               call forces%add_block(2*nodes - 1, [i], transpose(unit_force(1:1, :)))
+               call forces%add_block(2*nodes, [i], transpose(unit_force(2:2, :)))
+            else if (allocated(rate)) then
+               call heat%add_block(nodes, [i], reshape(rate, [size(rate), 1]))
+            end if
          end do
          do i = 1, size(unit%films)
             associate (film => unit%films(i))
@@ -105,6 +180,88 @@ contains
          end associate
       end do
    end subroutine integrate_columns
+
+   !> Nodal forces or heat rates of a unit load, the others unallocated; those of films follow from
+   !> their sides.
+   pure subroutine integrate(model, location, nodes, forces, heat)
+      type(model_type), intent(in) :: model
+      type(load_type), intent(in) :: location
+      integer, allocatable, intent(out) :: nodes(:)      !! (n)
+      real(dp), allocatable, intent(out) :: forces(:, :) !! (2, n) [force per unit of the load]
+      real(dp), allocatable, intent(out) :: heat(:)      !! (n) [power per unit of the load]
+      real(dp), allocatable :: x(:, :), weights(:)
+      real(dp) :: thickness
+      logical :: round
+
+      associate (kind => location%kind, item => location%item, component => location%component)
+         select case (kind)
+         case (load_force, load_nodal_heat)
+            nodes = [item]
+            weights = [1.0_dp]
+         case (load_pressure)
+            call find_domain(model, item, component, nodes, x, thickness, round)
+            forces = side_pressure(x, thickness, round)
+         case (load_face_heat, load_traction)
+            call find_domain(model, item, merge(component, (component + 1)/2, &
+               kind == load_face_heat), nodes, x, thickness, round)
+            weights = side_weights(x, thickness, round)
+         case (load_body_force, load_gravity, load_body_heat)
+            call find_domain(model, item, 0, nodes, x, thickness, round)
+            weights = body_weights(model%mesh%element_kind(item), x, thickness, round)
+         case (load_centrifugal)
+            call find_domain(model, item, 0, nodes, x, thickness, round)
+            forces = turning_forces(body_moments(model%mesh%element_kind(item), x, thickness, &
+               round), component)
+         end select
+         select case (kind)
+         case (load_nodal_heat, load_face_heat, load_body_heat)
+            heat = weights
+         case (load_force, load_traction, load_body_force, load_gravity)
+            allocate (forces(2, size(nodes)), source=0.0_dp)
+            forces(2 - mod(component, 2), :) = weights
+         end select
+         if (kind == load_gravity .or. kind == load_centrifugal) forces = model%materials( &
+            model%sections(model%mesh%element_section(item))%material)%density*forces
+      end associate
+   end subroutine integrate
+
+   !> Nodal forces of one component of load_centrifugal, by the density.
+   pure function turning_forces(moments, component) result(forces)
+      real(dp), intent(in) :: moments(:, :)                !! (3, n) as from body_moments
+      integer, intent(in) :: component
+      real(dp) :: forces(2, size(moments, 2))
+
+      forces = 0.0_dp
+      select case (component)
+      case (1, 2)
+         forces(component, :) = moments(component + 1, :)
+      case (3, 4)
+         forces(component - 2, :) = moments(1, :)
+      case default
+         forces(1, :) = moments(2, :)
+      end select
+   end function turning_forces
+
+   !> What an integral over a side of an element, or over all of it, needs.
+   pure subroutine find_domain(model, element, side, nodes, x, thickness, round)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: element, side                 !! side 0 for the whole element
+      integer, allocatable, intent(out) :: nodes(:)        !! (n)
+      real(dp), allocatable, intent(out) :: x(:, :)        !! (2, n) coordinates [length]
+      real(dp), intent(out) :: thickness                   !! [length]
+      logical, intent(out) :: round                        !! whether x is a radius
+
+      associate (mesh => model%mesh)
+         if (side > 0) then
+            nodes = mesh%element_nodes(side_nodes(mesh%element_kind(element), side), element)
+         else
+            nodes = mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element)
+         end if
+         x = mesh%coordinates(:, nodes)
+         thickness = model%sections(mesh%element_section(element))%thickness
+         round = mesh%element_plane(element) == axisymmetric
+      end associate
+   end subroutine find_domain
 
    !> Values by which the columns of heat count: a film by its coefficient times its sink.
    pure function with_films(self, value) result(strength)

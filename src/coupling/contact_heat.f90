@@ -1,15 +1,32 @@
 !> L of section 2: from the conductance to the temperature jumps, eq. (3.4) on the tail, and how the
 !> jumps follow the conductance.
+!>
+!> Where laws vary with the temperatures of the faces, the conductances follow them, omega = W(z,
+!> T(omega)): z are the coordinates of the contact points on the graphs of their laws
+!> (conductance_graph), T the temperatures that (3.4) gives with the conductances. Newton's method
+!> in log omega, in which radiation and gases are nearly straight, has the derivative
+!>
+!>    dW/domega = W_T dT/domega + W_d dd/domega,   T the means, d the jumps of the faces,
+!>
+!> at constant z. It is a part of the derivative of the contact operator too.
 module contact_heat
+   use conductance_graph, only: conductance_graph_type
+   use conductance_laws, only: conductance
+   use dense, only: lu_type, product_of, tail_flops
+   use errors, only: error_type, set_error, status_no_convergence
+   use finite_values, only: check_finite
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
-   use tail_factors, only: tail_flops
+   use temperature_laws, only: temperature_derivatives
+   use text, only: to_text
    use thermal_matrix, only: heat_across
    implicit none
    private
-   public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega
+   public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega, &
+      take_temperatures, settle_conductance, at_own_temperatures, derivative_by_temperature, &
+      changes_by_temperature
 
    !> How the unknowns of the tail follow the conductance of each contact point that carries heat.
    type :: jump_derivatives_type
@@ -17,6 +34,12 @@ module contact_heat
       real(dp), allocatable :: of_tail(:, :)   !! (tail, n)
       real(dp), allocatable :: heat(:)         !! (n) load of the tail per omega
    end type jump_derivatives_type
+
+   integer, parameter :: most_steps = 100            !! solutions of (3.4)
+   real(dp), parameter :: longest_step = 2.0_dp      !! of any log omega
+   real(dp), parameter :: rounding = 1.0e-13_dp      !! relative change of omega that is none
+   real(dp), parameter :: converged = 1.0e-10_dp     !! the same, where it falls no more
+   real(dp), parameter :: shortest = 1.0e-3_dp       !! part of a step below which none is tried
 
 contains
 
@@ -143,5 +166,191 @@ contains
          workspace%cut%own
       where (bodies%jump_index == 0) heat = 0.0_dp
    end function heat_by_omega
+
+   !> Temperatures of the faces with given jumps, and the laws at these.
+   pure subroutine take_temperatures(bodies, heat, data, jump, workspace)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      real(dp), intent(in) :: jump(:)                            !! (m) T_xi - T_eta [temperature]
+      type(increment_workspace_type), intent(inout) :: workspace !! receives faces and laws
+      integer :: k
+
+      if (.not. allocated(workspace%faces)) allocate (workspace%faces(size(jump)))
+      associate (faces => workspace%faces)
+         faces%mean = data%welded_mean
+         faces%jump = jump
+         do k = 1, size(jump)
+            if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
+               heat%jump_mean(:, bodies%jump_index(k))*jump(k)
+         end do
+         workspace%pass%graph%law = bodies%laws%conductance_at(faces%mean, faces%jump)
+      end associate
+   end subroutine take_temperatures
+
+   !> Conductances and jumps with the coordinates of a pass: the solution of (3.4) whose
+   !> conductances follow the temperatures. The factors are left of these conductances.
+   !> Errors: no convergence, jumps that overflow.
+   subroutine settle_conductance(bodies, heat, data, workspace, jump, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      !> heat, coordinates and a guess of omega in; omega, temperatures, laws and factors out
+      type(increment_workspace_type), intent(inout) :: workspace
+      real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
+      type(error_type), allocatable, intent(out) :: error
+      real(dp), dimension(size(jump)) :: base, step, wanted
+      real(dp) :: last, part, residual
+      integer :: i
+
+      part = 1.0_dp
+      last = huge(last)
+      do i = 1, most_steps
+         call temperature_jumps(bodies, heat, data, workspace%pass%omega, workspace, jump)
+         call check_finite(jump, 'temperature jumps', status_no_convergence, error)
+         if (allocated(error)) return
+         call take_temperatures(bodies, heat, data, jump, workspace)
+         wanted = workspace%pass%graph%omega(workspace%pass%coordinate)
+         residual = maxval([0.0_dp, abs(log_ratio(wanted, workspace%pass%omega))])
+         if (residual <= rounding .or. (residual <= converged .and. residual >= 0.5_dp*last)) return
+         if (residual < last .or. part < shortest) then
+            step = newton_step(bodies, heat, data, workspace, jump, wanted)
+            base = workspace%pass%omega
+            last = residual
+            part = 1.0_dp
+         else
+            part = 0.5_dp*part
+         end if
+         workspace%pass%omega = merge(base*exp(part*step), wanted, base > 0.0_dp .and. &
+            wanted > 0.0_dp)
+      end do
+      call set_error(error, status_no_convergence, 'conductances and temperatures of the faces '// &
+         'do not converge together; last residual '//to_text(residual))
+   end subroutine settle_conductance
+
+   !> log(wanted/omega); 1 where only one of both carries no heat.
+   elemental function log_ratio(wanted, omega)
+      real(dp), intent(in) :: wanted, omega
+      real(dp) :: log_ratio
+
+      if (wanted > 0.0_dp .and. omega > 0.0_dp) then
+         log_ratio = log(wanted/omega)
+      else
+         log_ratio = merge(1.0_dp, 0.0_dp, max(wanted, omega) > 0.0_dp)
+      end if
+   end function log_ratio
+
+   !> Newton's step of log omega; towards the values wanted where there is none.
+   function newton_step(bodies, heat, data, workspace, jump, wanted) result(step)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(in) :: workspace
+      real(dp), intent(in) :: jump(:), wanted(:)
+      real(dp) :: step(size(wanted))
+      real(dp) :: matrix(size(wanted), size(wanted)), rest(size(wanted), 1)
+      type(jump_derivatives_type) :: by_omega
+      type(lu_type) :: lu
+      logical :: singular
+      integer :: k
+
+      call jump_derivatives(bodies, data, workspace, jump, by_omega)
+      associate (omega => workspace%pass%omega)
+         rest(:, 1) = log_ratio(wanted, omega)
+         matrix = -derivative_by_temperature(bodies, heat, workspace, workspace%pass%coordinate, &
+            by_omega)
+         do k = 1, size(omega)
+            matrix(:, k) = matrix(:, k)*omega(k)/max(wanted, tiny(1.0_dp))
+         end do
+         do k = 1, size(omega)
+            if (wanted(k) <= 0.0_dp .or. omega(k) <= 0.0_dp) matrix(k, :) = 0.0_dp
+            matrix(k, k) = matrix(k, k) + 1.0_dp
+         end do
+      end associate
+      call lu%factor(matrix, singular)
+      if (.not. singular) call lu%solve(rest)
+      step = min(max(rest(:, 1), -longest_step), longest_step)
+   end function newton_step
+
+   !> dW/domega of the solution that the factors belong to.
+   function derivative_by_temperature(bodies, heat, workspace, coordinate, by_omega) &
+      result(derivative)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
+      real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
+      type(jump_derivatives_type), intent(in) :: by_omega
+      real(dp) :: derivative(size(coordinate), size(coordinate))   !! (m, m)
+
+      derivative = 0.0_dp
+      derivative(:, by_omega%active) = changes_by_temperature(bodies, heat, workspace, coordinate, &
+         by_omega%of_tail)
+   end function derivative_by_temperature
+
+   !> dW with the unknowns of the thermal tail.
+   function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail) result(change)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
+      real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
+      real(dp), intent(in) :: of_tail(:, :)                    !! (thermal tail, n)
+      real(dp) :: change(size(coordinate), size(of_tail, 2))   !! (m, n)
+      real(dp) :: by_faces(2)
+      integer :: k
+
+      change = product_of(heat%jump_mean, of_tail)
+      do k = 1, size(coordinate)
+         by_faces = graph_derivatives(workspace%pass%graph(k), coordinate(k))
+         change(k, :) = by_faces(1)*change(k, :)
+         if (bodies%jump_index(k) > 0) change(k, :) = change(k, :) + &
+            by_faces(2)*of_tail(bodies%jump_index(k), :)
+      end do
+   contains
+      !> Derivatives of omega by mean and jump at a coordinate.
+      pure function graph_derivatives(graph, at) result(by)
+         type(conductance_graph_type), intent(in) :: graph
+         real(dp), intent(in) :: at
+         real(dp) :: by(2), weights(2), ends(2)
+
+         associate (law => bodies%laws%conductance(k), faces => workspace%faces(k))
+            if (graph%rests(at)) then
+               ends = [conductance(graph%law, .true., 0.0_dp, 0.0_dp), &
+                  conductance(graph%law, .false., 0.0_dp, 0.0_dp)]
+               weights = [-at, graph%width + at]/graph%width* &
+                  ((graph%omega(at) + graph%body)/(ends + graph%body))**2
+               by = weights(1)*temperature_derivatives(law, faces, .true., 0.0_dp, 0.0_dp) + &
+                  weights(2)*temperature_derivatives(law, faces, .false., 0.0_dp, 0.0_dp)
+            else
+               by = temperature_derivatives(law, faces, at < 0.0_dp, max(at, 0.0_dp), &
+                  -graph%modulus*(at + graph%width))
+            end if
+         end associate
+      end function graph_derivatives
+   end function changes_by_temperature
+
+   !> The derivative of the openings by the conductances that coordinates give, the temperatures
+   !> following: of D domega with domega = dW + (dW/domega) domega.
+   subroutine at_own_temperatures(by_temperature, derivative)
+      real(dp), intent(in) :: by_temperature(:, :)                   !! (m, m) dW/domega
+      real(dp), allocatable, intent(inout) :: derivative(:, :)       !! (m, m) D in
+      real(dp) :: matrix(size(derivative, 1), size(derivative, 1)), rows(size(matrix, 1), &
+         size(matrix, 1))
+      type(lu_type) :: lu
+      logical :: singular
+      integer :: k
+
+      matrix = -transpose(by_temperature)
+      do k = 1, size(matrix, 1)
+         matrix(k, k) = matrix(k, k) + 1.0_dp
+      end do
+      call lu%factor(matrix, singular)
+      if (singular) then
+         deallocate (derivative)
+         return
+      end if
+      rows = transpose(derivative)
+      call lu%solve(rows)
+      derivative = transpose(rows)
+   end subroutine at_own_temperatures
 
 end module contact_heat

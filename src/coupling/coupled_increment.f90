@@ -1,34 +1,39 @@
 !> An increment in which heat and mechanics are solved together: where its fixed point starts, and
-!> what is said of the solution.
+!> what the derivative U' of the contact operator of section 2 says of the solution omega =
+!> U(omega): the gain of the coupling, and whether the solution is one of several.
 module coupled_increment
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use arnoldi, only: arnoldi_type
-   use contact_heat, only: jump_derivatives, jump_derivatives_type
+   use closing_instant, only: make_tangent
+   use conductance_graph, only: conductance_graph_type
+   use contact_heat, only: changes_by_temperature, derivative_by_temperature, heat_by_omega, &
+      jump_derivatives, jump_derivatives_type
+   use contact_operator, only: make_graph, opening_changes, opening_derivative
+   use contact_workspace, only: contact_workspace_type
    use controls, only: method_picard, start_both, start_closed, start_given, start_open, &
       start_previous
-   use coupling_gains, only: find_gains, is_one_of_several
+   use dense, only: lu_type
    use errors, only: error_type
    use fixed_point, only: predicted_conductance
-   use gap_temperatures, only: derivative_by_temperature
    use heat_reduction, only: heat_reduction_type
-   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_data, only: contact_scales_type, increment_data_type, increment_workspace_type
    use increment_iteration, only: iterate
    use kinds, only: dp
-   use opening_derivatives, only: make_graph, opening_derivative
    use reduced_bodies, only: reduced_bodies_type
-   use resting_points, only: contact_scales
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use text, only: append
    implicit none
    private
-   public :: solve_coupled
+   public :: solve_coupled, find_gains, is_one_of_several
 
    real(dp), parameter :: end_conductance(2) = [1.0e-8_dp, 1.0e8_dp] !! of the starts open and
    !! closed, in the conductance of the bodies about the contact point
    real(dp), parameter :: different = 1.0e-3_dp !! in omega, relative: more than residuals explain
    real(dp), parameter :: near_turning_point = 0.1_dp !! distance of the largest real eigenvalue
    !! from 1
+   real(dp), parameter :: no_gain = 1.0e-6_dp      !! a largest real gain that is none beside 1
+   real(dp), parameter :: least_part = 1.0e-12_dp  !! of the largest factor, that counts in scales
 
 contains
 
@@ -56,6 +61,27 @@ contains
       if (allocated(error) .or. .not. data%fixed_point%finds_gain) return
       call judge(bodies, heat, data, next, data%fixed_point%method == method_picard, workspace)
    end subroutine solve_coupled
+
+   !> Largest values that are known at the start of an increment. Its load counts by the overlap
+   !> that it makes at a contact point alone.
+   pure function contact_scales(bodies, data) result(scales)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
+      type(contact_scales_type) :: scales                     !! largest values, length > 0
+      real(dp) :: stiffness
+      integer :: k
+
+      scales%force = maxval(data%previous%force)
+      scales%length = max(data%displacement_scale, maxval(abs(data%previous%gap)))
+      do k = 1, size(bodies%equilibrium%contact%normal)
+         associate (row => bodies%equilibrium%contact%normal(k))
+            stiffness = bodies%equilibrium%contact%alone(k)
+            if (stiffness > 0.0_dp) scales%length = max(scales%length, &
+               abs(data%welded_load(row))/stiffness)
+         end associate
+      end do
+      if (scales%length <= 0.0_dp) scales%length = 1.0_dp
+   end function contact_scales
 
    !> omega*^0 of a start.
    function starting_conductance(bodies, heat, kind, data) result(omega)
@@ -223,5 +249,94 @@ contains
          is_unstable = is_one_of_several(graph, opening, derivative, next%resting, by_temperature)
       end associate
    end function is_unstable
+
+   !> The gains of a solution: eigenvalues of U', of which only the outer ones are found. The
+   !> conductance of a contact point that rests is no variable of U'.
+   !>
+   !> Laws and jumps make rows and columns of U' differ by orders of magnitude. The method works on
+   !> a similar matrix without that, which is nearly normal: its eigenvalues are as sharp as their
+   !> residuals.
+   subroutine find_gains(bodies, heat, data, workspace, solution, gains)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
+      type(solution_state_type), intent(in) :: solution        !! that the last pass found
+      type(arnoldi_type), intent(out) :: gains                 !! none found where U' does not exist
+      type(contact_workspace_type) :: tangent
+      real(dp), dimension(size(solution%jump)) :: coordinate, rate, scale, slope
+      real(dp), allocatable :: change(:, :), of_tail(:, :)
+      integer, allocatable :: free(:)
+      integer :: k
+      logical :: sound
+
+      free = pack([(k, k=1, size(rate))], .not. solution%resting)
+      if (size(free) == 0) return
+      call make_tangent(bodies%equilibrium%contact, workspace%contact, solution%contact, tangent, &
+         sound)
+      if (.not. sound) return
+      associate (graph => workspace%pass%graph, index => bodies%jump_index)
+         coordinate = graph%coordinate_of_opening(workspace%pass%opening)
+         slope = graph%derivative(coordinate)
+         rate = heat_by_omega(bodies, data, workspace, solution%jump)
+         scale = sqrt(of_largest(slope)/of_largest(rate))
+         allocate (of_tail(bodies%thermal%map%tail, 1), change(size(rate), 1))
+         call gains%begin(size(free), no_gain)
+         do while (gains%wants_product)
+            of_tail = 0.0_dp
+            do k = 1, size(free)
+               if (index(free(k)) > 0) of_tail(index(free(k)), 1) = rate(free(k))*scale(free(k))* &
+                  gains%vector(k)
+            end do
+            call workspace%tail%solve_columns(of_tail)
+            call opening_changes(bodies, heat, graph, tangent, solution%contact, of_tail, change)
+            change(:, 1) = slope*change(:, 1)
+            if (bodies%points%vary_with_temperature()) change = change + &
+               changes_by_temperature(bodies, heat, workspace, coordinate, of_tail)
+            call gains%take(change(free, 1)/scale(free))
+         end do
+      end associate
+   end subroutine find_gains
+
+   !> Moduli in the largest one, none of them 0.
+   pure function of_largest(values) result(part)
+      real(dp), intent(in) :: values(:)
+      real(dp) :: part(size(values))
+
+      part = max(abs(values)/max(maxval(abs(values)), tiny(1.0_dp)), least_part)
+   end function of_largest
+
+   !> Whether det(I - U') < 0. The degree of I - U over all solutions is 1, as U is bounded: then
+   !> there are at least two others. The conductance of a contact point that rests is that of a law
+   !> which is all but vertical there.
+   pure logical function is_one_of_several(graph, opening, derivative, resting, by_temperature)
+      type(conductance_graph_type), intent(in) :: graph(:)  !! (m) graphs of the conductance
+      real(dp), intent(in) :: opening(:)                    !! (m) openings [length]
+      !> (m, m) derivative of the openings by the conductances
+      real(dp), intent(in) :: derivative(:, :)
+      logical, intent(in) :: resting(:)                     !! (m) contact points that rest
+      !> (m, m) derivative of the conductances by each other at constant openings, by way of the
+      !> temperatures; absent where no law varies with these
+      real(dp), intent(in), optional :: by_temperature(:, :)
+      real(dp) :: matrix(size(opening), size(opening))
+      type(lu_type) :: lu
+      logical :: singular
+      integer :: k
+
+      do k = 1, size(opening)
+         if (resting(k)) then
+            matrix(k, :) = -sign(1.0_dp, graph(k)%derivative(-0.5_dp*graph(k)%width))* &
+               derivative(k, :)
+         else
+            matrix(k, :) = -graph(k)%derivative(graph(k)%coordinate_of_opening(opening(k)))* &
+               derivative(k, :)
+            if (present(by_temperature)) matrix(k, :) = matrix(k, :) - by_temperature(k, :)
+            matrix(k, k) = matrix(k, k) + 1.0_dp
+         end if
+      end do
+      call lu%factor(matrix, singular)
+      is_one_of_several = .not. singular
+      if (is_one_of_several) is_one_of_several = lu%negative_determinant()
+   end function is_one_of_several
 
 end module coupled_increment

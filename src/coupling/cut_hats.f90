@@ -11,7 +11,6 @@
 !> so that the heat enters the bodies where it crosses, by the same sum. On the other side of a
 !> point omega is that of the point itself.
 module cut_hats
-   use balances, only: heat_residual
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
    use contact_states, only: contact_open, contact_slip
@@ -288,7 +287,8 @@ contains
 
       uncut = rates%crossing
       if (allocated(cut%point)) uncut(cut%point) = 0.0_dp
-      heat = heat_residual(rates%conducted, rates%entering, bodies%points, uncut)
+      heat = rates%conducted - rates%entering
+      call bodies%points%difference%add_shares(uncut, heat)
       if (allocated(cut%point)) call cut%jump%add_shares(rates%crossing(cut%point), heat)
       call bodies%thermal%map%carry_over(heat)
    end function supplied_heat

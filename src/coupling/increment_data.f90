@@ -9,7 +9,7 @@ module increment_data
    use kinds, only: dp
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
-   use tail_factors, only: tail_factors_type
+   use dense, only: tail_factors_type
    use temperature_laws, only: face_temperatures_type
    use thermal_matrix, only: heat_equation_type
    implicit none

@@ -1,32 +1,44 @@
 !> The fixed-point iteration omega = U(omega) of an increment, section 4, from one start or another.
+!>
+!> Contact points may rest: gamma = p = 0 with a conductance between the values of a law that jumps
+!> there. Without them some increments have no solution, (1.8) asking for a law without a jump.
 module increment_iteration
-   use accelerators, only: make_accelerator
-   use contact_heat, only: jump_derivatives, jump_derivatives_type
-   use contact_operator, only: contact_operator_pass, residual_floor
-   use contact_states, only: closing_law_type, contact_state_type, contact_open
-   use controls, only: fixed_point_type, method_newton
+   use contact_heat, only: at_own_temperatures, derivative_by_temperature, jump_derivatives, &
+      jump_derivatives_type
+   use contact_operator, only: contact_operator_pass, opening_derivative, openings, residual_floor
+   use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type
+   use controls, only: fixed_point_type, method_anderson, method_newton, method_picard, &
+      method_zaitsev
    use cut_hats, only: cut_hats_at, cut_hats_type, find_cut_hats
    use errors, only: error_type, set_error, status_no_convergence
-   use fixed_point, only: accelerator_type, point_residual
-   use gap_temperatures, only: at_own_temperatures, derivative_by_temperature
+   use fixed_point, only: accelerator_type, anderson_type, pass_type, picard_type, point_residual, &
+      zaitsev_type
    use heat_reduction, only: heat_reduction_type
-   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_data, only: contact_scales_type, increment_data_type, increment_workspace_type
    use interruption, only: check_overdue
    use kinds, only: dp
-   use opening_derivatives, only: opening_derivative, openings
+   use newton, only: newton_type
    use reduced_bodies, only: reduced_bodies_type
-   use resting_points, only: find_residual, settle
-   use solution_report, only: solution_report_type, iteration_record_type
+   use solution_report, only: iteration_record_type, solution_report_type
    use solution_state, only: solution_state_type
    use text, only: append, counted, to_text
    implicit none
    private
-   public :: iterate
+   public :: iterate, make_accelerator
 
    integer, parameter :: most_turns = 4  !! openings and closings of a contact point whose law jumps
    integer, parameter :: on_path = 10     !! passes with a path, over those of the method itself
    real(dp), parameter :: no_strain = 1.0_dp  !! thermal strain that is none of the small ones
    integer, parameter :: most_away = 5    !! passes with larger ones from which no method returns
+   integer, parameter :: fewest_steps = 20   !! passes of Newton's method before another is tried
+
+   !> Part of the pressure that the overlap of a whole displacement would make, below which none
+   !> counts as the largest of an increment.
+   real(dp), parameter :: least_pressure = 1.0e-6_dp
+
+   !> Part of the largest length that a gap counts by: what is left of one is closed in the end, and
+   !> takes force.
+   real(dp), parameter :: least_gap = 1.0e-5_dp
 
 contains
 
@@ -303,5 +315,71 @@ contains
          next%omega = pass%omega
       end associate
    end subroutine take_step
+
+   !> The accelerator that the deck asks for.
+   subroutine make_accelerator(controls, points, accelerator)
+      type(fixed_point_type), intent(in) :: controls
+      integer, intent(in) :: points                                !! m, number of contact points
+      class(accelerator_type), allocatable, intent(out) :: accelerator    !! fresh memory
+
+      select case (controls%method)
+      case (method_picard)
+         allocate (picard_type :: accelerator)
+         allocate (accelerator%g(points), source=1.0_dp)
+      case (method_zaitsev)
+         allocate (accelerator, source=zaitsev_type(constant_iterations=controls%constant))
+         allocate (accelerator%g(points), source=controls%g)
+      case (method_anderson)
+         allocate (anderson_type :: accelerator)
+         allocate (accelerator%g(points), source=controls%g)
+      case default
+         allocate (accelerator, source=newton_type(retreats=.true., &
+            most_steps=max(controls%max_iterations, fewest_steps)))
+         allocate (accelerator%g(points), source=1.0_dp)
+      end select
+   end subroutine make_accelerator
+
+   !> Largest residual of a pass over the contact points that carry heat, which those of weight 0 do
+   !> not, and the contact points that rest in it: a conductance between the two
+   !> values of its law needs no more of a contact point than that neither gap nor pressure is left.
+   pure subroutine find_residual(scales, weight, pass, residual, resting)
+      type(contact_scales_type), intent(in) :: scales       !! largest values of the increment
+      real(dp), intent(in) :: weight(:)                     !! (m) tributary areas [length^2]
+      type(pass_type), intent(in) :: pass
+      real(dp), intent(out) :: residual                     !! relative
+      logical, intent(out) :: resting(:)                    !! (m) contact points that rest
+      real(dp), dimension(size(weight)) :: by_law, by_rest, pressure
+      real(dp) :: largest
+
+      by_law = 0.0_dp
+      where (weight > 0.0_dp) by_law = point_residual(pass%omega, pass%image)
+      resting = pass%graph%may_rest(pass%omega)
+      if (any(resting)) then
+         associate (modulus => pass%graph%modulus)
+            pressure = modulus*max(-pass%opening, 0.0_dp)
+            largest = max(maxval(pressure), scales%force/max(maxval(weight), tiny(1.0_dp)))
+            by_rest = max(pass%opening, 0.0_dp)/max(least_gap*scales%length, largest/modulus) + &
+               pressure/max(largest, least_pressure*modulus*scales%length)
+         end associate
+         resting = resting .and. by_rest < by_law
+         where (resting) by_law = by_rest
+      end if
+      residual = maxval(by_law)
+   end subroutine find_residual
+
+   !> Leaves nothing of gap, pressure and shear at contact points that rest; they count as closed.
+   pure subroutine settle(resting, state)
+      logical, intent(in) :: resting(:)                  !! (m) contact points that rest
+      type(contact_state_type), intent(inout) :: state
+
+      where (resting .and. state%contact_state == contact_open) state%reference = state%tangential
+      where (resting)
+         state%contact_state = contact_slip
+         state%direction = 0
+         state%gap = 0.0_dp
+         state%force = 0.0_dp
+         state%shear_force = 0.0_dp
+      end where
+   end subroutine settle
 
 end module increment_iteration

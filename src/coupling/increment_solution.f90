@@ -1,27 +1,26 @@
-!> One increment on the contact points: load, fixed-point iteration of section 4, and the fields
-!> behind it.
+!> One increment on the contact points: load, fixed-point iteration of section 4, the fields behind
+!> it, and from where slip counts at its end.
 module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
-   use contact_heat, only: temperature_jumps
-   use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, &
-      law_pressure, unstrained_forces
-   use contact_states, only: contact_state_type, contact_open, contact_slip
+   use contact_heat, only: settle_conductance, temperature_jumps
+   use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, law_pressure, &
+      unstrained_forces
+   use contact_states, only: contact_open, contact_slip, contact_state_type
+   use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
-   use cut_hats, only: cut_hats_type, joined_conductance
+   use cut_hats, only: joined_conductance
    use errors, only: error_type, set_error, status_no_convergence
-   use field_problem, only: field_load_type
    use finite_values, only: check_finite
    use fixed_point, only: pass_type
-   use friction_memory, only: remember_slip
-   use gap_temperatures, only: settle_conductance
    use heat_reduction, only: heat_reduction_type
+   use held_points, only: tangential_positions
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use loads, only: loads_type
    use reduced_bodies, only: reduced_bodies_type
-   use solution_report, only: solution_report_type, iteration_record_type
+   use solution_report, only: iteration_record_type, solution_report_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: is_below_zero, law_jumps
@@ -57,7 +56,16 @@ contains
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
       if (solves_heat(data%analysis)) then
-         call load_heat(bodies, heat, loads, data, workspace, next)
+         associate (given => loads%temperature%value)
+            workspace%heat = heat%load_of(bodies%thermal, &
+               data%equation%history(bodies%thermal%matrix), given)
+            call heat%condense_load(bodies%thermal, workspace%heat, workspace%known(of_heat), &
+               next%temperature)
+            data%held_jump = bodies%points%jumps(given)
+         end associate
+         where (bodies%jump_index > 0) data%held_jump = 0.0_dp
+         if (bodies%points%vary_with_temperature()) data%welded_mean = &
+            bodies%points%means(next%temperature)
          call check_finite([workspace%heat%condensed, next%temperature], &
             'heat and temperatures', status_no_convergence, error)
          if (allocated(error)) return
@@ -83,9 +91,14 @@ contains
       type(increment_workspace_type), intent(inout) :: workspace
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
+      real(dp) :: jump(size(next%jump))
 
       next%contact%reference = data%before%contact%tangential
-      if (.not. solves_heat(data%analysis)) call give_temperatures(bodies, loads, data%before, next)
+      if (.not. solves_heat(data%analysis)) then
+         call loads%set_temperatures(next%temperature)
+         jump = bodies%points%jumps(next%temperature)
+         where (abs(jump - bodies%points%jumps(data%before%temperature)) > 0.0_dp) next%jump = jump
+      end if
       call load_mechanics(bodies, loads, next, workspace, data%welded_load)
       call check_finite([workspace%force%rhs(:, 1), data%welded_load], 'forces', &
          status_no_convergence, error)
@@ -97,10 +110,13 @@ contains
       else
          call solve_coupled(bodies, heat, data, workspace, next, error)
       end if
-      if (.not. allocated(error)) call settle_idle_points(bodies, workspace%contact%idle, next)
       next%has_mechanics = .true.
-      if (bodies%is_coupled .and. .not. allocated(error)) call check_absolute_zero(bodies, &
-         workspace, error)
+      if (allocated(error)) return
+      ! Idle contact points count as open without a gap; where their law jumps they rest. For the
+      ! next increment they are closed still: the body stays where it touches.
+      next%idle = workspace%contact%idle
+      next%resting = next%resting .or. (next%idle .and. law_jumps(bodies%laws%conductance))
+      if (bodies%is_coupled) call check_absolute_zero(bodies, workspace, error)
    end subroutine solve_equilibrium
 
    !> The start of an increment under the laws of its step: contact points that the step removes or
@@ -155,17 +171,6 @@ contains
       end associate
    end subroutine adapt_contact
 
-   !> Idle contact points count as open without a gap; where their law jumps they rest. For the next
-   !> increment they are closed still: the body stays where it touches.
-   pure subroutine settle_idle_points(bodies, idle, next)
-      type(reduced_bodies_type), intent(in) :: bodies
-      logical, intent(in) :: idle(:)
-      type(solution_state_type), intent(inout) :: next
-
-      next%idle = idle
-      next%resting = next%resting .or. (next%idle .and. law_jumps(bodies%laws%conductance))
-   end subroutine settle_idle_points
-
    !> Contact of an increment whose temperatures do not depend on it.
    subroutine solve_mechanics(bodies, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -186,21 +191,6 @@ contains
       workspace%record%coupling_gain_max = 0.0_dp
       workspace%record%iterations = [only_pass(workspace%record, data%previous, next%contact)]
    end subroutine solve_mechanics
-
-   !> Temperatures that a step without heat gives, and the jumps between them.
-   subroutine give_temperatures(bodies, loads, previous, next)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(in) :: previous
-      type(solution_state_type), intent(inout) :: next
-
-      real(dp), dimension(size(next%jump)) :: jump, before
-
-      call loads%set_temperatures(next%temperature)
-      jump = bodies%points%jumps(next%temperature)
-      before = bodies%points%jumps(previous%temperature)
-      where (abs(jump - before) > 0.0_dp) next%jump = jump
-   end subroutine give_temperatures
 
    !> Jumps and temperatures of an increment whose mechanics they do not depend on, for want of it
    !> or because the conductance is constant: it is that of the contact state that stays, at both
@@ -303,28 +293,7 @@ contains
          pairs_changed=count(after%contact_state /= before%contact_state))
    end function only_pass
 
-   !> Thermal load of the increment, and the temperatures that it gives with all jumps zero.
-   subroutine load_heat(bodies, heat, loads, data, workspace, next)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(in) :: loads
-      type(increment_data_type), intent(inout) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
-      type(solution_state_type), intent(inout) :: next
-
-      associate (given => loads%temperature%value)
-         workspace%heat = heat%load_of(bodies%thermal, &
-            data%equation%history(bodies%thermal%matrix), given)
-         call heat%condense_load(bodies%thermal, workspace%heat, workspace%known(of_heat), &
-            next%temperature)
-         data%held_jump = bodies%points%jumps(given)
-         where (bodies%jump_index > 0) data%held_jump = 0.0_dp
-         if (bodies%points%vary_with_temperature()) data%welded_mean = &
-            bodies%points%means(next%temperature)
-      end associate
-   end subroutine load_heat
-
-   !> Mechanical load of the increment, with the temperatures of load_heat or those that stay; and
+   !> Mechanical load of the increment, with the temperatures of welded contacts or those that stay; and
    !> what it makes on the contact without jumps.
    subroutine load_mechanics(bodies, loads, next, workspace, welded_load)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -398,5 +367,54 @@ contains
          temperature = temperature + of_jumps(:, 1)
       end associate
    end subroutine add_jumps
+
+   !> Slip counts from the instant of closing. Tangential positions that the contact system does not
+   !> carry, of contact points that are frictionless or held, are taken from the recovered
+   !> displacements, and such a contact point closes where it is at that instant on the straight
+   !> line between its ends.
+   pure subroutine remember_slip(bodies, solved, previous, next)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(contact_workspace_type), intent(in) :: solved      !! factors of the solution
+      type(solution_state_type), intent(in) :: previous       !! state at the start
+      type(solution_state_type), intent(inout) :: next        !! state at the end, with its fields
+      real(dp), dimension(size(next%contact%gap)) :: before, now
+      integer :: k
+
+      before = tangential_positions(bodies%points, bodies%held_direction, previous%displacement)
+      now = tangential_positions(bodies%points, bodies%held_direction, next%displacement)
+      associate (contact => next%contact)
+         do k = 1, size(now)
+            if (bodies%equilibrium%contact%tangent(k) == 0) then
+               contact%tangential(k) = now(k)
+               contact%reference(k) = before(k) + &
+                  closing_fraction(bodies%equilibrium%contact, solved, k, previous%contact%gap(k), &
+                  contact%force(k))*(now(k) - before(k))
+            end if
+            if (contact%contact_state(k) == contact_open .or. next%idle(k)) then
+               contact%slip_origin(k) = contact%tangential(k)
+            else if (previous%contact%contact_state(k) == contact_open) then
+               contact%slip_origin(k) = contact%reference(k)
+            end if
+         end do
+      end associate
+   end subroutine remember_slip
+
+   !> Instant at which a contact point without a tangential unknown closed, as a fraction of the
+   !> increment: relieved of its force alone it would overlap by force/stiffness. One that carries
+   !> no force, as at rest, closes at the end.
+   pure function closing_fraction(system, solved, k, gap, force) result(fraction)
+      type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(in) :: solved
+      integer, intent(in) :: k
+      real(dp), intent(in) :: gap, force
+      real(dp) :: fraction
+      real(dp) :: stiffness(1, 1)
+
+      fraction = merge(1.0_dp, 0.0_dp, gap > 0.0_dp)
+      if (gap <= 0.0_dp .or. force <= 0.0_dp) return
+      ! Zero where the contact point alone holds a body, but for rounding: it then closes at once.
+      stiffness = max(solved%stiffness(system, [system%normal(k)]), 0.0_dp)
+      fraction = gap*stiffness(1, 1)/(gap*stiffness(1, 1) + force)
+   end function closing_fraction
 
 end module increment_solution

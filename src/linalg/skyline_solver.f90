@@ -1,5 +1,5 @@
 !> Direct solver on a skyline in profile order: Crout's U^T D U of the leading block, and its Schur
-!> complement on the last columns, the tail, which tail_factors factors again and again.
+!> complement on the last columns, the tail, which dense factors again and again.
 !>
 !> Columns are stored from their first non-zero row on, in panels that share it (column_panels),
 !> those of the tail to the last leading row.

@@ -21,12 +21,11 @@ module deck_preparation
    use model, only: model_type
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use all_contact_points, only: all_contact_points_type
-   use held_points, only: normal_supports, over_constrained
+   use held_points, only: first_redundant, normal_supports, over_constrained
    use progress, only: progress_type
-   use redundant_points, only: first_redundant
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
-   use support_names, only: join_name, support_name
+   use equation_checks, only: join_name, support_name
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
    use variations, only: variation_type, vary

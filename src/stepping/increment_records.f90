@@ -1,44 +1,40 @@
 !> The record of a solved increment, made from its state, which it leaves as it is.
 module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use balances, only: contact_violation, force_residual, imbalance, scales_type
+   use balances, only: balance_forces, balance_heat
    use conductance_laws, only: conductance, conductance_law_type
-   use contact_operator, only: kept_contact, unstrained_forces
+   use contact_operator, only: kept_contact
    use contact_points, only: contact_points_type
-   use contact_states, only: contact_state_type, contact_open, contact_slip, contact_stick
+   use contact_states, only: contact_open, contact_slip, contact_state_type, contact_stick
+   use contact_tractions, only: in_contact, pressures, shears
    use discretisation_errors, only: recovery_type
-   use due_output, only: needs_recovery
-   use element_kinds, only: axisymmetric
-   use element_points, only: points_of_elements
-   use heat_balance, only: balance_heat
-   use increment_data, only: increment_data_type
+   use due_output, only: needs_recovery, table_is_due
    use friction_laws, only: friction_law_type
+   use increment_data, only: increment_data_type
    use kinds, only: dp
    use loads, only: loads_type
-   use mesh, only: extent_of
    use model, only: model_type
-   use contact_tractions, only: in_contact, pressures, shears
-   use records, only: contact_record_type, increment_record_type
+   use orientations, only: material_axes
+   use point_fields, only: integration_rules, most => most_field_points, point_fields_type
+   use point_properties, only: along_axes
+   use print_requests, only: print_request_type
+   use quadrature, only: point_count
+   use records, only: contact_record_type, element_points_record_type, increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: face_temperatures_type, law_at
    use text, only: to_text
    use thermal_matrix, only: heat_across
-   use zone_edges, only: contact_edges, contact_profile, contact_profile_type, stick_edges
    use transforms, only: on_nodes
+   use zone_edges, only: contact_edges, contact_profile, contact_profile_type, stick_edges
    implicit none
    private
    public :: complete_record, measure_contact
 
-   !> Part of K u or of the gaps below which a force or a displacement is no scale to measure by:
-   !> where nothing is loaded only rounding is left of them.
-   real(dp), parameter :: noise = 1.0e-6_dp
    !> Part of the contact forces that their solution loses by rounding: the spacing of numbers times
    !> the condition of the contact system, some 1e4. A sum of shear forces below it is none.
    real(dp), parameter :: no_shear = 1.0e-12_dp
-   !> Displacement, in the extent of the model, below which it is no scale.
-   real(dp), parameter :: least_strain = 1.0e-12_dp
 
 contains
 
@@ -188,65 +184,78 @@ contains
       call stick_edges(profile, friction, record%edges_stick, record%edge_stick)
    end subroutine measure_contact
 
-   !> Displacement below which none is a scale to measure by. Where bodies are at their initial
-   !> temperature, the rounding of that temperature strains them.
-   pure real(dp) function least_displacement(model, temperature)
+   !> One record for each *EL PRINT of a step; empty where its table is not due.
+   pure function points_of_elements(model, step, state, increment) result(records)
       type(model_type), intent(in) :: model
-      real(dp), intent(in) :: temperature(:)
-      real(dp) :: expansion
+      type(step_type), intent(in) :: step
+      type(solution_state_type), intent(in) :: state            !! state at the end
+      type(increment_record_type), intent(in) :: increment      !! position of the increment
+      type(element_points_record_type), allocatable :: records(:)
       integer :: i
 
-      expansion = 0.0_dp
-      do i = 1, size(model%materials)
-         expansion = max(expansion, maxval(abs(model%materials(i)%expansion)))
+      allocate (records(size(step%element_prints)))
+      do i = 1, size(records)
+         if (.not. table_is_due(step%element_prints(i)%frequency, increment)) cycle
+         records(i) = points_of_set(model, step%element_prints(i), solves_heat(step%analysis), &
+            state)
       end do
-      least_displacement = extent_of(model%mesh%coordinates)*max(least_strain, noise*expansion* &
-         max(maxval(abs(temperature)), maxval(abs(model%initial_temperature))))
-   end function least_displacement
+   end function points_of_elements
 
-   !> Reactions, force balance, and the contact conditions on the recovered displacements.
-   pure subroutine balance_forces(bodies, model, loads, next, record)
-      type(reduced_bodies_type), intent(in) :: bodies
+   !> The points of the elements of a set. Stress belongs to the temperatures with which equilibrium
+   !> was solved last.
+   pure function points_of_set(model, request, with_heat, state) result(record)
       type(model_type), intent(in) :: model
-      type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(in) :: next
-      type(increment_record_type), intent(inout) :: record
-      real(dp), allocatable :: internal(:), residual(:)
-      type(friction_law_type) :: friction(size(bodies%points%slave))
-      type(scales_type) :: scales
-      real(dp) :: least, positions(2, size(bodies%points%slave)), stiffness
-      logical :: along_x
+      type(print_request_type), intent(in) :: request
+      logical, intent(in) :: with_heat
+      type(solution_state_type), intent(in) :: state
+      type(element_points_record_type) :: record
+      type(point_fields_type) :: fields
+      real(dp) :: stress(most, 4), flux(most, 2)
+      integer :: first, g, i, last, n
 
-      least = least_displacement(model, next%temperature)
-      scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp), &
-         bodies%equilibrium%contact%least_length/noise)
-      if (size(bodies%points%initial_gap) > 0) then
-         scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
-      end if
-      internal = bodies%mechanical%matrix%multiply(next%displacement) - &
-         unstrained_forces(bodies, next%temperature - model%initial_temperature)
-      stiffness = bodies%mechanical%largest_entry
-      residual = force_residual(internal, next%force_load, bodies%points, next%contact)
-      call bodies%mechanical%map%carry_over(residual)
-      associate (held => loads%displacement%active)
-         scales%force = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
-            sum(next%contact%force), noise*stiffness*scales%length, &
-            least*stiffness, tiny(1.0_dp))
-         along_x = all(model%mesh%element_plane /= axisymmetric)
-         record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
-            [along_x, .true.], scales%force)
-         positions = bodies%points%relative(next%displacement)
-         positions = reshape([loads%present_gaps(bodies%points) - sum(positions* &
-            bodies%points%normal, dim=1), sum(positions*bodies%points%tangent, dim=1)], &
-            shape(positions), order=[2, 1])
-         where (bodies%laws%removed) positions(1, :) = 0.0_dp
-         friction = bodies%laws%nodal_friction
-         where (bodies%equilibrium%contact%tangent == 0) friction%coefficient = 0.0_dp
-         record%contact_violation = contact_violation(positions, residual, held, bodies%points, &
-            next%contact, friction, scales)
-         record%fields%reaction = on_nodes(bodies%points%partners, reshape(merge(residual, &
-            0.0_dp, held), [2, size(next%temperature)]))
+      call fields%prepare(model%mesh, model%sections, model%materials, model%orientations, &
+         integration_rules())
+      associate (mesh => model%mesh, members => model%mesh%element_sets(request%set)%members)
+         n = sum(point_count(mesh%element_kind(members)))
+         allocate (record%element(n), record%point(n), record%position(2, n))
+         if (state%has_mechanics) allocate (record%stress(4, n))
+         if (with_heat) allocate (record%heat_flux(2, n))
+         last = 0
+         do i = 1, size(members)
+            first = last + 1
+            last = last + point_count(mesh%element_kind(members(i)))
+            record%element(first:last) = members(i)
+            record%point(first:last) = [(g, g=1, last - first + 1)]
+            record%position(:, first:last) = fields%positions(mesh, members(i))
+            if (state%has_mechanics) then
+               call fields%stress(mesh, members(i), reshape(state%displacement, &
+                  [2, size(state%temperature)]), state%stress_temperature - &
+                  model%initial_temperature, stress)
+               record%stress(:, first:last) = transpose(stress(:last - first + 1, :))
+            end if
+            if (with_heat) then
+               call fields%heat_flux(mesh, members(i), state%temperature, flux)
+               record%heat_flux(:, first:last) = transpose(flux(:last - first + 1, :))
+            end if
+         end do
       end associate
-   end subroutine balance_forces
+      if (request%local_axes) call turn(model, record)
+   end function points_of_set
+
+   !> Replaces the components along x and y by those along the axes of the material.
+   pure subroutine turn(model, record)
+      type(model_type), intent(in) :: model
+      type(element_points_record_type), intent(inout) :: record
+      real(dp) :: axes(2, 2)
+      integer :: k
+
+      do k = 1, size(record%element)
+         axes = material_axes(model%orientations, model%sections( &
+            model%mesh%element_section(record%element(k)))%orientation, record%position(:, k))
+         if (allocated(record%stress)) record%stress(:, k) = along_axes(axes, record%stress(:, k))
+         if (allocated(record%heat_flux)) record%heat_flux(:, k) = &
+            matmul(record%heat_flux(:, k), axes)
+      end do
+   end subroutine turn
 
 end module increment_records

@@ -1,17 +1,19 @@
-!> Load stepping: one call of advance solves one increment.
+!> Load stepping: the state before the first increment, and increments, of which one call of advance
+!> solves one.
 module increments
    use clock, only: wall_seconds
+   use contact_operator, only: kept_contact, law_conductance
+   use contact_states, only: contact_open
    use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: solved_loads_type
-   use heat_balance, only: sound_imbalance
+   use balances, only: sound_imbalance
    use heat_reduction, only: heat_reduction_type
    use increment_checks, only: check_heat, check_record, warn_of_choices
    use increment_control, only: increment_control_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_records, only: complete_record
    use increment_solution, only: begin_increment, recover_fields, solve_points
-   use initial_state, only: make_initial_state
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use loads, only: loads_type
@@ -28,7 +30,7 @@ module increments
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
-   public :: simulation_type, accept_increment
+   public :: simulation_type, accept_increment, make_initial_state
 
    real(dp), parameter :: doubtful = 1.0e-9_dp   !! pivot over its diagonal entry; 1e-6 is left
 
@@ -337,5 +339,30 @@ contains
       call self%bodies%release()
       call self%heat%release()
    end subroutine release
+
+   !> State before the first increment.
+   pure function make_initial_state(model, bodies) result(state)
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies     !! the bodies, matched
+      type(solution_state_type) :: state                          !! see above
+
+      associate (m => size(bodies%points%slave), n => size(model%mesh%node_number), &
+         contact => state%contact)
+         allocate (contact%contact_state(m), source=contact_open)
+         allocate (contact%direction(m), source=0)
+         allocate (contact%reference(m), contact%tangential(m), contact%slip_origin(m), &
+            contact%force(m), contact%shear_force(m), source=0.0_dp)
+         contact%gap = bodies%points%initial_gap
+         state%smallest_gap = contact%gap
+         allocate (state%resting(m), state%idle(m), source=.false.)
+         state%jump = bodies%points%jumps(model%initial_temperature)
+         state%omega = law_conductance(bodies, model%initial_temperature, state%jump, &
+            kept_contact(contact, has_mechanics=.false.))
+         state%omega_before = state%omega
+         state%carrying = state%omega
+         allocate (state%displacement(2*n), state%sources%load(n), source=0.0_dp)
+         state%temperature = model%initial_temperature
+      end associate
+   end function make_initial_state
 
 end module increments

@@ -1,0 +1,317 @@
+!> Balances of heat and force of an increment that can fail: the reactions of each body alone, on
+!> the recovered fields, against what the reduced system says crosses the contacts. Of heat, those
+!> of the discrete equation (3.4) and of the states at its ends.
+module balances
+   use all_contact_points, only: all_contact_points_type
+   use contact_operator, only: unstrained_forces
+   use contact_states, only: contact_open, contact_slip, contact_state_type, contact_stick
+   use cut_hats, only: cut_hats_type, joined_conductance, supplied_heat
+   use element_kinds, only: axisymmetric
+   use friction_laws, only: friction_bound, friction_law_type
+   use increment_data, only: increment_data_type
+   use kinds, only: dp
+   use loads, only: loads_type
+   use mesh, only: extent_of
+   use model, only: model_type
+   use records, only: increment_record_type
+   use reduced_bodies, only: reduced_bodies_type
+   use solution_state, only: solution_state_type
+   use text, only: to_text
+   use thermal_matrix, only: heat_across, heat_equation_type, heat_rates_type
+   use transforms, only: on_nodes
+   implicit none
+   private
+   public :: balance_heat, balance_forces, sound_imbalance
+   public :: scales_type, force_residual, imbalance, contact_violation
+
+   !> Part of K T, of K u or of the gaps below which a rate, a force or a displacement is no scale to
+   !> measure by: where nothing is loaded only rounding is left of them. The sum over a body collects
+   !> that of all nodes, for which the norm of T is.
+   real(dp), parameter :: noise = 1.0e-6_dp
+
+   !> Displacement, in the extent of the model, below which it is no scale.
+   real(dp), parameter :: least_strain = 1.0e-12_dp
+
+   !> Largest imbalance at the end of an increment of which nothing is said.
+   real(dp), parameter :: sound_imbalance = 1.0e-2_dp
+
+   !> Largest imbalance at the start of an increment that counts as none.
+   real(dp), parameter :: equilibrium = 1.0e-6_dp
+
+   !> What displacements and forces are measured by.
+   type :: scales_type
+      real(dp) :: length = 1.0_dp   !! largest displacement [length]
+      real(dp) :: force = 1.0_dp    !! largest force [force]
+   end type scales_type
+
+contains
+
+   !> Heat that enters by loads and prescribed temperatures, and both balances of heat. Warns where
+   !> heat starts or ends out of balance.
+   pure subroutine balance_heat(bodies, model, loads, data, next, record)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(model_type), intent(in) :: model
+      type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
+      type(increment_data_type), intent(in) :: data           !! its start
+      type(solution_state_type), intent(in) :: next           !! state at its end
+      type(increment_record_type), intent(inout) :: record    !! receives rates and balances
+      type(heat_rates_type) :: rates
+      real(dp), allocatable :: residual(:)
+      real(dp) :: omega(size(next%omega)), scale
+
+      omega = joined_conductance(next%omega, next%cut)
+      rates%conducted = bodies%thermal%matrix%multiply(next%temperature)
+      rates%entering = next%sources%net_heat(next%temperature)
+      rates%crossing = heat_across(bodies%points%weight, next%carrying, next%jump)
+      residual = supplied_heat(bodies, next%cut, rates)
+      call sum_rates(loads, next%temperature, residual, record)
+      associate (held => loads%temperature%active, body => model%mesh%node_body)
+         scale = max(record%heat_in, record%heat_out, abs(sum(rates%crossing)), &
+            maxval(abs(residual), mask=held), maxval(abs(rates%entering)), &
+            noise*bodies%thermal%largest_entry*norm2(next%temperature), tiny(1.0_dp))
+         record%fields%reaction_heat = merge(residual, 0.0_dp, held)
+         record%fields%external_heat = record%fields%reaction_heat + rates%entering
+         rates%crossing = heat_across(bodies%points%weight, omega, next%jump)
+         record%heat_imbalance_pointwise = imbalance(rates%conducted, &
+            supplied_heat(bodies, next%cut, rates), held, body, [.true.], scale)
+         rates = data%equation%rates(bodies%thermal%matrix, next%temperature, omega, next%jump)
+         record%heat_imbalance = imbalance(rates%conducted, supplied_heat(bodies, next%cut, &
+            rates), held, body, [.true.], scale)
+         call warn_of_imbalances(bodies, held, data, next%is_out_of_balance, record)
+      end associate
+   end subroutine balance_heat
+
+   !> Warns where heat starts out of equilibrium, (K + G) T /= Q, with a scheme that never damps
+   !> that; else where the scheme leaves heat out of balance at the end of the increment, once for
+   !> as long as it stays so.
+   pure subroutine warn_of_imbalances(bodies, held, data, was_out, record)
+      type(reduced_bodies_type), intent(in) :: bodies
+      logical, intent(in) :: held(:)                          !! (nodes) prescribed temperatures
+      type(increment_data_type), intent(in) :: data
+      logical, intent(in) :: was_out                          !! whether the last increment was
+      type(increment_record_type), intent(inout) :: record
+      real(dp) :: at_start
+
+      at_start = 0.0_dp
+      if (data%equation%never_damps() .and. .not. data%kept_imbalance) at_start = &
+         start_imbalance(bodies, held, data%equation)
+      if (at_start > equilibrium) then
+         call record%warn('heat starts out of equilibrium, (K + G) T - Q is ', at_start, &
+            ' of the largest rate; the scheme of (3.4), amplification '// &
+            to_text(data%equation%amplification())// &
+            ', never damps that (*THERMAL SCHEME, TYPE=IMPLICIT does)')
+      else if (.not. was_out .and. record%heat_imbalance_pointwise > sound_imbalance) then
+         call record%warn('at its end heat is out of balance by ', &
+            100.0_dp*record%heat_imbalance_pointwise, ' % of the largest rate '// &
+            '(heat_imbalance_pointwise), left by the scheme '//trim(data%equation%scheme%name)// &
+            '; *THERMAL SCHEME, TYPE=IMPLICIT leaves none')
+      end if
+   end subroutine warn_of_imbalances
+
+   !> Largest residual of (K + G) T - Q in any row that is not prescribed, at the start of an
+   !> increment, relative to the largest rate.
+   pure real(dp) function start_imbalance(bodies, held, equation) result(relative)
+      type(reduced_bodies_type), intent(in) :: bodies
+      logical, intent(in) :: held(:)
+      type(heat_equation_type), intent(in) :: equation
+      type(heat_rates_type) :: rates
+      real(dp) :: scale
+
+      rates = equation%rates_at_start(bodies%thermal%matrix)
+      scale = max(maxval(abs(rates%conducted)), maxval(abs(equation%old%load)), &
+         maxval([0.0_dp, abs(rates%crossing)]), noise*bodies%thermal%largest_entry* &
+         maxval(abs(equation%temperature_old)), tiny(1.0_dp))
+      relative = maxval([0.0_dp, pack(abs(supplied_heat(bodies, cut_hats_type(), rates)), &
+         .not. held)])/scale
+   end function start_imbalance
+
+   !> Net rates, one per load card and per card of prescribed temperatures, summed by their sign.
+   pure subroutine sum_rates(loads, temperature, residual, record)
+      type(loads_type), intent(in) :: loads
+      real(dp), intent(in) :: temperature(:)
+      real(dp), intent(in) :: residual(:)
+      type(increment_record_type), intent(inout) :: record
+      real(dp) :: net(0:maxval(loads%temperature%card))
+      real(dp), allocatable :: rates(:)
+      integer :: i
+
+      net = 0.0_dp
+      do i = 1, size(residual)
+         if (.not. loads%temperature%active(i)) cycle
+         associate (rate => net(loads%temperature%card(i)))
+            rate = rate + residual(i)
+         end associate
+      end do
+      rates = [net, loads%card_heat(temperature)]
+      record%heat_in = sum(rates, mask=rates > 0.0_dp)
+      record%heat_out = -sum(rates, mask=rates < 0.0_dp)
+   end subroutine sum_rates
+
+   !> Displacement below which none is a scale to measure by. Where bodies are at their initial
+   !> temperature, the rounding of that temperature strains them.
+   pure real(dp) function least_displacement(model, temperature)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)
+      real(dp) :: expansion
+      integer :: i
+
+      expansion = 0.0_dp
+      do i = 1, size(model%materials)
+         expansion = max(expansion, maxval(abs(model%materials(i)%expansion)))
+      end do
+      least_displacement = extent_of(model%mesh%coordinates)*max(least_strain, noise*expansion* &
+         max(maxval(abs(temperature)), maxval(abs(model%initial_temperature))))
+   end function least_displacement
+
+   !> Reactions, force balance, and the contact conditions on the recovered displacements.
+   pure subroutine balance_forces(bodies, model, loads, next, record)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(model_type), intent(in) :: model
+      type(loads_type), intent(in) :: loads
+      type(solution_state_type), intent(in) :: next
+      type(increment_record_type), intent(inout) :: record
+      real(dp), allocatable :: internal(:), residual(:)
+      type(friction_law_type) :: friction(size(bodies%points%slave))
+      type(scales_type) :: scales
+      real(dp) :: least, positions(2, size(bodies%points%slave)), stiffness
+      logical :: along_x
+
+      least = least_displacement(model, next%temperature)
+      scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp), &
+         bodies%equilibrium%contact%least_length/noise)
+      if (size(bodies%points%initial_gap) > 0) then
+         scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
+      end if
+      internal = bodies%mechanical%matrix%multiply(next%displacement) - &
+         unstrained_forces(bodies, next%temperature - model%initial_temperature)
+      stiffness = bodies%mechanical%largest_entry
+      residual = force_residual(internal, next%force_load, bodies%points, next%contact)
+      call bodies%mechanical%map%carry_over(residual)
+      associate (held => loads%displacement%active)
+         scales%force = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
+            sum(next%contact%force), noise*stiffness*scales%length, &
+            least*stiffness, tiny(1.0_dp))
+         along_x = all(model%mesh%element_plane /= axisymmetric)
+         record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
+            [along_x, .true.], scales%force)
+         positions = bodies%points%relative(next%displacement)
+         positions = reshape([loads%present_gaps(bodies%points) - sum(positions* &
+            bodies%points%normal, dim=1), sum(positions*bodies%points%tangent, dim=1)], &
+            shape(positions), order=[2, 1])
+         where (bodies%laws%removed) positions(1, :) = 0.0_dp
+         friction = bodies%laws%nodal_friction
+         where (bodies%equilibrium%contact%tangent == 0) friction%coefficient = 0.0_dp
+         record%contact_violation = contact_violation(positions, residual, held, bodies%points, &
+            next%contact, friction, scales)
+         record%fields%reaction = on_nodes(bodies%points%partners, reshape(merge(residual, &
+            0.0_dp, held), [2, size(next%temperature)]))
+      end associate
+   end subroutine balance_forces
+
+   !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces
+   !> of the reduced system.
+   pure function force_residual(internal, load, points, state) result(residual)
+      real(dp), intent(in) :: internal(:) !! (2 nodes) K u less the thermal load [force]
+      real(dp), intent(in) :: load(:)                !! (2 nodes) applied forces [force]
+      type(all_contact_points_type), intent(in) :: points
+      type(contact_state_type), intent(in) :: state  !! contact forces
+      real(dp) :: residual(size(internal)) !! (2 nodes) zero where not prescribed [force]
+      real(dp) :: from_slave(2, size(points%slave))
+
+      residual = internal - load
+      from_slave = spread(state%force, 1, 2)*points%normal - &
+         spread(state%shear_force, 1, 2)*points%tangent
+      call points%add_forces(from_slave, residual)
+   end function force_residual
+
+   !> Largest imbalance, relative: of any single unsupported row, and per body and direction of the
+   !> supports' reactions against all that is applied to the body, by loads and through its
+   !> contacts. Along the radius of an axisymmetric body there is no such sum: the hoop stress takes
+   !> part of it.
+   pure function imbalance(internal, residual, supported, node_body, summed, scale) &
+      result(relative)
+      real(dp), intent(in) :: internal(:)      !! (components*nodes) of the bodies alone, K T or K u
+      real(dp), intent(in) :: residual(:)      !! (components*nodes) as from the functions above
+      logical, intent(in) :: supported(:)      !! (components*nodes) prescribed rows
+      integer, intent(in) :: node_body(:)      !! (nodes) body of each node, 0 for none
+      logical, intent(in) :: summed(:)         !! (components) directions with a sum per body
+      real(dp), intent(in) :: scale            !! largest rate or force of the increment
+      real(dp) :: relative                     !! relative imbalance
+      real(dp) :: total(0:maxval(node_body), size(summed)), applied, reaction
+      integer :: c, components, i, node
+
+      components = size(summed)
+      total = 0.0_dp
+      relative = 0.0_dp
+      do node = 1, size(node_body)
+         do c = 1, components
+            i = components*(node - 1) + c
+            applied = internal(i) - residual(i)
+            reaction = merge(residual(i), 0.0_dp, supported(i))
+            total(node_body(node), c) = total(node_body(node), c) + applied + reaction
+            if (.not. supported(i)) relative = max(relative, abs(residual(i)))
+         end do
+      end do
+      do c = 1, components
+         if (summed(c)) relative = max(relative, maxval(abs(total(:, c))))
+      end do
+      if (scale > 0.0_dp) relative = relative/scale
+   end function imbalance
+
+   !> Largest violation of the contact conditions (1.6) by gaps and tractions computed afresh from
+   !> the recovered displacements, relative to the largest displacement and force. Where a row is
+   !> supported on one body, the traction is taken from the other; where on both, the reduced
+   !> system's is.
+   pure function contact_violation(positions, residual, supported, points, state, friction, &
+      scales) result(violation)
+      !> (2, m) gaps, 0 where an interface is removed, and tangential positions by these
+      !> displacements [length]
+      real(dp), intent(in) :: positions(:, :)
+      !> (2 nodes) as from force_residual, without the forces of ties [force]
+      real(dp), intent(in) :: residual(:)
+      logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
+      type(all_contact_points_type), intent(in) :: points
+      type(contact_state_type), intent(in) :: state  !! the state that is checked
+      !> (m) of nodal forces, none where the tangent is no unknown
+      type(friction_law_type), intent(in) :: friction(:)
+      type(scales_type), intent(in) :: scales
+      real(dp) :: violation                          !! relative
+      real(dp) :: force(2), gap, normal_force, shear_force, slip, cone
+      integer :: c, k, slave_dof, master_dof
+
+      violation = 0.0_dp
+      do k = 1, size(points%slave)
+         ! A node may be in several contact points: what they leave over goes to each of them.
+         force = state%shear_force(k)*points%tangent(:, k) - state%force(k)*points%normal(:, k)
+         do c = 1, 2
+            slave_dof = 2*points%slave(k) - 2 + c
+            master_dof = 2*points%master(k) - 2 + c
+            if (.not. supported(slave_dof)) then
+               force(c) = force(c) + residual(slave_dof)
+            else if (.not. supported(master_dof)) then
+               force(c) = force(c) - residual(master_dof)
+            end if
+         end do
+         gap = positions(1, k)/scales%length
+         slip = (positions(2, k) - state%reference(k))/scales%length
+         normal_force = -dot_product(force, points%normal(:, k))/scales%force
+         shear_force = dot_product(force, points%tangent(:, k))/scales%force
+         cone = friction_bound(friction(k)%coefficient, friction(k)%largest_shear, &
+            normal_force*scales%force)/scales%force
+         if (state%contact_state(k) == contact_open) then
+            violation = max(violation, -gap, abs(normal_force), abs(shear_force))
+            cycle
+         end if
+         violation = max(violation, abs(gap), -normal_force)
+         if (friction(k)%coefficient <= 0.0_dp) cycle
+         if (state%contact_state(k) == contact_slip) then
+            violation = max(violation, abs(abs(shear_force) - cone))
+            violation = max(violation, min(slip*sign(1.0_dp, shear_force), abs(shear_force)))
+         end if
+         if (state%contact_state(k) == contact_stick) then
+            violation = max(violation, abs(shear_force) - cone, abs(slip))
+         end if
+      end do
+   end function contact_violation
+
+end module balances
