@@ -1,9 +1,9 @@
 !> A linear field problem, thermal or mechanical, and its reduction to the contact unknowns.
 !>
-!> The problem is the matrix of the bodies and the numbering of its unknowns; either may change while
-!> the other stays. A reduction is made of it for one numbering, once for given values of the matrix
-!> and of what is added to it, such as films; whoever needs another one makes one of its own. Loads
-!> that were solved for are kept with what became of them: a load that they make up needs no
+!> The problem is the matrix of the bodies and the numbering of its unknowns; either may change
+!> while the other stays. A reduction is made of it for one numbering, once for given values of the
+!> matrix and of what is added to it, such as films; whoever needs another one makes one of its own.
+!> Loads that were solved for are kept with what became of them: a load that they make up needs no
 !> solution of its own.
 module field_problem
    use controls, only: solver_mumps
@@ -132,7 +132,8 @@ contains
    end function same_values
 
    !> Factors the matrix with what is added to it. Unknowns are ordered and their pattern analysed
-   !> once for a numbering, whatever values the matrix is given: films lie on sides of elements, whose nodes the matrix joins already.
+   !> once for a numbering, whatever values the matrix is given: films lie on sides of elements,
+   !> whose nodes the matrix joins already.
    !> Errors: the matrix or its factors overflow; as the solver's analyse and factor.
    subroutine factor(self, problem, added, solver_kind, node_rank, error)
       class(field_reduction_type), intent(inout) :: self

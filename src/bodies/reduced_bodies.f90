@@ -198,7 +198,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (self%equilibrium%is_of(self%mechanical, sparse_matrix_type())) return
-      call self%equilibrium%reduce(model, self%mechanical, self%points, self%rigid, node_rank, error)
+      call self%equilibrium%reduce(model, self%mechanical, self%points, self%rigid, node_rank, &
+         error)
    end subroutine reduce
 
    !> Assembles the matrices that the steps of the model solve with, where that is not done.

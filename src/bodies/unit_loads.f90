@@ -116,8 +116,8 @@ contains
       end do
    end function entries_of
 
-   !> Integrates a unit load on each location. Cards give coefficients and sinks of films for the same
-   !> sides, in one order.
+   !> Integrates a unit load on each location. Cards give coefficients and sinks of films for the
+   !> same sides, in one order.
    pure function integrated(model, locations) result(unit)
       type(model_type), intent(in) :: model
       type(load_type), intent(in) :: locations(:)          !! what the loads act on
@@ -212,6 +212,8 @@ contains
             call find_domain(model, item, 0, nodes, x, thickness, round)
             forces = turning_forces(body_moments(model%mesh%element_kind(item), x, thickness, &
                round), component)
+         case default
+            return
          end select
          select case (kind)
          case (load_nodal_heat, load_face_heat, load_body_heat)
@@ -219,6 +221,8 @@ contains
          case (load_force, load_traction, load_body_force, load_gravity)
             allocate (forces(2, size(nodes)), source=0.0_dp)
             forces(2 - mod(component, 2), :) = weights
+         case default
+            continue
          end select
          if (kind == load_gravity .or. kind == load_centrifugal) forces = model%materials( &
             model%sections(model%mesh%element_section(item))%material)%density*forces

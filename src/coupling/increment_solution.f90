@@ -293,8 +293,8 @@ contains
          pairs_changed=count(after%contact_state /= before%contact_state))
    end function only_pass
 
-   !> Mechanical load of the increment, with the temperatures of welded contacts or those that stay; and
-   !> what it makes on the contact without jumps.
+   !> Mechanical load of the increment, with the temperatures of welded contacts or those that stay;
+   !> and what it makes on the contact without jumps.
    subroutine load_mechanics(bodies, loads, next, workspace, welded_load)
       type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads

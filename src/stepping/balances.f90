@@ -24,9 +24,9 @@ module balances
    public :: balance_heat, balance_forces, sound_imbalance
    public :: scales_type, force_residual, imbalance, contact_violation
 
-   !> Part of K T, of K u or of the gaps below which a rate, a force or a displacement is no scale to
-   !> measure by: where nothing is loaded only rounding is left of them. The sum over a body collects
-   !> that of all nodes, for which the norm of T is.
+   !> Part of K T, of K u or of the gaps below which a rate, a force or a displacement is no scale
+   !> to measure by: where nothing is loaded only rounding is left of them. The sum over a body
+   !> collects that of all nodes, for which the norm of T is.
    real(dp), parameter :: noise = 1.0e-6_dp
 
    !> Displacement, in the extent of the model, below which it is no scale.
