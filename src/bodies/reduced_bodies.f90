@@ -52,7 +52,6 @@ module reduced_bodies
       procedure :: enter_step
       procedure :: number
       procedure :: assemble_steps
-      procedure :: forget_stale
       procedure :: assemble
       procedure :: reduce
       procedure :: release
@@ -180,13 +179,6 @@ contains
       end do
       stiffer = stiffness(points%slave) > far*stiffness(points%master)
    end function slave_is_stiffer
-
-   !> Frees factors of equilibrium that are of another numbering.
-   subroutine forget_stale(self)
-      class(reduced_bodies_type), intent(inout) :: self
-
-      call self%equilibrium%renumber(self%mechanical)
-   end subroutine forget_stale
 
    !> Reduces equilibrium to the unknowns that were numbered last, where that is not done.
    !> Errors: unconstrained bodies, a failure of the solver.

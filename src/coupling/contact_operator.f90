@@ -47,6 +47,8 @@ contains
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
+      real(dp) :: load(size(data%welded_load))                   ! condensed, with the jumps
+      integer :: k
       logical :: settles
 
       settles = allocated(workspace%pass%coordinate) .and. bodies%points%vary_with_temperature()
@@ -57,9 +59,12 @@ contains
          call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       end if
       if (allocated(error)) return
-      call solve_increment(bodies%equilibrium%contact, data%previous, &
-         condensed_load(heat, data, workspace%on_tail), workspace%contact, workspace%held, &
-         state, error)
+      load = data%welded_load
+      do k = 1, size(workspace%on_tail)
+         load = load + heat%jump_load(:, k)*workspace%on_tail(k)
+      end do
+      call solve_increment(bodies%equilibrium%contact, data%previous, load, workspace%contact, &
+         workspace%held, state, error)
       if (allocated(error)) return
       if (bodies%points%vary_with_temperature() .and. .not. settles) call take_temperatures( &
          bodies, heat, data, jump, workspace)
@@ -67,20 +72,6 @@ contains
          contact_open, state%gap, law_pressure(bodies, state))
       call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
-
-   !> Condensed mechanical load of the increment with a solution of (3.4).
-   pure function condensed_load(heat, data, on_tail) result(load)
-      type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      real(dp), intent(in) :: on_tail(:)                        !! (thermal tail)
-      real(dp) :: load(size(data%welded_load))                  !! (mechanical tail) [force]
-      integer :: k
-
-      load = data%welded_load
-      do k = 1, size(on_tail)
-         load = load + heat%jump_load(:, k)*on_tail(k)
-      end do
-   end function condensed_load
 
    !> chi: the conductance of a contact state, eq. (1.8).
    pure function law_conductance(bodies, temperature, jump, state) result(omega)

@@ -39,7 +39,6 @@ module increment_data
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
       real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
-      real(dp) :: expansion = 0.0_dp !! largest coefficient of expansion [1/temperature]
       !> (m) mean temperature of the faces without jumps, where conductance laws vary with it
       real(dp), allocatable :: welded_mean(:)
       type(contact_scales_type) :: scales            !! set where heat and mechanics are coupled

@@ -82,22 +82,20 @@ contains
          call use_method(bodies, heat, controls, data, workspace, next, error)
       end if
       if (.not. allocated(error)) return
-      if (controls%method == method_newton) then
-         call name_runaway(bodies, data, next%jump, workspace%record, error)
-      else if (any(workspace%pass%graph%width > 0.0_dp)) then
-         deallocate (error)
-         call append(workspace%record%notes, &
-            'the method of the deck finds no state for a contact point whose conductance '// &
-            'jumps; NEWTON solves this increment')
-         next = start
-         call use_method(bodies, heat, by_newton(controls), data, workspace, next, error)
-         if (allocated(error)) call name_runaway(bodies, data, next%jump, workspace%record, &
-            error)
-      else if (runs_away(data, next%jump)) then
-         call name_runaway(bodies, data, next%jump, workspace%record, error)
-      else if (.not. workspace%contact%driven) then
-         call explain_failure(bodies, heat, by_newton(controls), data, start, workspace, error)
+      if (controls%method /= method_newton) then
+         if (any(workspace%pass%graph%width > 0.0_dp)) then
+            deallocate (error)
+            call append(workspace%record%notes, &
+               'the method of the deck finds no state for a contact point whose conductance '// &
+               'jumps; NEWTON solves this increment')
+            next = start
+            call use_method(bodies, heat, by_newton(controls), data, workspace, next, error)
+            if (.not. allocated(error)) return
+         else if (.not. (runs_away(bodies, next%jump) .or. workspace%contact%driven)) then
+            call explain_failure(bodies, heat, by_newton(controls), data, start, workspace, error)
+         end if
       end if
+      call name_runaway(bodies, next%jump, workspace%record, error)
    end subroutine iterate
 
    !> The controls with Newton's method.
@@ -127,7 +125,7 @@ contains
       other_workspace = workspace
       call use_method(bodies, heat, controls, data, other_workspace, other, other_error)
       if (allocated(other_error)) then
-         call name_runaway(bodies, data, other%jump, workspace%record, error)
+         call name_runaway(bodies, other%jump, workspace%record, error)
       else
          error%message = error%message//'; *FIXED POINT, METHOD=NEWTON solves it'
       end if
@@ -135,23 +133,24 @@ contains
 
    !> Whether the temperature jumps of a pass strain a body beyond all small strains, if they are
    !> numbers at all.
-   pure logical function runs_away(data, jump)
-      type(increment_data_type), intent(in) :: data
+   pure logical function runs_away(bodies, jump)
+      type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: jump(:)
 
-      runs_away = data%expansion > 0.0_dp .and. .not. all(abs(jump)*data%expansion <= no_strain)
+      associate (expansion => bodies%largest_expansion)
+         runs_away = expansion > 0.0_dp .and. .not. all(abs(jump)*expansion <= no_strain)
+      end associate
    end function runs_away
 
    !> Names the interface with the largest jump, in place of an error, where the heat runs away.
-   subroutine name_runaway(bodies, data, jump, record, error)
+   subroutine name_runaway(bodies, jump, record, error)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: jump(:)
       type(solution_report_type), intent(inout) :: record
       type(error_type), intent(inout) :: error
       integer :: i, k
 
-      if (.not. runs_away(data, jump)) return
+      if (.not. runs_away(bodies, jump)) return
       k = findloc(abs(jump) <= huge(1.0_dp), .false., dim=1)
       if (k == 0) k = maxloc(abs(jump), dim=1)
       i = count(bodies%points%interface_start <= k)
@@ -211,7 +210,7 @@ contains
             call measure_pass(bodies, data, workspace, next, passes(i)%residual)
             wanted = max(controls%tolerance, record%residual_floor)
             if (passes(i)%residual <= wanted) exit
-            away = merge(away + 1, 0, runs_away(data, next%jump))
+            away = merge(away + 1, 0, runs_away(bodies, next%jump))
             if (away >= merge(1, most_away, accelerator%follows_path)) exit
             where ((next%contact%contact_state == contact_open) .neqv. &
                (good%contact_state == contact_open)) turns = turns + 1

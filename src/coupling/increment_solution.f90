@@ -135,7 +135,6 @@ contains
       data%fixed_point = step%fixed_point
       data%before = previous
       data%displacement_scale = maxval(abs(previous%displacement))
-      data%expansion = bodies%largest_expansion
       data%previous = previous%contact
       call adapt_contact(bodies, data%previous)
       omega = law_conductance(bodies, previous%temperature, previous%jump, &

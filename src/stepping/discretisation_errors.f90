@@ -104,7 +104,7 @@ contains
       scale = scale_of(samples)
       do e = 1, size(errors)
          call self%quadrature%stress(model%mesh, e, displacement, temperature, values)
-         call compare_stress(self, model, e, 1/scale, smooth, values, errors(e))
+         call compare(self, model, e, 1/scale, smooth, values, errors(e))
       end do
       estimate = sum_up(model, scale, errors)
       if (.not. any(estimate%body > unsmooth)) return
@@ -135,7 +135,7 @@ contains
       scale = scale_of(samples)
       do e = 1, size(errors)
          call self%quadrature%heat_flux(model%mesh, e, temperature, values)
-         call compare_heat_flux(self, model, e, 1/scale, smooth, values, errors(e))
+         call compare(self, model, e, 1/scale, smooth, values, errors(e))
       end do
       estimate = sum_up(model, scale, errors)
       if (.not. any(estimate%body > unsmooth)) return
@@ -189,15 +189,15 @@ contains
       if (largest < 1/large .and. largest > tiny(largest)) scale_of = largest
    end function scale_of
 
-   !> The integrals of stress over an element.
-   pure subroutine compare_stress(self, model, e, scale, smooth, values, measured)
+   !> The integrals of stress or heat flux over an element.
+   pure subroutine compare(self, model, e, scale, smooth, values, measured)
       class(recovery_type), intent(in) :: self
       type(model_type), intent(in) :: model
       integer, intent(in) :: e
       real(dp), intent(in) :: scale, smooth(:, :)
-      real(dp), intent(inout) :: values(most, 4)
+      real(dp), intent(inout) :: values(:, :)          ! (most, 4 or 2)
       type(element_error_type), intent(out) :: measured
-      real(dp) :: nodal(4, nodes_per_element), volume(2)
+      real(dp) :: nodal(size(smooth, 1), nodes_per_element), volume(2)
       integer :: g, i, q, steps
 
       associate (fields => self%quadrature, rule => self%quadrature%rules( &
@@ -212,42 +212,17 @@ contains
             volume = 0.0_dp
             q = min(steps, rule%count + 1 - g)
             volume(:q) = fields%volume(fields%first(e) + g - 1:fields%first(e) + g + q - 2)
-            call measure_stress(rule, g, nodal, values, fields%materials(i)%compliance, volume, &
-               measured)
+            if (size(smooth, 1) == 4) then
+               call measure_stress(rule, g, nodal, values, fields%materials(i)%compliance, &
+                  volume, measured)
+            else
+               call measure_heat_flux(rule, g, nodal, values, fields%materials(i)%resistivity, &
+                  volume, measured)
+            end if
             if (steps == 1) i = i + 1
          end do
       end associate
-   end subroutine compare_stress
-
-   !> The integrals of heat flux over an element.
-   pure subroutine compare_heat_flux(self, model, e, scale, smooth, values, measured)
-      class(recovery_type), intent(in) :: self
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: e
-      real(dp), intent(in) :: scale, smooth(:, :)
-      real(dp), intent(inout) :: values(most, 2)
-      type(element_error_type), intent(out) :: measured
-      real(dp) :: nodal(2, nodes_per_element), volume(2)
-      integer :: g, i, q, steps
-
-      associate (fields => self%quadrature, rule => self%quadrature%rules( &
-         model%mesh%element_kind(e)))
-         do q = 1, rule%nodes
-            nodal(:, q) = smooth(:, self%points%element_points(q, e))*scale
-         end do
-         if (abs(scale - 1.0_dp) > 0.0_dp) values = values*scale
-         i = fields%material(e)
-         steps = merge(2, 1, fields%one_material(e))
-         do g = 1, rule%count, steps
-            volume = 0.0_dp
-            q = min(steps, rule%count + 1 - g)
-            volume(:q) = fields%volume(fields%first(e) + g - 1:fields%first(e) + g + q - 2)
-            call measure_heat_flux(rule, g, nodal, values, fields%materials(i)%resistivity, &
-               volume, measured)
-            if (steps == 1) i = i + 1
-         end do
-      end associate
-   end subroutine compare_heat_flux
+   end subroutine compare
 
    !> Relative error of each body, and the field over the elements.
    pure function sum_up(model, scale, errors) result(estimate)

@@ -19,7 +19,7 @@ contains
       type(model_type), intent(in) :: model
 
       fields_are_due = record%last_of_step .or. &
-         is_nth(model%steps(record%step)%field_frequency, record)
+         table_is_due(model%steps(record%step)%field_frequency, record)
    end function fields_are_due
 
    !> Whether a table of the listing is due: at every n-th increment of a step and its last.
@@ -27,7 +27,9 @@ contains
       integer, intent(in) :: frequency                    !! n; 0 never
       type(increment_record_type), intent(in) :: record
 
-      table_is_due = frequency > 0 .and. (record%last_of_step .or. is_nth(frequency, record))
+      table_is_due = frequency > 0
+      if (table_is_due) table_is_due = record%last_of_step .or. &
+         modulo(record%increment_in_step, frequency) == 0
    end function table_is_due
 
    !> Whether a check is judged on an increment.
@@ -51,19 +53,11 @@ contains
       type(model_type), intent(in) :: model
       integer :: i
 
-      needs_recovery = record%last_of_step .or. fields_are_due(record, model)
+      needs_recovery = fields_are_due(record, model)
       do i = 1, size(model%verifications)
          if (needs_recovery) return
          needs_recovery = is_judged(model%verifications(i), record, model)
       end do
    end function needs_recovery
-
-   pure logical function is_nth(frequency, record)
-      integer, intent(in) :: frequency
-      type(increment_record_type), intent(in) :: record
-
-      is_nth = .false.
-      if (frequency > 0) is_nth = modulo(record%increment_in_step, frequency) == 0
-   end function is_nth
 
 end module due_output

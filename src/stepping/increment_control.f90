@@ -8,7 +8,7 @@ module increment_control
    use text, only: counted, to_text
    implicit none
    private
-   public :: increment_control_type, next_end, cut_size, grown_size, is_smallest
+   public :: increment_control_type, next_end
 
    real(dp), parameter :: remainder = 1.0e-6_dp   !! part of an increment too small for one
    real(dp), parameter :: rounding = 1.0e-13_dp   !! of the period: what sums of increments lose
@@ -138,20 +138,21 @@ contains
          if (self%cut_backs == 0 .and. step%grows) then
             self%largest = min(increment_growth*self%largest, step%largest_increment)
          else if (self%cut_backs == 0) then
-            self%largest = grown_size(self%largest, step%first_increment)
+            self%largest = min(growth*self%largest, step%first_increment)
          end if
       end associate
       self%cut_backs = 0
    end subroutine accept
 
-   !> Whether an increment that failed may be tried again with a smaller size.
+   !> Whether an increment that failed may be tried again with a smaller size, if it is not the
+   !> smallest already.
    pure logical function can_cut_back(self, model, failed)
       class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: failed                      !! size that failed [time]
 
       associate (step => model%steps(self%step))
-         can_cut_back = .not. (step%direct .or. is_smallest(failed, step%smallest_increment))
+         can_cut_back = .not. step%direct .and. failed > hardly_longer*step%smallest_increment
       end associate
    end function can_cut_back
 
@@ -162,7 +163,7 @@ contains
       real(dp), intent(in) :: failed                         !! size that failed [time]
 
       self%cut_backs = self%cut_backs + 1
-      self%largest = cut_size(failed, model%steps(self%step)%smallest_increment)
+      self%largest = max(cut*failed, model%steps(self%step)%smallest_increment)
    end subroutine cut_back
 
    !> Says where the run ends, and why the increment is not tried again.
@@ -205,32 +206,5 @@ contains
          if (target <= ending + tolerance) ending = target
       end associate
    end function next_end
-
-   !> Size of the increment that is tried after one that failed.
-   elemental function cut_size(failed, smallest) result(next)
-      real(dp), intent(in) :: failed     !! size that failed [time]
-      real(dp), intent(in) :: smallest   !! smallest size [time]
-      real(dp) :: next                   !! shorter by a good deal, but not below it [time]
-
-      next = max(cut*failed, smallest)
-   end function cut_size
-
-   !> Size of the increment after one that converged at its first attempt.
-   elemental function grown_size(converged, first) result(next)
-      real(dp), intent(in) :: converged  !! largest size allowed to that one [time]
-      real(dp), intent(in) :: first      !! first increment, the longest of all [time]
-      real(dp) :: next                   !! largest size of the next one [time]
-
-      next = min(growth*converged, first)
-   end function grown_size
-
-   !> Whether an increment is so small that it is not cut back any more.
-   elemental function is_smallest(failed, smallest)
-      real(dp), intent(in) :: failed     !! size that failed [time]
-      real(dp), intent(in) :: smallest   !! smallest size [time]
-      logical :: is_smallest             !! whether it is the smallest
-
-      is_smallest = failed <= hardly_longer*smallest
-   end function is_smallest
 
 end module increment_control

@@ -131,7 +131,8 @@ contains
          call heat%renumber_both(bodies)
          ! Both fields are eliminated while neither has factors, for their memory. Where that fails,
          ! heat%reduce fails again and says so.
-         if (solves_mechanics(analysis)) call bodies%forget_stale()
+         if (solves_mechanics(analysis)) call bodies%equilibrium%renumber( &
+            bodies%mechanical)
          if (solves_heat(analysis)) call heat%eliminate(model, bodies, film, of_elimination)
          if (solves_mechanics(analysis)) call bodies%reduce(model, heat%node_rank, error)
          if (solves_heat(analysis) .and. .not. allocated(error)) call heat%reduce(model, bodies, &
