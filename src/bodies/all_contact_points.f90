@@ -38,9 +38,10 @@ module all_contact_points
       integer, allocatable :: interface_start(:)     !! (interfaces + 1) first contact point of each
       !> (m, nodes) mean of both faces; no sums where no conductance law varies with the temperature
       type(sum_list_type) :: mean
-      logical, allocatable :: cuts_hats(:) !! (interfaces) whether the edge of contact cuts hats
+      !> (interfaces) whether heat is integrated to the edge of contact
+      logical, allocatable :: resolves_edge(:)
       !> nodes of both faces of these interfaces; unallocated where there are none
-      integer, allocatable :: cut_nodes(:)
+      integer, allocatable :: edge_nodes(:)
       type(tie_points_type) :: ties                           !! points of the ties, no part of m
       type(sum_list_type) :: hanging                          !! hanging nodes, as in hanging_nodes
       type(equation_type), allocatable :: equations(:)        !! equations of the deck
@@ -133,7 +134,7 @@ contains
       allocate (row%equations(0), row%partners(0))
       if (allocated(model%partners)) row%partners = model%partners
       if (allocated(model%equations)) row%equations = model%equations
-      call find_cut_faces(model, interfaces, row)
+      call find_resolved_faces(model, interfaces, row)
    end function joined_points
 
    !> Puts the points of all ties in one row.
@@ -180,30 +181,31 @@ contains
       end do
    end function means_of_faces
 
-   !> Hats are cut of mortar points whose conductance varies without a jump, where it follows from
-   !> gap and pressure alone: the means of the faces (contact_heat) go by jumps of whole hats.
-   pure subroutine find_cut_faces(model, interfaces, row)
+   !> Heat is integrated to the edge of mortar points whose conductance varies without a jump, where
+   !> it follows from gap and pressure alone: the means of the faces (contact_heat) go by jumps of
+   !> whole hat functions.
+   pure subroutine find_resolved_faces(model, interfaces, row)
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(all_contact_points_type), intent(inout) :: row
       integer, allocatable :: nodes(:)
       integer :: i, k
 
-      allocate (row%cuts_hats(size(interfaces)), source=.false.)
+      allocate (row%resolves_edge(size(interfaces)), source=.false.)
       if (row%vary_with_temperature()) return
       nodes = [integer ::]
       do i = 1, size(interfaces)
          if (.not. allocated(interfaces(i)%segments)) cycle
          if (size(interfaces(i)%slave) < 2) cycle
          associate (law => model%interactions(model%contacts(i)%interaction)%law)
-            row%cuts_hats(i) = .not. (law_jumps(law) .or. is_constant(law))
+            row%resolves_edge(i) = .not. (law_jumps(law) .or. is_constant(law))
          end associate
-         if (.not. row%cuts_hats(i)) cycle
+         if (.not. row%resolves_edge(i)) cycle
          nodes = [nodes, (interfaces(i)%segments(k)%nodes, k=1, &
             size(interfaces(i)%segments))]
       end do
-      if (size(nodes) > 0) row%cut_nodes = nodes
-   end subroutine find_cut_faces
+      if (size(nodes) > 0) row%edge_nodes = nodes
+   end subroutine find_resolved_faces
 
    !> Whether the conductance law of some contact point varies with the temperatures of its faces.
    pure logical function vary_with_temperature(self)

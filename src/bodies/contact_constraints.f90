@@ -84,8 +84,8 @@ contains
       end do
    end function displacement_rows
 
-   !> Constraints of the temperatures; all jumps are on the tail, and the nodes of faces on
-   !> which hats are cut.
+   !> Constraints of the temperatures; all jumps are on the tail, and the nodes of faces
+   !> whose heat is integrated to the edge of contact.
    pure subroutine constrain_temperatures(used, held, points, slave_leads, constraints)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
@@ -108,9 +108,9 @@ contains
       call begin_rows(held, 1, points, rows)
       call add_equations(points%equations, .true., rows)
       call add_ties(points%ties, held, rows)
-      if (allocated(points%cut_nodes)) then
+      if (allocated(points%edge_nodes)) then
          allocate (rows%dof_on_tail(size(held)), source=.false.)
-         rows%dof_on_tail(points%cut_nodes) = .true.
+         rows%dof_on_tail(points%edge_nodes) = .true.
       end if
       do k = 1, size(points%slave)
          if (all(held(points%nodes_of(k)))) cycle

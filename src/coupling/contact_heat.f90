@@ -54,7 +54,7 @@ contains
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       real(dp) :: x(bodies%thermal%map%tail), diagonal(bodies%thermal%map%tail)
       real(dp) :: of_point(size(omega)), history(size(omega))
-      real(dp), allocatable :: of_cut(:)
+      real(dp), allocatable :: of_edge(:)
       integer :: k
 
       associate (tail_index => bodies%jump_index, solver => heat%solver, &
@@ -68,8 +68,8 @@ contains
             diagonal(tail_index(k)) = of_point(k)
             x(tail_index(k)) = x(tail_index(k)) + history(k)
          end do
-         if (allocated(workspace%cut%point)) then
-            associate (j => tail_index(workspace%cut%point))
+         if (allocated(workspace%edge%point)) then
+            associate (j => tail_index(workspace%edge%point))
                diagonal(j) = [(solver%schur(j(k), j(k)), k=1, size(j))]
             end associate
          end if
@@ -78,8 +78,8 @@ contains
          work%columns_full = work%columns_full + solver%order
          work%flops_again = work%flops_again + tail_flops(size(x), tail%first_changed)
          work%flops_full = work%flops_full + solver%full_flops + tail_flops(size(x), 1)
-         if (allocated(workspace%cut%point)) then
-            call solve_with_cuts(bodies, diagonal, workspace, x, of_cut)
+         if (allocated(workspace%edge%point)) then
+            call solve_with_edge(bodies, diagonal, workspace, x, of_edge)
          else
             call tail%solve(x)
          end if
@@ -87,20 +87,20 @@ contains
          do k = 1, size(omega)
             if (tail_index(k) > 0) jump(k) = x(tail_index(k))
          end do
-         if (allocated(of_cut)) jump(workspace%cut%point) = of_cut
+         if (allocated(of_edge)) jump(workspace%edge%point) = of_edge
          workspace%on_tail = x
       end associate
    end subroutine temperature_jumps
 
-   !> Solves on the tail where an edge cuts hats. Their jumps have the diagonal of the bodies in the
-   !> factors; it is taken off again, and the heat of the cut hats put in its place.
-   subroutine solve_with_cuts(bodies, diagonal, workspace, x, jump)
+   !> Solves on the tail with heat at edges. The jumps there have the diagonal of the bodies in the
+   !> factors; it is taken off again, and the heat at the edges put in its place.
+   subroutine solve_with_edge(bodies, diagonal, workspace, x, jump)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: diagonal(:)                        !! (tail)
       type(increment_workspace_type), intent(inout) :: workspace
       real(dp), intent(inout) :: x(:)                            !! (tail) heat in, solution out
-      real(dp), allocatable, intent(out) :: jump(:)              !! (cut hats)
-      real(dp) :: sums(size(x), 2*size(workspace%cut%point)), given(size(workspace%cut%point))
+      real(dp), allocatable, intent(out) :: jump(:)              !! (points at edges)
+      real(dp) :: sums(size(x), 2*size(workspace%edge%point)), given(size(workspace%edge%point))
       real(dp), dimension(size(given)) :: heat, back
       integer :: i, n, t
 
@@ -109,12 +109,12 @@ contains
       given = 0.0_dp
       if (.not. allocated(workspace%supported)) workspace%supported = &
          bodies%thermal%map%supported(workspace%heat%given)
-      associate (cut => workspace%cut, map => bodies%thermal%map)
-         heat = heat_across(bodies%points%weight(cut%point), cut%conductance, 1.0_dp)
-         back = -diagonal(bodies%jump_index(cut%point))
+      associate (at_edge => workspace%edge, map => bodies%thermal%map)
+         heat = heat_across(bodies%points%weight(at_edge%point), at_edge%conductance, 1.0_dp)
+         back = -diagonal(bodies%jump_index(at_edge%point))
          do i = 1, n
-            sums(bodies%jump_index(cut%point(i)), n + i) = 1.0_dp
-            associate (nodes => cut%jump%values_of(i), share => cut%jump%coefficients_of(i))
+            sums(bodies%jump_index(at_edge%point(i)), n + i) = 1.0_dp
+            associate (nodes => at_edge%jump%values_of(i), share => at_edge%jump%coefficients_of(i))
                given(i) = dot_product(share, workspace%supported(nodes))
                do t = 1, size(nodes)
                   associate (k => map%tail_index(map%by_unknowns%values_of(nodes(t))), &
@@ -129,7 +129,7 @@ contains
          call workspace%tail%solve(x)
          jump = matmul(x, sums(:, :n)) + given
       end associate
-   end subroutine solve_with_cuts
+   end subroutine solve_with_edge
 
    !> The derivatives by the conductance, with the factors of the last pass:
    !>
@@ -162,8 +162,9 @@ contains
       real(dp) :: heat(size(jump))                            !! (m)
 
       heat = -data%equation%crossing_by_omega(jump)
-      if (allocated(workspace%cut%point)) heat(workspace%cut%point) = heat(workspace%cut%point)* &
-         workspace%cut%own
+      associate (edge => workspace%edge)
+         if (allocated(edge%point)) heat(edge%point) = heat(edge%point)*edge%own
+      end associate
       where (bodies%jump_index == 0) heat = 0.0_dp
    end function heat_by_omega
 

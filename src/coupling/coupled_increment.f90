@@ -49,7 +49,7 @@ contains
 
       data%scales = contact_scales(bodies, data)
       workspace%pass%graph = make_graph(bodies, heat, data%scales%length)
-      workspace%cuts_hats = any(bodies%points%cuts_hats) .and. &
+      workspace%resolves_edge = any(bodies%points%resolves_edge) .and. &
          .not. data%equation%takes_past_conductance()
       next%omega_before = data%equation%omega_old
       if (data%start%kind == start_both) then

@@ -3,7 +3,7 @@ module increment_data
    use contact_states, only: contact_state_type
    use contact_workspace, only: contact_workspace_type
    use controls, only: fixed_point_type, start_type
-   use cut_hats, only: cut_hat_type, cut_hats_type
+   use edge_heat, only: edge_integral_type, edge_heat_type
    use field_problem, only: field_load_type, solved_loads_type
    use fixed_point, only: pass_type
    use kinds, only: dp
@@ -34,7 +34,7 @@ module increment_data
       real(dp), allocatable :: omega_before(:)       !! (m) omega_(i-1)
       logical, allocatable :: resting(:)             !! (m) contact points that rest
       logical :: kept_imbalance = .false. !! whether the last increment's scheme damped no imbalance
-      type(cut_hats_type) :: cut !! hats that an edge cuts; none where (3.4) takes past conductances
+      type(edge_heat_type) :: edge   !! heat at edges; none where (3.4) takes past conductances
       real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
@@ -53,9 +53,9 @@ module increment_data
       real(dp), allocatable :: supported(:) !! (nodes) what prescribed temperatures alone make
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
       real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution
-      logical :: cuts_hats = .false.                 !! whether edges of contact cut hats
-      type(cut_hat_type), allocatable :: edge_hats(:) !! hats that an edge cuts, last openings
-      type(cut_hats_type) :: cut                     !! the same, also for the last omega*
+      logical :: resolves_edge = .false.             !! whether heat is integrated to the edges
+      type(edge_integral_type), allocatable :: edge_integrals(:)   !! of the last openings
+      type(edge_heat_type) :: edge                   !! heat at edges, also of the last omega*
       type(contact_workspace_type) :: contact        !! laws and factors of the contact
       type(contact_workspace_type) :: held           !! with all closed contact points holding
       type(pass_type) :: pass                        !! the last pass

@@ -9,7 +9,7 @@ module increment_iteration
    use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type
    use controls, only: fixed_point_type, method_anderson, method_newton, method_picard, &
       method_zaitsev
-   use cut_hats, only: cut_hats_at, cut_hats_type, find_cut_hats
+   use edge_heat, only: edge_heat_at, edge_heat_type, find_edge_integrals
    use errors, only: error_type, set_error, status_no_convergence
    use fixed_point, only: accelerator_type, anderson_type, pass_type, picard_type, point_residual, &
       zaitsev_type
@@ -42,10 +42,11 @@ module increment_iteration
 
 contains
 
-   !> Conductances, jumps and contact state of an increment. If an edge of contact cuts hats and its
-   !> position does not converge, as when it jumps back and forth over a contact point, heat crosses
-   !> whole hats. Where another method fails, Newton's solves the increment if laws jump, since the
-   !> others know no contact points at rest; elsewhere it only tells what the failure means.
+   !> Conductances, jumps and contact state of an increment. If heat is integrated to an edge of
+   !> contact and its position does not converge, as when it jumps back and forth over a contact
+   !> point, heat crosses whole sides. Where another method fails, Newton's solves the increment if
+   !> laws jump, since the others know no contact points at rest; elsewhere it only tells what the
+   !> failure means.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies;
    !> status_interrupted where a signal left no more time.
    subroutine iterate(bodies, heat, controls, data, workspace, next, error)
@@ -60,9 +61,9 @@ contains
       integer :: before
 
       allocate (workspace%record%iterations(0))
-      next%cut = cut_hats_type()
+      next%edge = edge_heat_type()
       start = next
-      if (workspace%cuts_hats) then
+      if (workspace%resolves_edge) then
          call use_method(bodies, heat, controls, data, workspace, next, error)
          if (.not. allocated(error)) return
          if (error%status /= status_no_convergence) return
@@ -70,8 +71,8 @@ contains
          call append(workspace%record%notes, 'the position of the edge of contact in its '// &
             'element side does not converge; in this increment heat crosses the undivided side')
          next = start
-         workspace%cuts_hats = .false.
-         workspace%cut = cut_hats_type()
+         workspace%resolves_edge = .false.
+         workspace%edge = edge_heat_type()
       end if
       before = size(workspace%record%iterations)
       call use_method(bodies, heat, controls, data, workspace, next, error)
@@ -186,12 +187,12 @@ contains
          do i = 1, huge(i) - 1
             if ((i - 1)/merge(on_path, 1, accelerator%follows_path) >= controls%max_iterations) exit
             ! Where the edge goes over a contact point U jumps, and there is no path.
-            if (workspace%cuts_hats .and. accelerator%follows_path) exit
+            if (workspace%resolves_edge .and. accelerator%follows_path) exit
             call check_overdue(error)
             if (allocated(error)) exit
             good = next%contact
             pass%iteration = i
-            if (workspace%cuts_hats) workspace%cut = cut_hats_at(workspace%edge_hats, &
+            if (workspace%resolves_edge) workspace%edge = edge_heat_at(workspace%edge_integrals, &
                bodies%points%weight, pass%omega)
             call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, &
                error)
@@ -234,8 +235,8 @@ contains
       if (allocated(workspace%pass%coordinate)) deallocate (workspace%pass%coordinate)
       workspace%pass%omega = omega
       workspace%pass%image = omega
-      if (workspace%cuts_hats) call find_cut_hats(bodies, workspace%pass%graph%modulus, &
-         openings(bodies, workspace%pass%graph, data%previous), workspace%edge_hats)
+      if (workspace%resolves_edge) call find_edge_integrals(bodies, workspace%pass%graph%modulus, &
+         openings(bodies, workspace%pass%graph, data%previous), workspace%edge_integrals)
    end subroutine begin_passes
 
    !> What a pass found: solution so far, openings, points at rest, residual and its floor.
@@ -248,26 +249,26 @@ contains
 
       workspace%pass%opening = openings(bodies, workspace%pass%graph, next%contact)
       call find_residual(data%scales, bodies%points%weight, workspace%pass, residual, next%resting)
-      if (workspace%cuts_hats) then
-         call find_cut_hats(bodies, workspace%pass%graph%modulus, workspace%pass%opening, &
-            workspace%edge_hats)
-         residual = max(residual, cut_residual(workspace%cut, cut_hats_at(workspace%edge_hats, &
-            bodies%points%weight, workspace%pass%image)))
+      if (workspace%resolves_edge) then
+         call find_edge_integrals(bodies, workspace%pass%graph%modulus, workspace%pass%opening, &
+            workspace%edge_integrals)
+         residual = max(residual, edge_residual(workspace%edge, edge_heat_at( &
+            workspace%edge_integrals, bodies%points%weight, workspace%pass%image)))
       end if
       next%omega = merge(workspace%pass%omega, workspace%pass%image, bodies%points%weight > 0.0_dp)
-      next%cut = workspace%cut
+      next%edge = workspace%edge
       workspace%record%residual_floor = residual_floor(bodies, data, workspace%pass, next%contact)
    end subroutine measure_pass
 
-   !> How far the conductances of cut hats are from those that a pass found.
-   pure real(dp) function cut_residual(cut, found) result(residual)
-      type(cut_hats_type), intent(in) :: cut, found
+   !> How far the conductances at edges are from those that a pass found.
+   pure real(dp) function edge_residual(at_edge, found) result(residual)
+      type(edge_heat_type), intent(in) :: at_edge, found
 
       residual = 1.0_dp
-      if (size(found%point) /= size(cut%point)) return
-      if (any(found%point /= cut%point)) return
-      residual = maxval([0.0_dp, point_residual(cut%conductance, found%conductance)])
-   end function cut_residual
+      if (size(found%point) /= size(at_edge%point)) return
+      if (any(found%point /= at_edge%point)) return
+      residual = maxval([0.0_dp, point_residual(at_edge%conductance, found%conductance)])
+   end function edge_residual
 
    !> Keeps the passes, and says so where the last one is not good enough.
    subroutine close_passes(record, passes, last, wanted, error)

@@ -10,7 +10,7 @@ module increment_solution
    use contact_system, only: contact_system_type
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
-   use cut_hats, only: joined_conductance
+   use edge_heat, only: joined_conductance
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use fixed_point, only: pass_type
@@ -50,7 +50,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (.not. allocated(workspace%known)) allocate (workspace%known(2))
-      next%cut = data%cut
+      next%edge = data%edge
       next%keeps_imbalance = solves_heat(data%analysis) .and. data%equation%never_damps()
       call adapt_contact(bodies, next%contact)
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -78,7 +78,7 @@ contains
       if (solves_mechanics(data%analysis)) call solve_equilibrium(bodies, heat, loads, data, &
          workspace, next, error)
       if (allocated(error)) return
-      next%carrying = data%equation%carrying(joined_conductance(next%omega, next%cut))
+      next%carrying = data%equation%carrying(joined_conductance(next%omega, next%edge))
    end subroutine solve_points
 
    !> Contact and conductance of an increment whose heat is loaded or solved.
@@ -146,8 +146,8 @@ contains
       data%omega_before = merge(omega, previous%omega_before, is_new)
       data%kept_imbalance = previous%keeps_imbalance
       data%resting = previous%resting .and. .not. bodies%laws%removed
-      if (.not. data%equation%takes_past_conductance()) data%cut = &
-         previous%cut%without(bodies%laws%removed)
+      if (.not. data%equation%takes_past_conductance()) data%edge = &
+         previous%edge%without(bodies%laws%removed)
       if (previous%increment_size > 0.0_dp) data%size_ratio = &
          next%increment_size/previous%increment_size
    end subroutine begin_increment
@@ -209,7 +209,7 @@ contains
       end associate
       where (data%resting) next%omega = data%equation%omega_old
       data%equation%omega_old = next%omega
-      workspace%cut = data%cut
+      workspace%edge = data%edge
       if (bodies%points%vary_with_temperature()) then
          call begin_graphs(bodies, data, next%omega, workspace%pass)
          call settle_conductance(bodies, heat, data, workspace, next%jump, error)

@@ -3,7 +3,7 @@
 !> the table.
 module solution_state
    use contact_states, only: contact_state_type
-   use cut_hats, only: cut_hats_type
+   use edge_heat, only: edge_heat_type
    use kinds, only: dp
    use thermal_matrix, only: heat_sources_type
    implicit none
@@ -14,7 +14,7 @@ module solution_state
    type :: solution_state_type
       type(contact_state_type) :: contact           !! contact state of all contact points
       real(dp), allocatable :: omega(:)             !! (m) conductance
-      type(cut_hats_type) :: cut                    !! contact points at the edge of contact
+      type(edge_heat_type) :: edge                  !! contact points at the edge of contact
       logical, allocatable :: resting(:)          !! (m) contact points that rest, where a law jumps
       logical, allocatable :: idle(:)               !! (m) closed contact points that carry no force
       real(dp), allocatable :: carrying(:)          !! (m) conductance by which heat crossed last
@@ -96,13 +96,13 @@ contains
       call reals(self, 'conductance_before', state%omega_before)
       call logicals(self, 'resting', state%resting)
       call logicals(self, 'idle', state%idle)
-      call integers(self, 'cut_point', state%cut%point)
-      call reals(self, 'cut_conductance', state%cut%conductance)
-      call reals(self, 'cut_own', state%cut%own)
-      call integers(self, 'cut_start', state%cut%jump%start)
-      call integers(self, 'cut_node', state%cut%jump%value)
-      call reals(self, 'cut_share', state%cut%jump%coefficient)
-      if (allocated(state%cut%point)) state%cut%jump%count = size(state%cut%point)
+      call integers(self, 'edge_point', state%edge%point)
+      call reals(self, 'edge_conductance', state%edge%conductance)
+      call reals(self, 'edge_own', state%edge%own)
+      call integers(self, 'edge_start', state%edge%jump%start)
+      call integers(self, 'edge_node', state%edge%jump%value)
+      call reals(self, 'edge_share', state%edge%jump%coefficient)
+      if (allocated(state%edge%point)) state%edge%jump%count = size(state%edge%point)
       call reals(self, 'jump', state%jump)
       call reals(self, 'temperature', state%temperature)
       call reals(self, 'displacement', state%displacement)

@@ -5,7 +5,7 @@ module balances
    use all_contact_points, only: all_contact_points_type
    use contact_operator, only: unstrained_forces
    use contact_states, only: contact_open, contact_slip, contact_state_type, contact_stick
-   use cut_hats, only: cut_hats_type, joined_conductance, supplied_heat
+   use edge_heat, only: edge_heat_type, joined_conductance, supplied_heat
    use element_kinds, only: axisymmetric
    use friction_laws, only: friction_bound, friction_law_type
    use increment_data, only: increment_data_type
@@ -59,11 +59,11 @@ contains
       real(dp), allocatable :: residual(:)
       real(dp) :: omega(size(next%omega)), scale
 
-      omega = joined_conductance(next%omega, next%cut)
+      omega = joined_conductance(next%omega, next%edge)
       rates%conducted = bodies%thermal%matrix%multiply(next%temperature)
       rates%entering = next%sources%net_heat(next%temperature)
       rates%crossing = heat_across(bodies%points%weight, next%carrying, next%jump)
-      residual = supplied_heat(bodies, next%cut, rates)
+      residual = supplied_heat(bodies, next%edge, rates)
       call sum_rates(loads, next%temperature, residual, record)
       associate (held => loads%temperature%active, body => model%mesh%node_body)
          scale = max(record%heat_in, record%heat_out, abs(sum(rates%crossing)), &
@@ -73,9 +73,9 @@ contains
          record%fields%external_heat = record%fields%reaction_heat + rates%entering
          rates%crossing = heat_across(bodies%points%weight, omega, next%jump)
          record%heat_imbalance_pointwise = imbalance(rates%conducted, &
-            supplied_heat(bodies, next%cut, rates), held, body, [.true.], scale)
+            supplied_heat(bodies, next%edge, rates), held, body, [.true.], scale)
          rates = data%equation%rates(bodies%thermal%matrix, next%temperature, omega, next%jump)
-         record%heat_imbalance = imbalance(rates%conducted, supplied_heat(bodies, next%cut, &
+         record%heat_imbalance = imbalance(rates%conducted, supplied_heat(bodies, next%edge, &
             rates), held, body, [.true.], scale)
          call warn_of_imbalances(bodies, held, data, next%is_out_of_balance, record)
       end associate
@@ -121,7 +121,7 @@ contains
       scale = max(maxval(abs(rates%conducted)), maxval(abs(equation%old%load)), &
          maxval([0.0_dp, abs(rates%crossing)]), noise*bodies%thermal%largest_entry* &
          maxval(abs(equation%temperature_old)), tiny(1.0_dp))
-      relative = maxval([0.0_dp, pack(abs(supplied_heat(bodies, cut_hats_type(), rates)), &
+      relative = maxval([0.0_dp, pack(abs(supplied_heat(bodies, edge_heat_type(), rates)), &
          .not. held)])/scale
    end function start_imbalance
 

@@ -15,7 +15,7 @@ COUPLING = {
 }
 PARTS = {
     "heat": {
-        "balances:balance_heat", "cut_hats:supplied_heat", "element_conduction",
+        "balances:balance_heat", "edge_heat:supplied_heat", "element_conduction",
         "field_recovery:heat_flux_samples", "point_fields:heat_flux",
         "increment_checks:check_heat", "increment_solution:conduct",
         "heat_reduction", "loads:card_heat",

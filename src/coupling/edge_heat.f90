@@ -10,7 +10,7 @@
 !>
 !> so that the heat enters the bodies where it crosses, by the same sum. On the other side of a
 !> point omega is that of the point itself.
-module cut_hats
+module edge_heat
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
    use contact_states, only: contact_open, contact_slip
@@ -22,22 +22,22 @@ module cut_hats
    use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, turned
    implicit none
    private
-   public :: cut_hat_type, cut_hats_type, find_cut_hats, cut_hats_at, joined_conductance
-   public :: supplied_heat
+   public :: edge_integral_type, edge_heat_type, find_edge_integrals, edge_heat_at
+   public :: joined_conductance, supplied_heat
 
-   !> A hat that an edge cuts, for openings of the contact points: integrals over the sides without
-   !> an edge, which the conductance of the point multiplies, and over those with an edge, which
-   !> hold the conductance along them.
-   type :: cut_hat_type
+   !> Integrals of a hat function with an edge below it, for openings of the contact points: over
+   !> the sides without an edge, which the conductance of the point multiplies, and over those with
+   !> an edge, which hold the conductance along them.
+   type :: edge_integral_type
       integer :: point = 0                      !! contact point
       logical :: is_open = .false.
       integer, allocatable :: nodes(:)          !! (n) of both faces
       real(dp) :: area(2) = 0.0_dp              !! of phi_c [length^2], of phi_c omega
       real(dp), allocatable :: shares(:, :)     !! (n, 2) the same times J(x)
-   end type cut_hat_type
+   end type edge_integral_type
 
-   !> The contact points whose hats an edge cuts, for openings and conductances.
-   type :: cut_hats_type
+   !> The contact points with an edge below their hat functions, for openings and conductances.
+   type :: edge_heat_type
       integer, allocatable :: point(:)          !! (n) contact points
       real(dp), allocatable :: conductance(:)   !! (n) mean omega_c [power/(length^2 temperature)]
       !> (n) derivative of it by the conductance of the point itself
@@ -45,7 +45,7 @@ module cut_hats
       type(sum_list_type) :: jump = sum_list_type()   !! (n, nodes) J_c
    contains
       procedure :: without
-   end type cut_hats_type
+   end type edge_heat_type
 
    !> The conductance along a side with an edge; unallocated without one.
    type :: side_edge_type
@@ -56,22 +56,22 @@ module cut_hats
 
 contains
 
-   !> The cut hats for openings of the contact points.
-   pure subroutine find_cut_hats(bodies, modulus, opening, hats)
+   !> The integrals at edges for openings of the contact points.
+   pure subroutine find_edge_integrals(bodies, modulus, opening, hats)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: modulus(:)        !! (m) pressure per overlap [stress/length]
       real(dp), intent(in) :: opening(:)        !! (m) openings [length]
-      type(cut_hat_type), allocatable, intent(out) :: hats(:)
-      type(cut_hat_type), allocatable :: beside(:)
+      type(edge_integral_type), allocatable, intent(out) :: hats(:)
+      type(edge_integral_type), allocatable :: beside(:)
       logical :: is_beside(size(opening))
-      logical, allocatable :: is_cut(:)
+      logical, allocatable :: is_crossed(:)
       integer :: found, i
 
       do i = 1, size(bodies%interfaces)
          associate (first => bodies%points%interface_start(i), &
             last => bodies%points%interface_start(i + 1) - 1)
             is_beside(first:last) = .false.
-            if (.not. bodies%points%cuts_hats(i) .or. bodies%laws%removed(first)) cycle
+            if (.not. bodies%points%resolves_edge(i) .or. bodies%laws%removed(first)) cycle
             is_beside(first:last) = bodies%jump_index(first:last) > 0 .and. &
                beside_edge(opening(first:last) > 0.0_dp)
          end associate
@@ -92,10 +92,10 @@ contains
             found = found + count(is_beside(first:last))
          end associate
       end do
-      is_cut = [(beside(i)%area(2) > 0.0_dp .and. on_tail(bodies, beside(i)%nodes), &
+      is_crossed = [(beside(i)%area(2) > 0.0_dp .and. on_tail(bodies, beside(i)%nodes), &
          i=1, size(beside))]
-      hats = beside(pack([(i, i=1, size(beside))], is_cut))
-   end subroutine find_cut_hats
+      hats = beside(pack([(i, i=1, size(beside))], is_crossed))
+   end subroutine find_edge_integrals
 
    !> Contact points with an edge in the side before or behind them.
    pure function beside_edge(is_open) result(beside)
@@ -109,12 +109,12 @@ contains
       beside(2:) = beside(2:) .or. (is_open(:m - 1) .neqv. is_open(2:))
    end function beside_edge
 
-   !> The integrals of the hats of an interface beside an edge.
+   !> The integrals of the hat functions of an interface beside an edge.
    pure subroutine integrate_hats(points, edges, is_beside, hats)
       type(contact_points_type), intent(in) :: points
       type(side_edge_type), intent(in) :: edges(:)       ! (sides)
       logical, intent(in) :: is_beside(:)                ! (m)
-      type(cut_hat_type), intent(inout) :: hats(:)       ! (count of them) with numbers in points
+      type(edge_integral_type), intent(inout) :: hats(:) ! (count of them) with numbers in points
       real(dp) :: weights(support, 2)
       integer :: i, k, n, side
       logical :: crossed
@@ -152,7 +152,7 @@ contains
       type(edge_segment_type), intent(in) :: segment
       real(dp), intent(in) :: weights(support)
       integer, intent(in) :: kind             ! of the side: 1 without an edge, 2 with one
-      type(cut_hat_type), intent(inout) :: hat
+      type(edge_integral_type), intent(inout) :: hat
       integer :: at, j
 
       hat%area(kind) = hat%area(kind) + dot_product(segment%area, weights)
@@ -163,29 +163,29 @@ contains
       end do
    end subroutine add
 
-   !> The cut hats for conductances of the contact points.
-   pure function cut_hats_at(hats, weight, omega) result(cut)
-      type(cut_hat_type), intent(in) :: hats(:)
+   !> Heat at edges for conductances of the contact points.
+   pure function edge_heat_at(hats, weight, omega) result(at_edge)
+      type(edge_integral_type), intent(in) :: hats(:)
       real(dp), intent(in) :: weight(:)         !! (m) tributary areas [length^2]
       real(dp), intent(in) :: omega(:)          !! (m) conductances of the points themselves
-      type(cut_hats_type) :: cut
+      type(edge_heat_type) :: at_edge
       real(dp) :: area
       integer :: i
 
-      cut%point = hats%point
-      allocate (cut%conductance(size(hats)), cut%own(size(hats)))
-      call cut%jump%reserve(size(hats), sum([(size(hats(i)%nodes), i=1, size(hats))]))
+      at_edge%point = hats%point
+      allocate (at_edge%conductance(size(hats)), at_edge%own(size(hats)))
+      call at_edge%jump%reserve(size(hats), sum([(size(hats(i)%nodes), i=1, size(hats))]))
       do i = 1, size(hats)
          associate (hat => hats(i), own => omega(hats(i)%point))
             area = own*hat%area(1) + hat%area(2)
-            cut%conductance(i) = area/weight(hat%point)
-            cut%own(i) = hat%area(1)/weight(hat%point)
-            if (.not. hat%is_open .and. own > 0.0_dp) cut%own(i) = cut%own(i) + &
+            at_edge%conductance(i) = area/weight(hat%point)
+            at_edge%own(i) = hat%area(1)/weight(hat%point)
+            if (.not. hat%is_open .and. own > 0.0_dp) at_edge%own(i) = at_edge%own(i) + &
                hat%area(2)/(own*weight(hat%point))
-            call cut%jump%add(hat%nodes, (own*hat%shares(:, 1) + hat%shares(:, 2))/area)
+            call at_edge%jump%add(hat%nodes, (own*hat%shares(:, 1) + hat%shares(:, 2))/area)
          end associate
       end do
-   end function cut_hats_at
+   end function edge_heat_at
 
    !> The conductances along the sides with an edge, each between a contact point and the next.
    pure function edges_of(points, law, opening, modulus) result(edges)
@@ -247,11 +247,11 @@ contains
       end associate
    end function edge_between
 
-   !> The cut hats of the contact points that are not left out.
+   !> Heat at edges without the contact points that are left out.
    pure function without(self, left_out) result(kept)
-      class(cut_hats_type), intent(in) :: self
+      class(edge_heat_type), intent(in) :: self
       logical, intent(in) :: left_out(:)        !! (m)
-      type(cut_hats_type) :: kept
+      type(edge_heat_type) :: kept
       logical, allocatable :: stays(:)
       integer :: i
 
@@ -266,31 +266,32 @@ contains
       end do
    end function without
 
-   !> Conductances of the contact points, of cut hats the mean ones.
-   pure function joined_conductance(omega, cut) result(joined)
+   !> Conductances of the contact points, at edges the mean ones.
+   pure function joined_conductance(omega, at_edge) result(joined)
       real(dp), intent(in) :: omega(:)          !! (m)
-      type(cut_hats_type), intent(in) :: cut
+      type(edge_heat_type), intent(in) :: at_edge
       real(dp) :: joined(size(omega))           !! (m)
 
       joined = omega
-      if (allocated(cut%point)) joined(cut%point) = cut%conductance
+      if (allocated(at_edge%point)) joined(at_edge%point) = at_edge%conductance
    end function joined_conductance
 
    !> Heat that the supports of each node must supply, without the forces of ties: K T - Q plus what
-   !> leaves through the contact points, of cut hats where it crosses them.
-   pure function supplied_heat(bodies, cut, rates) result(heat)
+   !> leaves through the contact points, at edges where it crosses.
+   pure function supplied_heat(bodies, at_edge, rates) result(heat)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(cut_hats_type), intent(in) :: cut
+      type(edge_heat_type), intent(in) :: at_edge
       type(heat_rates_type), intent(in) :: rates
       real(dp), allocatable :: heat(:)          !! (nodes) zero where not prescribed [power]
-      real(dp) :: uncut(size(rates%crossing))
+      real(dp) :: undivided(size(rates%crossing))
 
-      uncut = rates%crossing
-      if (allocated(cut%point)) uncut(cut%point) = 0.0_dp
+      undivided = rates%crossing
+      if (allocated(at_edge%point)) undivided(at_edge%point) = 0.0_dp
       heat = rates%conducted - rates%entering
-      call bodies%points%difference%add_shares(uncut, heat)
-      if (allocated(cut%point)) call cut%jump%add_shares(rates%crossing(cut%point), heat)
+      call bodies%points%difference%add_shares(undivided, heat)
+      if (allocated(at_edge%point)) call at_edge%jump%add_shares(rates%crossing(at_edge%point), &
+         heat)
       call bodies%thermal%map%carry_over(heat)
    end function supplied_heat
 
-end module cut_hats
+end module edge_heat
