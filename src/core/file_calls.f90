@@ -15,6 +15,19 @@ module file_calls
    integer, parameter :: reason_length = 200
    integer, parameter :: number_length = 24   !! of what a working file's name adds, at most
 
+   abstract interface
+      integer(c_int) function path_call(path) bind(c)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+      end function path_call
+   end interface
+
+   procedure(path_call), bind(c, name='file_remove') :: c_remove
+   procedure(path_call), bind(c, name='file_make_folder') :: c_make_folder
+   procedure(path_call), bind(c, name='file_check_folder') :: c_check_folder
+   procedure(path_call), bind(c, name='file_is_stream') :: c_is_stream
+   procedure(path_call), bind(c, name='file_try') :: c_try
+
    interface
       subroutine c_reason(number, text, length) bind(c, name='file_reason')
          import :: c_char, c_int
@@ -27,21 +40,6 @@ module file_calls
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: from(*), to(*)
       end function c_rename
-
-      integer(c_int) function c_remove(path) bind(c, name='file_remove')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-      end function c_remove
-
-      integer(c_int) function c_make_folder(path) bind(c, name='file_make_folder')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-      end function c_make_folder
-
-      integer(c_int) function c_check_folder(path) bind(c, name='file_check_folder')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-      end function c_check_folder
 
       integer(c_int) function c_is_terminal(descriptor) bind(c, name='file_is_terminal')
          import :: c_int
@@ -57,16 +55,6 @@ module file_calls
       integer(c_int) function c_print_error() bind(c, name='file_print_error')
          import :: c_int
       end function c_print_error
-
-      integer(c_int) function c_is_stream(path) bind(c, name='file_is_stream')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-      end function c_is_stream
-
-      integer(c_int) function c_try(path) bind(c, name='file_try')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-      end function c_try
 
       integer(c_int) function c_try_growth(path, count) bind(c, name='file_try_growth')
          import :: c_char, c_int, c_long

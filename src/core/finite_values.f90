@@ -5,16 +5,9 @@ module finite_values
    use kinds, only: dp
    implicit none
    private
-   public :: all_finite, check_finite
+   public :: check_finite
 
 contains
-
-   !> Whether none of some values is infinite or no number.
-   pure logical function all_finite(values)
-      real(dp), intent(in) :: values(:)   !! any values
-
-      all_finite = all(ieee_is_finite(values))
-   end function all_finite
 
    !> Raises an error where values overflowed.
    !> Error: the status given; some value is infinite or no number.
@@ -24,7 +17,7 @@ contains
       integer, intent(in) :: status                       !! one of the status_* constants
       type(error_type), allocatable, intent(out) :: error
 
-      if (all_finite(values)) return
+      if (all(ieee_is_finite(values))) return
       call set_error(error, status, what//' overflow: values of the deck are too large, or too '// &
          'far apart')
    end subroutine check_finite

@@ -7,7 +7,7 @@ module text
    public :: string_type
    public :: others, counted, to_text, few_digits, digits_above, with_decimals, percent
    public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
-   public :: is_whole, integer_fault, real_fault, largest_magnitude, split_words
+   public :: is_whole, integer_fault, real_fault, largest_magnitude, split_words, quoted
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
@@ -336,6 +336,24 @@ contains
       longer(n + 1)%value = string
       call move_alloc(longer, list)
    end subroutine append
+
+   !> A text between double quotes, those inside it doubled; nothing for an empty text. An
+   !> apostrophe precedes text that a spreadsheet would read as a formula.
+   pure function quoted(words) result(field)
+      character(*), intent(in) :: words     !! the text
+      character(:), allocatable :: field    !! as RFC 4180 has it
+      character(*), parameter :: formula_begins = '=+-@'//achar(9)//achar(13)
+      integer :: i
+
+      field = ''
+      if (len(words) == 0) return
+      if (scan(words(:1), formula_begins) > 0) field = "'"
+      do i = 1, len(words)
+         field = field//words(i:i)
+         if (words(i:i) == '"') field = field//'"'
+      end do
+      field = '"'//field//'"'
+   end function quoted
 
    !> A number with its noun, such as 1 row or 3 rows.
    pure function counted(n, noun) result(words)

@@ -1,13 +1,12 @@
 !> The table of a batch: on the terminal, and as a CSV file.
 module batch_table
-   use csv_fields, only: quoted
    use deck_outcomes, only: deck_outcome_type
    use errors, only: error_type
    use file_calls, only: create_working_file, remove_file, rename_file
    use kinds, only: dp
    use messages, only: print_line
    use open_files, only: write_file
-   use text, only: counted, to_text, with_decimals
+   use text, only: counted, quoted, to_text, with_decimals
    use utf8, only: character_count, printable
    implicit none
    private

@@ -184,17 +184,11 @@ contains
    function stored_type(storage) result(type)
       integer, intent(in) :: storage   !! as_real, as_integer, as_long or as_byte
       integer(hid_t) :: type           !! HDF5's type, not to be closed
+      integer(hid_t) :: types(4)
 
-      select case (storage)
-      case (as_integer)
-         type = h5t_std_i32le
-      case (as_long)
-         type = h5t_std_i64le
-      case (as_byte)
-         type = h5t_std_u8le
-      case default
-         type = h5t_ieee_f64le
-      end select
+      types([as_real, as_integer, as_long, as_byte]) = [h5t_ieee_f64le, h5t_std_i32le, &
+         h5t_std_i64le, h5t_std_u8le]
+      type = types(storage)
    end function stored_type
 
    !> The type of text of any length, which h5py shows as str; to be closed by the caller.

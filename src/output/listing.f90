@@ -13,11 +13,11 @@ module listing
    use listing_increments, only: print_attempts, print_balances, print_body_errors, &
       print_increment, print_interface, print_interface_errors
    use listing_tables, only: print_contact_table, print_iterations, print_requested, print_verdicts
-   use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped
+   use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped, &
+      printed_text_type
    use model, only: model_type
    use open_files, only: append_to_file, close_descriptor, empty_file, lock_file, open_in_memory, &
       overwrite_in_file, unlock_file
-   use printed_text, only: printed_text_type
    use records, only: increment_record_type
    use run_summaries, only: in_times, or_blank, run_entries, run_entry_type, run_summary_type
    use summary, only: summary_type

@@ -1,7 +1,7 @@
 !> The block of an accepted increment in the listing: convergence, interfaces, balances, and at the
 !> end of a step the errors of bodies in the energy norm and the bounds of interfaces' quantities.
 module listing_increments
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use contact_states, only: contact_open, contact_stick
@@ -200,6 +200,8 @@ contains
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
       type(interface_errors_type), intent(in) :: errors
       character(page_width) :: line
+      character(:), allocatable :: name
+      real(dp) :: part
       integer :: k, q, width
       logical :: is_told(size(estimated))
 
@@ -213,10 +215,15 @@ contains
             is_told(q) = is_worth_telling(q, value, bound) .and. &
                .not. is_end_of_face(estimated(q), points, value)
             if (.not. is_told(q)) cycle
+            name = words_of(estimated(q)%name)
+            name = name//repeat(' ', width - len(name))
+            part = ieee_value(part, ieee_quiet_nan)
+            if (abs(value) > 0.0_dp) part = 100.0_dp*bound/abs(value)
             write (line, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
-               name_of(q, width), column(value, 14, 6), bound_word(bound), &
-               percent(bound, value), shown(errors%mesh(q), 12), shown(errors%increment(q), 14), &
-               shown(errors%iteration(q), 14), largest_part(errors, q)
+               name, column(value, 14, 6), cell(bound, 13, 'uncertain'), &
+               cell(part, 11, '-'), cell(errors%mesh(q), 12, '-'), &
+               cell(errors%increment(q), 14, '-'), cell(errors%iteration(q), 14, '-'), &
+               largest_part(errors, q)
             write (unit, '(a)') trim(line)
          end associate
       end do
@@ -228,14 +235,6 @@ contains
          end associate
       end do
    end subroutine print_interface_errors
-
-   !> The name of an estimated quantity in words.
-   pure function name_of(q, width) result(name)
-      integer, intent(in) :: q, width
-      character(width) :: name
-
-      name = words_of(estimated(q)%name)
-   end function name_of
 
    !> Whether a quantity has a value and a part in the deck; that of friction is 0 without it.
    pure logical function is_worth_telling(q, value, bound)
@@ -249,32 +248,16 @@ contains
       is_worth_telling = bound > 0.0_dp
    end function is_worth_telling
 
-   !> A bound, or the word where there is none.
-   function bound_word(bound) result(string)
-      real(dp), intent(in) :: bound
-      character(13) :: string
-
-      string = '    uncertain'
-      if (.not. ieee_is_nan(bound)) string = column(bound, 13, 2)
-   end function bound_word
-
-   function shown(value, width) result(string)
+   !> A number in a column, or a word set to the right where there is none.
+   pure function cell(value, width, missing) result(string)
       real(dp), intent(in) :: value
       integer, intent(in) :: width
+      character(*), intent(in) :: missing
       character(width) :: string
 
-      string = repeat(' ', width - 1)//'-'
+      string = repeat(' ', width - len(missing))//missing
       if (.not. ieee_is_nan(value)) string = column(value, width, 2)
-   end function shown
-
-   function percent(bound, value) result(string)
-      real(dp), intent(in) :: bound, value
-      character(11) :: string
-
-      string = repeat(' ', 10)//'-'
-      if (ieee_is_nan(bound)) return
-      if (abs(value) > 0.0_dp) string = column(100.0_dp*bound/abs(value), 11, 2)
-   end function percent
+   end function cell
 
    !> Which part of a bound is the largest.
    pure function largest_part(errors, q) result(name)

@@ -6,7 +6,7 @@ module model_words
    use kinds, only: dp
    use element_kinds, only: axisymmetric, plane_stress
    use friction_laws, only: friction_law_type, rough_coefficient, unlimited
-   use materials, only: constant_type, material_type
+   use materials, only: material_type
    use model, only: model_type
    use steps, only: analysis_heat, analysis_static
    use text, only: append, counted, string_type, to_text
@@ -21,16 +21,24 @@ contains
    pure function section_words(model) result(lines)
       type(model_type), intent(in) :: model
       type(string_type), allocatable :: lines(:)
-      integer :: i, plane, elements
+      character(:), allocatable :: words
+      integer :: i, elements
 
       allocate (lines(0))
       do i = 1, size(model%sections)
          associate (section => model%sections(i), mesh => model%mesh)
             elements = count(mesh%element_section == i)
             if (elements == 0) cycle
-            plane = mesh%element_plane(findloc(mesh%element_section, i, dim=1))
+            select case (mesh%element_plane(findloc(mesh%element_section, i, dim=1)))
+            case (axisymmetric)
+               words = 'axisymmetric, full circumference'
+            case (plane_stress)
+               words = 'plane stress, thickness '//to_text(section%thickness)
+            case default
+               words = 'plane strain, thickness '//to_text(section%thickness)
+            end select
             call append(lines, 'material '//model%materials(section%material)%name//', '// &
-               plane_words(plane, section%thickness)//', '//counted(elements, 'element'))
+               words//', '//counted(elements, 'element'))
          end associate
       end do
    end function section_words
@@ -80,21 +88,6 @@ contains
       words = to_text(ends(1))//' to '//to_text(ends(2))
    end function from_to
 
-   pure function plane_words(plane, thickness) result(words)
-      integer, intent(in) :: plane
-      real(dp), intent(in) :: thickness
-      character(:), allocatable :: words
-
-      select case (plane)
-      case (axisymmetric)
-         words = 'axisymmetric, full circumference'
-      case (plane_stress)
-         words = 'plane stress, thickness '//to_text(thickness)
-      case default
-         words = 'plane strain, thickness '//to_text(thickness)
-      end select
-   end function plane_words
-
    !> Kind of the contact points, in the plural.
    pure function points_words(points) result(words)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
@@ -111,11 +104,9 @@ contains
 
       words = pairing_name(points%pairing)
       if (asked /= pairing_by_faces) return
-      if (allocated(points%mismatch)) then
-         words = words//', because the faces do not match: '//points%mismatch
-      else
-         words = words//', because the faces match'
-      end if
+      words = words//', because the faces match'
+      if (allocated(points%mismatch)) words = pairing_name(points%pairing)// &
+         ', because the faces do not match: '//points%mismatch
    end function pairing_words
 
    !> Corners of the slave that no master is opposite to; empty for none.
@@ -135,21 +126,16 @@ contains
       character(:), allocatable :: words            !! such as Young's modulus 2E5, ...
       integer :: i
 
-      words = 'no constants'
-      if (.not. allocated(material%constants)) return
-      if (size(material%constants) == 0) return
-      words = constant_words(material%constants(1))
-      do i = 2, size(material%constants)
-         words = words//', '//constant_words(material%constants(i))
-      end do
+      words = ''
+      if (allocated(material%constants)) then
+         do i = 1, size(material%constants)
+            if (i > 1) words = words//', '
+            words = words//trim(material%constants(i)%name)//' '// &
+               to_text(material%constants(i)%value)
+         end do
+      end if
+      if (words == '') words = 'no constants'
    end function material_words
-
-   pure function constant_words(constant) result(words)
-      type(constant_type), intent(in) :: constant
-      character(:), allocatable :: words
-
-      words = trim(constant%name)//' '//to_text(constant%value)
-   end function constant_words
 
    !> A law of friction.
    pure function friction_words(friction) result(words)

@@ -17,14 +17,13 @@ module progress
    !> The progress line.
    type :: progress_type
       private
-      logical :: is_shown = .false.         !! whether there is a terminal that wants it
+      logical, public :: is_shown = .false. !! whether there is a terminal that wants it
       real(dp) :: last_update = 0.0_dp      !! when the line was last drawn [s]
       character(:), allocatable :: last     !! what the last increment came to
       integer :: length = 0                 !! characters that are on the line
       character(line_length) :: line = ''   !! what is there
    contains
       procedure :: start
-      procedure :: is_on_line
       procedure :: begin_increment
       procedure :: take
       procedure :: say
@@ -42,13 +41,6 @@ contains
       if (self%is_shown) self%is_shown = is_terminal(2)
       self%last = ''
    end subroutine start
-
-   !> Whether the line is shown.
-   pure logical function is_on_line(self)
-      class(progress_type), intent(in) :: self   !! the line
-
-      is_on_line = self%is_shown
-   end function is_on_line
 
    !> Shows which increment is being solved, and what the last one came to. The line is drawn some
    !> times a second at most.

@@ -1,5 +1,7 @@
-!> Group `/VTKHDF` of the result file: the mesh, with point and cell data of every increment that is
-!> due. The geometry is static, so its offsets are zero at every step.
+!> Both grids of a run. Group `/VTKHDF` of the result file: the mesh, with point and cell data of
+!> every increment that is due. The file `NAME.contact.vtkhdf`: the contact points of all interfaces
+!> as lines along the slaves, with their quantities at every increment, so that they are drawn and
+!> exported by themselves.
 module result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
@@ -8,24 +10,28 @@ module result_fields
    use field_quantities, only: element_values, point_values
    use hdf5_writer, only: as_integer, hdf5_writer_type
    use kinds, only: dp
-   use model, only: model_type
+   use model, only: model_type, unit_labels_type
    use quantity_types, only: of_elements, of_contact_points, of_points, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets
+   use result_tables, only: write_geometry
    use vtk_grids, only: cell_group, point_group, vtk_grid_type, write_grid
    implicit none
    private
-   public :: field_results_type
+   public :: field_results_type, contact_grid_type, node_sets, cell_sets, interface_sets
 
    character(*), parameter :: mark = 'contact_'   !! before names of quantities of contact points
 
    !> Point and cell data that do not vary.
-   character(*), parameter :: node_set = 'node_id'
+   character(*), parameter :: node_sets(1) = ['node_id']
    character(*), parameter :: cell_sets(3) = [character(10) :: 'element_id', 'body', 'material']
+
+   character(*), parameter :: interface_sets(1) = ['interface']   !! cell data of contact points
 
    !> VTK's cell types of quad8, quad8_reduced, quad4, triangle6 and triangle3. Its corners and
    !> midside nodes are in our order.
    integer, parameter :: vtk_types(kind_count) = [23, 23, 9, 22, 5]
+   integer, parameter :: vtk_line = 3
 
    !> Fields of the result file.
    type, extends(vtk_grid_type) :: field_results_type
@@ -40,8 +46,14 @@ module result_fields
       procedure :: start
       procedure :: append
       procedure :: write_head
-      procedure :: flush => flush_fields
    end type field_results_type
+
+   !> The grid of the contact points, without cell data that grow.
+   type, extends(vtk_grid_type) :: contact_grid_type
+   contains
+      procedure :: append => append_contact
+      procedure, nopass :: write_head => write_contact_head
+   end type contact_grid_type
 
 contains
 
@@ -192,7 +204,7 @@ contains
          end do
          call write_grid(file, points, cell_points, offsets, vtk_types(mesh%element_kind), &
             model%units)
-         call file%write(point_group//node_set, mesh%node_number(self%point_node), as_integer, &
+         call file%write(point_group//node_sets(1), mesh%node_number(self%point_node), as_integer, &
             'number of the node in the deck')
          call file%write(cell_group//trim(cell_sets(1)), mesh%element_number, as_integer, &
             'number of the element in the deck')
@@ -204,13 +216,48 @@ contains
       end associate
    end subroutine write_head
 
-   !> Writes the waiting rows.
-   subroutine flush_fields(self, file, is_new)
-      class(field_results_type), intent(inout) :: self
-      type(hdf5_writer_type), intent(inout) :: file       !! the open file, with its head
-      logical, intent(in) :: is_new                       !! whether these are its first rows
+   !> Adds the contact points of an increment.
+   subroutine append_contact(self, record, interfaces)
+      class(contact_grid_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
+      type(contact_points_type), intent(in) :: interfaces(:)
+      integer :: i, k
 
-      call self%flush_grid(file, is_new, [node_set], cell_sets)
-   end subroutine flush_fields
+      do k = 1, size(self%sets)
+         do i = 1, size(interfaces)
+            call self%sets(k)%append(contact_values(self%point_data(k)%name, interfaces(i), &
+               record%contacts(i)))
+         end do
+      end do
+      call self%append_time(record%time)
+   end subroutine append_contact
+
+   !> Writes the lines and what does not vary: numbers of nodes, arc lengths, weights.
+   subroutine write_contact_head(file, interfaces, node_number, labels)
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file
+      type(contact_points_type), intent(in) :: interfaces(:)
+      integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
+      type(unit_labels_type), intent(in) :: labels        !! units of the deck
+      real(dp), allocatable :: points(:, :)
+      integer, allocatable :: ends(:), interface_of(:)
+      integer :: first, i, k, m
+
+      allocate (points(3, sum([(size(interfaces(i)%slave), i=1, size(interfaces))])), &
+         source=0.0_dp)
+      first = 0
+      allocate (ends(0), interface_of(0))
+      do i = 1, size(interfaces)
+         m = size(interfaces(i)%slave)
+         points(:2, first + 1:first + m) = interfaces(i)%position
+         ends = [ends, [(first + k, first + k + 1, k=1, m - 1)]]
+         interface_of = [interface_of, [(i, k=1, m - 1)]]
+         first = first + m
+      end do
+      call write_grid(file, points, ends, [(2*k, k=0, size(interface_of))], &
+         [(vtk_line, k=1, size(interface_of))], labels)
+      call write_geometry(file, point_group, interfaces, node_number, labels)
+      call file%write(cell_group//interface_sets(1), interface_of, as_integer, &
+         'number of the *CONTACT PAIR, from 1')
+   end subroutine write_contact_head
 
 end module result_fields

@@ -8,7 +8,6 @@
 module results
    use accuracy_rounds, only: accuracy_rounds_type
    use contact_definitions, only: pairing_name
-   use contact_grid, only: contact_grid_type
    use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
@@ -20,9 +19,10 @@ module results
       needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes, &
       quantity_type
    use records, only: increment_record_type
-   use reported_quantities, only: datasets
+   use reported_quantities, only: datasets, geometry
    use result_accuracy, only: write_accuracy
-   use result_fields, only: field_results_type
+   use result_fields, only: cell_sets, contact_grid_type, field_results_type, interface_sets, &
+      node_sets
    use result_tables, only: bounded_quantities, result_table_type, write_geometry
    use run_summaries, only: or_blank, run_summary_type, write_run
    use solution_report, only: iteration_record_type
@@ -313,7 +313,8 @@ contains
       call self%contact_file%open(is_new)
       if (is_new) call self%contact_grid%write_head(self%contact_file%content, interfaces, &
          model%mesh%node_number, model%units)
-      call self%contact_grid%flush(self%contact_file%content, is_new)
+      call self%contact_grid%flush_grid(self%contact_file%content, is_new, geometry%name, &
+         interface_sets)
    end subroutine flush_contact
 
    subroutine flush_all(self, model, interfaces)
@@ -326,7 +327,7 @@ contains
       call self%file%open(is_new)
       associate (file => self%file%content)
          if (is_new) call write_heads(self, model, interfaces)
-         call self%fields%flush(file, is_new)
+         call self%fields%flush_grid(file, is_new, node_sets, cell_sets)
          do i = 1, size(self%tables)
             call flush_sets(self%tables(i)%sets, file)
          end do

@@ -31,8 +31,8 @@ module run_output
       private
       !> The caller keeps it up to date; of a later round it holds the checks of the first
       type(run_summary_type), public :: run
-      type(results_type) :: results                            !! result file, `.sta`, `.cvg`
-      type(listing_type) :: listing                            !! `.lst`
+      type(results_type), public :: results                    !! result file, `.sta`, `.cvg`
+      type(listing_type), public :: listing                    !! `.lst`
       type(verifier_type) :: verifier                          !! *VERIFY cards
       type(progress_type), public :: progress                  !! progress line
       type(run_judgement_type) :: judgement                    !! what the whole run shows
@@ -48,11 +48,7 @@ module run_output
       procedure :: finish
       procedure :: break_off
       procedure :: close => close_output
-      procedure :: accepted
       procedure :: kept
-      procedure :: listing_path
-      procedure :: working_path
-      procedure :: published
       procedure :: written
       procedure :: failed_checks
       procedure :: summary_lines
@@ -265,29 +261,6 @@ contains
          trim(merge('its time   ', 'their times', counts(3) == 1)))
    end function failed_checks
 
-   !> Path of the listing, or nothing before it is reserved.
-   pure function listing_path(self) result(path)
-      class(run_output_type), intent(in) :: self
-      character(:), allocatable :: path
-
-      path = or_blank(self%listing%path)
-   end function listing_path
-
-   !> Path of the file that is renamed once it is whole, or nothing before it has a name.
-   pure function working_path(self) result(path)
-      class(run_output_type), intent(in) :: self
-      character(:), allocatable :: path
-
-      path = or_blank(self%results%file%working_path)
-   end function working_path
-
-   !> Number of increments that the result file in place holds.
-   pure integer function published(self)
-      class(run_output_type), intent(in) :: self
-
-      published = self%results%published
-   end function published
-
    !> How many kinds of files of this run are in place: 0 none, 1 the listing, 2 with it the passes
    !> that failed, which the end of a run leaves, 3 all.
    pure integer function written(self)
@@ -295,7 +268,7 @@ contains
 
       written = merge(1, 0, self%listing%is_begun())
       if (self%is_finished) written = 2
-      if (self%published() > 0) written = merge(4, 3, self%results%has_contact)
+      if (self%results%published > 0) written = merge(4, 3, self%results%has_contact)
    end function written
 
    !> Contents of the files if the run ends here.
@@ -304,11 +277,11 @@ contains
       character(:), allocatable :: words           !! one sentence; empty if nothing
 
       words = ''
-      if (self%kept_round > 0 .and. self%published() == 0) then
+      if (self%kept_round > 0 .and. self%results%published == 0) then
          words = 'The results are those of round '//to_text(self%kept_round)// &
             ', the last whole one.'
       else if (self%listing%is_begun()) then
-         words = words_of_kept(self%published())
+         words = words_of_kept(self%results%published)
       end if
    end function kept
 
@@ -321,13 +294,5 @@ contains
       if (increments > 0) words = 'The results hold the increments up to number '// &
          to_text(increments)//'.'
    end function words_of_kept
-
-   !> Number of increments that were accepted.
-   pure function accepted(self) result(number)
-      class(run_output_type), intent(in) :: self
-      integer :: number                            !! increments
-
-      number = self%results%accepted
-   end function accepted
 
 end module run_output

@@ -5,9 +5,8 @@ module status_files
    use file_calls, only: try_file
    use file_identities, only: check_in_place
    use increment_quantities, only: history_value, pass_value
-   use listing_text, only: column, table_cell, table_head
+   use listing_text, only: column, printed_text_type, table_cell, table_head
    use open_files, only: append_to_file, close_descriptor, open_new_file
-   use printed_text, only: printed_text_type
    use quantity_types, only: of_passes, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: quantities

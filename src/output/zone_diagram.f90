@@ -55,32 +55,21 @@ contains
       class(zone_diagram_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
       integer, intent(in) :: contact_state(:)            !! (contact points) contact states
+      integer :: n
 
-      if (self%rows == 0) call resize(self, size(contact_state), 64)
-      if (self%rows == size(self%load)) call resize(self, size(contact_state), 2*self%rows)
+      if (.not. allocated(self%load)) allocate (self%increment(0), self%load(0), &
+         self%contact_state(size(contact_state), 0))
+      if (self%rows == size(self%load)) then
+         n = max(64, 2*self%rows)
+         self%increment = reshape(self%increment, [n], pad=[0])
+         self%load = reshape(self%load, [n], pad=[0.0_dp])
+         self%contact_state = reshape(self%contact_state, [size(contact_state), n], pad=[0])
+      end if
       self%rows = self%rows + 1
       self%increment(self%rows) = record%increment
       self%load(self%rows) = record%load
       self%contact_state(:, self%rows) = contact_state
    end subroutine add
-
-   subroutine resize(self, points, rows)
-      class(zone_diagram_type), intent(inout) :: self
-      integer, intent(in) :: points
-      integer, intent(in) :: rows
-      integer, allocatable :: increment(:), contact_state(:, :)
-      real(dp), allocatable :: load(:)
-
-      allocate(increment(rows), load(rows), contact_state(points, rows))
-      if (self%rows > 0) then
-         increment(:self%rows) = self%increment(:self%rows)
-         load(:self%rows) = self%load(:self%rows)
-         contact_state(:, :self%rows) = self%contact_state(:, :self%rows)
-      end if
-      call move_alloc(increment, self%increment)
-      call move_alloc(load, self%load)
-      call move_alloc(contact_state, self%contact_state)
-   end subroutine resize
 
    !> Prints the diagram, in several panels where the contact points do not fit side by side.
    subroutine print_diagram(self, unit, points)

@@ -21,6 +21,8 @@ module deck_run
    use records, only: increment_record_type
    use run_description, only: describe_run
    use run_output, only: run_output_type
+   use run_summaries, only: or_blank
+   use run_summaries, only: or_blank
    use text, only: append, string_type, to_text
    use utf8, only: printable
    use variations, only: variation_type
@@ -206,13 +208,13 @@ contains
                error%status = status_no_convergence
             end if
             call output%fail(error%message, record)
-            call outcome%note(record, output%accepted(), output%written())
+            call outcome%note(record, output%results%accepted, output%written())
             if (output%kept_round > 0) return
          end if
          call output%finish(model, interfaces, cards, rounds%accuracy, output_error)
          if (output%kept_round == 0) then
             outcome%keeps_round = .false.
-            outcome%increments = output%accepted()
+            outcome%increments = output%results%accepted
             outcome%summary = output%summary_lines(model, interfaces)
             call outcome%note_files(output%written())
          end if
@@ -253,7 +255,7 @@ contains
             call self%end%hold(.true.)
             if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
             call output%accept(record, self%model, simulation%bodies%interfaces, error)
-            call outcome%note(record, output%accepted(), output%written())
+            call outcome%note(record, output%results%accepted, output%written())
             self%is_written = .not. allocated(error)
             if (allocated(error)) return
             call self%end%hold(.false.)
@@ -290,17 +292,18 @@ contains
       integer, intent(in) :: when   ! one of the end_* constants
 
       self%end%when = when
-      self%end%shows_progress = self%output%progress%is_on_line()
+      self%end%shows_progress = self%output%progress%is_shown
       self%end%deck = printable(self%path)
       self%end%where = where_words(self)
-      self%end%listing = self%output%listing_path()
-      self%end%working = self%output%working_path()
+      self%end%listing = or_blank(self%output%listing%path)
+      self%end%working = or_blank(self%output%results%file%working_path)
       self%end%kept = self%output%kept()
       self%end%holds = kept_words(self)
       ! Increments that wait for their publication are lost with the process.
-      if (self%output%kept_round == 0 .and. self%output%published() < self%output%accepted()) then
+      if (self%output%kept_round == 0 .and. self%output%results%published < &
+         self%output%results%accepted) then
          self%end%holds = '; the results hold those up to number '// &
-            to_text(self%output%published())
+            to_text(self%output%results%published)
       end if
       call self%end%prepare()
    end subroutine prepare_end
@@ -350,7 +353,7 @@ contains
 
       words = ''
       associate (kept_round => self%output%kept_round)
-         if (kept_round > 0 .and. self%output%published() == 0) words = &
+         if (kept_round > 0 .and. self%output%results%published == 0) words = &
             '; the results are those of round '//to_text(kept_round)
       end associate
    end function kept_words

@@ -1,13 +1,12 @@
 !> The table of a trade-off study, as text and as a CSV file.
 module trade_table
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use csv_fields, only: quoted
    use errors, only: error_type
    use kinds, only: dp
    use messages, only: print_line
    use open_files, only: write_file
    use reported_quantities, only: traded
-   use text, only: few_digits, percent, to_text, with_decimals
+   use text, only: few_digits, percent, quoted, to_text, with_decimals
    use trade_study, only: is_there, quantity_count, same_time, target_count, targets, &
       trade_row_type, trade_type
    implicit none
