@@ -2,7 +2,7 @@
 !> nodes there, integrated once. A location is a kind of load on a component of a node or element;
 !> one that a step loads several times has as many entries, one behind the other.
 module unit_loads
-   use element_integrals, only: body_moments, body_weights, side_mass, side_pressure, side_weights
+   use element_integrals, only: body_moments, side_mass, side_pressure, side_weights
    use element_kinds, only: axisymmetric, element_node_count, side_nodes
    use kinds, only: dp
    use model, only: model_type
@@ -189,7 +189,7 @@ contains
       integer, allocatable, intent(out) :: nodes(:)      !! (n)
       real(dp), allocatable, intent(out) :: forces(:, :) !! (2, n) [force per unit of the load]
       real(dp), allocatable, intent(out) :: heat(:)      !! (n) [power per unit of the load]
-      real(dp), allocatable :: x(:, :), weights(:)
+      real(dp), allocatable :: moments(:, :), x(:, :), weights(:)
       real(dp) :: thickness
       logical :: round
 
@@ -205,13 +205,11 @@ contains
             call find_domain(model, item, merge(component, (component + 1)/2, &
                kind == load_face_heat), nodes, x, thickness, round)
             weights = side_weights(x, thickness, round)
-         case (load_body_force, load_gravity, load_body_heat)
+         case (load_body_force, load_gravity, load_body_heat, load_centrifugal)
             call find_domain(model, item, 0, nodes, x, thickness, round)
-            weights = body_weights(model%mesh%element_kind(item), x, thickness, round)
-         case (load_centrifugal)
-            call find_domain(model, item, 0, nodes, x, thickness, round)
-            forces = turning_forces(body_moments(model%mesh%element_kind(item), x, thickness, &
-               round), component)
+            moments = body_moments(model%mesh%element_kind(item), x, thickness, round)
+            weights = moments(1, :)
+            if (kind == load_centrifugal) forces = turning_forces(moments, component)
          case default
             return
          end select

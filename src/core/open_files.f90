@@ -13,19 +13,25 @@ module open_files
    integer(c_int), parameter :: locked_by_another = -1_c_int   !! as in file_calls.c
    integer(c_int), parameter :: not_lockable = -2_c_int        !! alike
 
+   abstract interface
+      integer(c_int) function open_call(path, descriptor) bind(c)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), intent(out) :: descriptor
+      end function open_call
+
+      integer(c_int) function descriptor_call(descriptor) bind(c)
+         import :: c_int
+         integer(c_int), value :: descriptor
+      end function descriptor_call
+   end interface
+
+   procedure(open_call), bind(c, name='file_open_new') :: c_open_new
+   procedure(open_call), bind(c, name='file_lock') :: c_lock
+   procedure(descriptor_call), bind(c, name='file_empty') :: c_empty
+   procedure(descriptor_call), bind(c, name='file_close') :: c_close
+
    interface
-      integer(c_int) function c_open_new(path, descriptor) bind(c, name='file_open_new')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), intent(out) :: descriptor
-      end function c_open_new
-
-      integer(c_int) function c_lock(path, descriptor) bind(c, name='file_lock')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), intent(out) :: descriptor
-      end function c_lock
-
       subroutine c_unlock(path, descriptor) bind(c, name='file_unlock')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
@@ -52,16 +58,6 @@ module open_files
          character(kind=c_char), intent(in) :: text(*)
          integer(c_long), value :: count
       end function c_overwrite
-
-      integer(c_int) function c_empty(descriptor) bind(c, name='file_empty')
-         import :: c_int
-         integer(c_int), value :: descriptor
-      end function c_empty
-
-      integer(c_int) function c_close(descriptor) bind(c, name='file_close')
-         import :: c_int
-         integer(c_int), value :: descriptor
-      end function c_close
    end interface
 
 contains

@@ -90,7 +90,7 @@ contains
    pure subroutine find_neighbours(mesh, start, neighbour)
       type(mesh_type), intent(in) :: mesh
       integer, allocatable, intent(out) :: start(:), neighbour(:)
-      integer :: last_of(size(mesh%node_number)), e, first, i, k, q
+      integer :: last_of(size(mesh%node_number)), e, first, i, k, last, q
       integer, allocatable :: element(:), first_element(:)
 
       call invert_lists(mesh%element_nodes, element_node_count(mesh%element_kind), &
@@ -101,33 +101,24 @@ contains
       start(1) = 1
       do i = 1, size(last_of)
          first = start(i)
-         k = first - 1
+         last = first - 1
          do e = first_element(i), first_element(i + 1) - 1
             do q = 1, element_node_count(mesh%element_kind(element(e)))
                associate (node => mesh%element_nodes(q, element(e)))
                   if (last_of(node) == i) cycle
                   last_of(node) = i
-                  k = k + 1
-                  call insert(node, neighbour(first:k))
+                  do k = last, first, -1
+                     if (neighbour(k) < node) exit
+                     neighbour(k + 1) = neighbour(k)
+                  end do
+                  neighbour(k + 1) = node
+                  last = last + 1
                end associate
             end do
          end do
-         start(i + 1) = k + 1
+         start(i + 1) = last + 1
       end do
-      neighbour = neighbour(:k)
+      neighbour = neighbour(:last)
    end subroutine find_neighbours
-
-   !> Puts a value among sorted ones, which leave the last place free.
-   pure subroutine insert(value, sorted)
-      integer, intent(in) :: value
-      integer, intent(inout) :: sorted(:)
-      integer :: k
-
-      do k = size(sorted), 2, -1
-         if (sorted(k - 1) < value) exit
-         sorted(k) = sorted(k - 1)
-      end do
-      sorted(k) = value
-   end subroutine insert
 
 end module element_assembly

@@ -9,7 +9,7 @@ module element_integrals
    use shape_functions, only: element_gradients, element_shape, side_shape, side_slope
    implicit none
    private
-   public :: side_weights, side_pressure, side_mass, body_weights, body_moments, area_factor
+   public :: side_weights, side_pressure, side_mass, body_moments, area_factor
 
    real(dp), parameter :: two_pi = 2*acos(-1.0_dp)
 
@@ -93,19 +93,6 @@ contains
       psi = side_shape(size(coordinates, 2), gauss_point_3(g))
       along = matmul(coordinates, side_slope(size(coordinates, 2), gauss_point_3(g)))
    end subroutine side_point
-
-   !> Integral of psi^q dV: nodal forces or rates of a unit load per volume.
-   pure function body_weights(kind, coordinates, thickness, axisymmetric) result(weights)
-      integer, intent(in) :: kind                   !! kind of the element
-      real(dp), intent(in) :: coordinates(:, :)     !! (2, nodes of the kind) [length]
-      real(dp), intent(in) :: thickness             !! thickness [length]
-      logical, intent(in) :: axisymmetric           !! whether x is a radius
-      real(dp) :: weights(element_node_count(kind)) !! (nodes) [length^3]
-      real(dp) :: moments(3, element_node_count(kind))
-
-      moments = body_moments(kind, coordinates, thickness, axisymmetric)
-      weights = moments(1, :)
-   end function body_weights
 
    !> Integrals of psi^q (1, x, y) dV: nodal forces of a unit load per volume, and those of a body
    !> that turns round the origin in its plane, per density and squared angular speed; the second

@@ -14,7 +14,7 @@ module field_recovery
    implicit none
    private
    public :: point_map_type, make_points
-   public :: prepare_samples, stress_samples, heat_flux_samples, average_samples
+   public :: recovery_rules, prepare_samples, stress_samples, heat_flux_samples, average_samples
 
    !> The points at which averaged fields live: one per node and section.
    type :: point_map_type
@@ -73,16 +73,20 @@ contains
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       type(point_fields_type), intent(out) :: fields
+
+      call fields%prepare(mesh, sections, materials, orientations, recovery_rules())
+   end subroutine prepare_samples
+
+   !> Recovery points of every kind of element. Equal weights are right for the four-node element,
+   !> whose mean dilatation is that over these points.
+   pure function recovery_rules() result(rules)
       type(point_rule_type) :: rules(kind_count)
       integer :: k
 
       do k = 1, kind_count
-         ! Equal weights are right for the four-node element, whose mean dilatation is that over
-         ! these points.
          rules(k) = point_rule(k, recovery_points(k), spread(1.0_dp, 1, recovery_count(k)))
       end do
-      call fields%prepare(mesh, sections, materials, orientations, rules)
-   end subroutine prepare_samples
+   end function recovery_rules
 
    !> Stress at all recovery points along x and y, eq. (1.5).
    pure subroutine stress_samples(fields, mesh, displacement, temperature, samples)

@@ -1,22 +1,16 @@
 !> Strains and rotations of the elements of a mesh.
 module strains
-   use element_kinds, only: axisymmetric, element_node_count, kind_count
+   use element_kinds, only: axisymmetric, kind_count
+   use field_recovery, only: recovery_rules
    use kinds, only: dp
    use mesh, only: mesh_type
-   use quadrature, only: recovery_count, recovery_points
-   use shape_functions, only: element_shape, local_gradients
+   use point_fields, only: point_rule_type
    implicit none
    private
    public :: largest_deformation, of_strain, of_rotation
 
    integer, parameter :: of_strain = 1     !! largest principal strain
    integer, parameter :: of_rotation = 2   !! rotation in the plane
-
-   !> Shape functions at the points where stress is recovered.
-   type :: point_shapes_type
-      real(dp) :: psi(8, 4) = 0.0_dp        !! (nodes, points)
-      real(dp) :: slope(2, 8, 4) = 0.0_dp   !! (2, nodes, points) by xi and eta
-   end type point_shapes_type
 
 contains
 
@@ -27,17 +21,15 @@ contains
       real(dp), intent(in) :: displacement(:, :)    !! (2, nodes) [length]
       real(dp), intent(out) :: largest(2)           !! of_strain [-], of_rotation [radian]
       integer, intent(out) :: element(2)            !! indexes of the elements that have them
-      type(point_shapes_type) :: shapes(kind_count)
+      type(point_rule_type) :: rules(kind_count)
       real(dp) :: there(2)
-      integer :: e, kind
+      integer :: e
 
-      do kind = 1, kind_count
-         shapes(kind) = shapes_at_points(kind)
-      end do
+      rules = recovery_rules()
       largest = -1.0_dp
       element = 0
       do e = 1, size(mesh%element_kind)
-         there = element_deformation(mesh, e, displacement, shapes(mesh%element_kind(e)))
+         there = element_deformation(mesh, e, displacement, rules(mesh%element_kind(e)))
          where (there > largest)
             largest = there
             element = e
@@ -45,26 +37,11 @@ contains
       end do
    end subroutine largest_deformation
 
-   !> Shape functions at the points of a kind of element.
-   pure function shapes_at_points(kind) result(shapes)
-      integer, intent(in) :: kind
-      type(point_shapes_type) :: shapes
-      real(dp) :: points(2, recovery_count(kind))
-      integer :: g, n
-
-      n = element_node_count(kind)
-      points = recovery_points(kind)
-      do g = 1, size(points, 2)
-         shapes%psi(:n, g) = element_shape(kind, points(:, g))
-         shapes%slope(:, :n, g) = local_gradients(kind, points(:, g))
-      end do
-   end function shapes_at_points
-
-   pure function element_deformation(mesh, e, displacement, shapes) result(largest)
+   pure function element_deformation(mesh, e, displacement, rule) result(largest)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: e
       real(dp), intent(in) :: displacement(:, :)
-      type(point_shapes_type), intent(in) :: shapes
+      type(point_rule_type), intent(in) :: rule
       real(dp) :: largest(2)
       real(dp) :: values(4, 8)    ! coordinates and displacements of the nodes
       real(dp) :: map(4, 2)       ! their derivatives by xi and eta
@@ -73,32 +50,30 @@ contains
       integer :: g, n, q
 
       largest = 0.0_dp
-      associate (kind => mesh%element_kind(e))
-         n = element_node_count(kind)
+      n = rule%nodes
+      do q = 1, n
+         values(:2, q) = mesh%coordinates(:, mesh%element_nodes(q, e))
+         values(3:, q) = displacement(:, mesh%element_nodes(q, e))
+      end do
+      do g = 1, rule%count
+         map = 0.0_dp
          do q = 1, n
-            values(:2, q) = mesh%coordinates(:, mesh%element_nodes(q, e))
-            values(3:, q) = displacement(:, mesh%element_nodes(q, e))
+            map(:, 1) = map(:, 1) + rule%slope_xi(g, q)*values(:, q)
+            map(:, 2) = map(:, 2) + rule%slope_eta(g, q)*values(:, q)
          end do
-         do g = 1, recovery_count(kind)
-            map = 0.0_dp
-            do q = 1, n
-               map(:, 1) = map(:, 1) + shapes%slope(1, q, g)*values(:, q)
-               map(:, 2) = map(:, 2) + shapes%slope(2, q, g)*values(:, q)
-            end do
-            jacobian = map(1, 1)*map(2, 2) - map(1, 2)*map(2, 1)
-            slope = 0.0_dp
-            if (abs(jacobian) > 0.0_dp) then
-               slope(:, 1) = (map(2, 2)*map(3:, 1) - map(2, 1)*map(3:, 2))/jacobian
-               slope(:, 2) = (map(1, 1)*map(3:, 2) - map(1, 2)*map(3:, 1))/jacobian
-            end if
-            largest(of_strain) = max(largest(of_strain), 0.5_dp*(abs(slope(1, 1) + slope(2, 2)) + &
-               sqrt((slope(1, 1) - slope(2, 2))**2 + (slope(1, 2) + slope(2, 1))**2)))
-            largest(of_rotation) = max(largest(of_rotation), 0.5_dp*abs(slope(2, 1) - slope(1, 2)))
-            if (mesh%element_plane(e) /= axisymmetric) cycle
-            at_point = matmul(values(:, :n), shapes%psi(:n, g))
-            largest(of_strain) = max(largest(of_strain), abs(at_point(3)/at_point(1)))
-         end do
-      end associate
+         jacobian = map(1, 1)*map(2, 2) - map(1, 2)*map(2, 1)
+         slope = 0.0_dp
+         if (abs(jacobian) > 0.0_dp) then
+            slope(:, 1) = (map(2, 2)*map(3:, 1) - map(2, 1)*map(3:, 2))/jacobian
+            slope(:, 2) = (map(1, 1)*map(3:, 2) - map(1, 2)*map(3:, 1))/jacobian
+         end if
+         largest(of_strain) = max(largest(of_strain), 0.5_dp*(abs(slope(1, 1) + slope(2, 2)) + &
+            sqrt((slope(1, 1) - slope(2, 2))**2 + (slope(1, 2) + slope(2, 1))**2)))
+         largest(of_rotation) = max(largest(of_rotation), 0.5_dp*abs(slope(2, 1) - slope(1, 2)))
+         if (mesh%element_plane(e) /= axisymmetric) cycle
+         at_point = matmul(values(:, :n), rule%shape(g, :n))
+         largest(of_strain) = max(largest(of_strain), abs(at_point(3)/at_point(1)))
+      end do
    end function element_deformation
 
 end module strains

@@ -182,41 +182,31 @@ contains
       class(warning_summary_type), intent(inout) :: self
       integer, intent(in) :: increment               !! its running number
       type(warning_type), intent(in) :: warnings(:)
-      integer :: i
+      type(kind_type), allocatable :: more(:)
+      integer :: i, k
 
+      if (.not. allocated(self%kinds)) allocate (self%kinds(0))
       do i = 1, size(warnings)
-         call take_one(self, increment, warnings(i))
+         do k = 1, size(self%kinds)
+            if (self%kinds(k)%worst%is_like(warnings(i))) exit
+         end do
+         if (k > size(self%kinds)) then
+            allocate (more(k))
+            more(:k - 1) = self%kinds
+            more(k)%first = increment
+            more(k)%at = increment
+            more(k)%worst = warnings(i)
+            call move_alloc(more, self%kinds)
+         end if
+         associate (kind => self%kinds(k))
+            if (kind%last < increment) kind%count = kind%count + 1
+            kind%last = increment
+            if (warnings(i)%severity <= kind%worst%severity) cycle
+            kind%worst = warnings(i)
+            kind%at = increment
+         end associate
       end do
    end subroutine take_warnings
-
-   pure subroutine take_one(self, increment, warning)
-      class(warning_summary_type), intent(inout) :: self
-      integer, intent(in) :: increment
-      type(warning_type), intent(in) :: warning
-      type(kind_type), allocatable :: more(:)
-      integer :: k, n
-
-      n = 0
-      if (allocated(self%kinds)) n = size(self%kinds)
-      do k = 1, n
-         if (self%kinds(k)%worst%is_like(warning)) exit
-      end do
-      if (k > n) then
-         allocate (more(n + 1))
-         if (n > 0) more(:n) = self%kinds
-         more(k)%first = increment
-         more(k)%at = increment
-         more(k)%worst = warning
-         call move_alloc(more, self%kinds)
-      end if
-      associate (kind => self%kinds(k))
-         if (kind%last < increment) kind%count = kind%count + 1
-         kind%last = increment
-         if (warning%severity <= kind%worst%severity) return
-         kind%worst = warning
-         kind%at = increment
-      end associate
-   end subroutine take_one
 
    !> One line a kind, such as `increments 13 to 21, worst at 17: ...`.
    pure function lines(self)

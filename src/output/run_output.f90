@@ -47,7 +47,6 @@ module run_output
       procedure :: fail
       procedure :: finish
       procedure :: break_off
-      procedure :: close => close_output
       procedure :: kept
       procedure :: written
       procedure :: failed_checks
@@ -71,7 +70,7 @@ contains
    end function paths_written
 
    !> Tries whether all files of a run can be written, before anything is solved, and locks them
-   !> against other runs of the same name. They are left as they are; close the output in any case.
+   !> against other runs of the same name. They are left as they are; close the listing in any case.
    !> Error: status_internal, when one cannot be written, or another run writes them.
    subroutine reserve(self, path, lock, error)
       class(run_output_type), intent(inout) :: self
@@ -211,14 +210,6 @@ contains
       call self%progress%clear()
       call self%listing%break_off(reason)
    end subroutine break_off
-
-   !> Frees the files.
-   subroutine close_output(self, keeps_lock)
-      class(run_output_type), intent(inout) :: self
-      logical, intent(in) :: keeps_lock   !! whether another round follows
-
-      call self%listing%close(keeps_lock)
-   end subroutine close_output
 
    !> Summary of the run at its last accepted increment.
    function summary_lines(self, model, interfaces) result(lines)

@@ -168,8 +168,16 @@ contains
          end if
          words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
          if (zone /= '') words = words//', '//zone
-         if (is_bounded) words = words//why_not(self%errors(i), q)// &
-            of_limit(self%errors(i), q, points, self%contacts(i))
+         if (is_bounded) then
+            associate (why_not => self%errors(i)%why_not(q)%value)
+               if (why_not /= '') words = words//': '//why_not
+            end associate
+            if (estimated(q)%name == 'peak_pressure' .and. &
+               .not. ieee_is_nan(self%errors(i)%bound(q))) then
+               if (rises_to_end(points, self%contacts(i))) words = words// &
+                  ', at an end, where it may have no limit'
+            end if
+         end if
          words = words//other_edges(estimated(q)%name, points, self%contacts(i), &
             values(1))
          call append(lines, words)
@@ -208,29 +216,6 @@ contains
       if (quantity%name == 'edge_stick') is_had = abs(contact%shear_force) > 0.0_dp .or. &
          model%interactions(model%contacts(i)%interaction)%friction%coefficient > 0.0_dp
    end function is_had
-
-   !> Why a quantity has no bound, behind a colon; nothing where it has one.
-   pure function why_not(errors, q) result(words)
-      type(interface_errors_type), intent(in) :: errors
-      integer, intent(in) :: q
-      character(:), allocatable :: words
-
-      words = errors%why_not(q)%value
-      if (words /= '') words = ': '//words
-   end function why_not
-
-   !> The note on a pressure that has a bound, but perhaps no limit.
-   pure function of_limit(errors, q, points, contact) result(words)
-      type(interface_errors_type), intent(in) :: errors
-      integer, intent(in) :: q
-      type(contact_points_type), intent(in) :: points
-      type(contact_record_type), intent(in) :: contact
-      character(:), allocatable :: words
-
-      words = ''
-      if (estimated(q)%name /= 'peak_pressure' .or. ieee_is_nan(errors%bound(q))) return
-      if (rises_to_end(points, contact)) words = ', at an end, where it may have no limit'
-   end function of_limit
 
    !> A name as one speaks it.
    pure function words_of(name) result(words)

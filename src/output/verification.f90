@@ -141,13 +141,13 @@ contains
 
    pure function outcome_of(check, values, reason) result(outcome)
       type(verify_type), intent(in) :: check
-      real(dp), allocatable, intent(in) :: values(:)
+      real(dp), intent(in) :: values(:)
       character(*), intent(in) :: reason
       type(outcome_type) :: outcome
 
       outcome%judged = .true.
       outcome%reason = reason
-      if (.not. allocated(values)) return
+      if (reason /= '') return
       if (any(ieee_is_nan(values))) then
          outcome%reason = 'there is no value (NaN)'
          return
@@ -167,57 +167,46 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: point_node(:)                 !! (points) node index of each point
-      real(dp), allocatable, intent(out) :: values(:)      !! unallocated where there are none
+      real(dp), allocatable, intent(out) :: values(:)
       character(:), allocatable, intent(out) :: reason     !! why there are none; else empty
       type(quantity_type) :: quantity
+      character(:), allocatable :: name
+      integer :: at, i
+      logical :: is_extreme
 
       reason = ''
       quantity = verifiable(find_quantity(verifiable, check%quantity))
+      is_extreme = any(to_upper(check%where) == ['MIN', 'MAX'])
       select case (quantity%kind)
       case (of_history)
          values = [history_value(quantity%name, record)]
+         return
       case (of_nodes)
          values = point_values(quantity%name, record%fields, point_node)
          if (size(values) == 0) then
-            deallocate (values)
             reason = 'this step has no '//check%quantity
-         else
+         else if (.not. is_extreme) then
             call select_points(check%where, mesh, point_node, values, reason)
+         else if (allocated(mesh%node_body)) then
+            ! Nodes without elements, such as mesh generators leave, have nothing but zeros.
+            values = pack(values, mesh%node_body(point_node) > 0)
          end if
       case default
-         call contact_values_at(quantity, check%where, record, mesh, interfaces, values, reason)
-      end select
-   end subroutine values_asked_for
-
-   subroutine contact_values_at(quantity, where, record, mesh, interfaces, values, reason)
-      type(quantity_type), intent(in) :: quantity
-      character(*), intent(in) :: where
-      type(increment_record_type), intent(in) :: record
-      type(mesh_type), intent(in) :: mesh
-      type(contact_points_type), intent(in) :: interfaces(:)
-      real(dp), allocatable, intent(out) :: values(:)
-      character(:), allocatable, intent(inout) :: reason
-      integer :: i, at
-
-      if (to_upper(where) == 'MIN' .or. to_upper(where) == 'MAX') then
-         allocate(values(0))
+         allocate (values(0))
+         at = index(check%where//'@', '@')
+         name = check%where(:at - 1)
          do i = 1, size(interfaces)
+            if (.not. is_extreme .and. to_upper(interfaces(i)%name) /= to_upper(name)) cycle
             values = [values, values_of(quantity, mesh, interfaces(i), record%contacts(i))]
+            if (is_extreme) cycle
+            if (at < len(check%where)) call select_position(interfaces(i), check%where(at + 1:), &
+               quantity%is_integer, values, reason)
+            return
          end do
-         values = [extreme(values, to_upper(where))]
-         return
-      end if
-      at = index(where, '@')
-      if (at == 0) at = len(where) + 1
-      do i = 1, size(interfaces)
-         if (to_upper(interfaces(i)%name) /= to_upper(trim(where(:at - 1)))) cycle
-         values = values_of(quantity, mesh, interfaces(i), record%contacts(i))
-         if (at < len(where)) call select_position(interfaces(i), where(at + 1:), &
-            quantity%is_integer, values, reason)
-         return
-      end do
-      reason = 'there is no contact pair "'//where(:at - 1)//'"'
-   end subroutine contact_values_at
+         if (.not. is_extreme) reason = 'there is no contact pair "'//name//'"'
+      end select
+      if (is_extreme .and. reason == '') values = [extreme(values, to_upper(check%where))]
+   end subroutine values_asked_for
 
    !> Values of an interface; of positions in a list that is padded with NaN those that there are.
    function values_of(quantity, mesh, points, contact) result(values)
@@ -264,7 +253,6 @@ contains
       call read_real(trim(adjustl(position)), s, valid)
       if (valid) valid = is_on_interface(s, points) .and. size(values) == last
       if (.not. valid) then
-         deallocate(values)
          reason = 'no such arc length, "'//position//'"'
          return
       end if
@@ -287,12 +275,6 @@ contains
       integer :: number, i
       logical :: is_number
 
-      if (to_upper(where) == 'MIN' .or. to_upper(where) == 'MAX') then
-         ! Nodes without elements, such as mesh generators leave, have nothing but zeros.
-         if (allocated(mesh%node_body)) values = pack(values, mesh%node_body(point_node) > 0)
-         values = [extreme(values, to_upper(where))]
-         return
-      end if
       allocate(wanted(size(mesh%node_number)), source=.false.)
       call read_integer(where, number, is_number)
       if (is_number) then
@@ -304,9 +286,7 @@ contains
          end do
       end if
       values = pack(values, wanted(point_node))
-      if (size(values) > 0) return
-      deallocate(values)
-      reason = 'there is no node or node set "'//where//'"'
+      if (size(values) == 0) reason = 'there is no node or node set "'//where//'"'
    end subroutine select_points
 
    function extreme(values, which) result(value)

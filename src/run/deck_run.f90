@@ -110,7 +110,7 @@ contains
          end if
          associate (goes_on => rounds%accuracy%goes_on)
             goes_on = goes_on .and. outcome%status == status_ok
-            call output%close(keeps_lock=goes_on)
+            call output%listing%close(keeps_lock=goes_on)
          end associate
          call simulation%release()
       end associate
