@@ -11,15 +11,15 @@ program thercon
    use deck_run, only: run_deck
    use deck_trade, only: trade_deck
    use errors, only: error_type, status_deck
-   use file_calls, only: check_printed, print_text, survive_file_limits
+   use file_calls, only: check_printed, survive_file_limits
    use interruption, only: catch_signals
    use memory_calls, only: allow_stack
-   use messages, only: print_error
+   use messages, only: print_error, print_line
    use version_report, only: print_versions
    implicit none
    type(command_type) :: command
    type(error_type), allocatable :: error
-   integer :: status
+   integer :: i, status
 
    interface
       !> Ends the process without the line that STOP writes.
@@ -39,7 +39,9 @@ program thercon
    end if
    select case (command%action)
    case (command_help)
-      call print_text(usage//new_line('a'))
+      do i = 1, size(usage)
+         call print_line(output_unit, trim(usage(i)))
+      end do
    case (command_version)
       call print_versions(output_unit)
    case (command_check)

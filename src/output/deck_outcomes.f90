@@ -12,7 +12,7 @@ module deck_outcomes
    use utf8, only: printable
    implicit none
    private
-   public :: deck_outcome_type
+   public :: deck_outcome_type, end_of_run, counts_of_checks
 
    !> Files that a run has written by how far it came: none, listing, passes that failed, all
    !> without and with contact.
@@ -165,14 +165,33 @@ contains
          string = 'internal/I-O error'
          if (self%lacks_memory) string = 'out of memory'
       case (status_verify)
-         string = 'check failed'
-         if (self%verify_failed == 0) string = 'accuracy not reached'
+         string = end_of_run(self%verify_failed, self%verify_failed == 0)
       case (status_interrupted)
          string = 'interrupted'
       case default
          string = 'status '//to_text(self%status)
       end select
    end function words
+
+   !> How a run ended that was not cut short.
+   pure function end_of_run(failed_checks, misses_target) result(words)
+      integer, intent(in) :: failed_checks           !! *VERIFY checks
+      logical, intent(in) :: misses_target           !! whether a requested accuracy is not reached
+      character(:), allocatable :: words             !! such as 'solved'
+
+      words = 'solved'
+      if (misses_target) words = 'accuracy not reached'
+      if (failed_checks > 0 .and. misses_target) words = 'check failed, '//words
+      if (failed_checks > 0 .and. .not. misses_target) words = 'check failed'
+   end function end_of_run
+
+   !> How many *VERIFY checks passed.
+   pure function counts_of_checks(passed, failed) result(words)
+      integer, intent(in) :: passed, failed          !! checks
+      character(:), allocatable :: words
+
+      words = counted(passed, 'check')//' passed, '//to_text(failed)//' failed'
+   end function counts_of_checks
 
    !> The short summary of one run.
    subroutine print_outcome(self, results)
@@ -225,7 +244,7 @@ contains
          self%status /= status_internal)) call append(lines, 'results: '//results// &
          trim(extensions(self%files)))
       if (self%verify_passed + self%verify_failed > 0) call append(lines, &
-         counted(self%verify_passed, 'check')//' passed, '//to_text(self%verify_failed)//' failed')
+         counts_of_checks(self%verify_passed, self%verify_failed))
    end function lines_below
 
    !> Prints the checks that failed on stderr, one line each.

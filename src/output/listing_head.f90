@@ -1,6 +1,7 @@
 !> The head of the listing: the summary of the run, what is modelled and why, sizes, interfaces.
 module listing_head
    use contact_points, only: contact_points_type
+   use deck_outcomes, only: counts_of_checks, end_of_run
    use interface_warnings, only: gap_range
    use listing_text, only: page_width, print_title, print_wrapped
    use model, only: model_type
@@ -28,11 +29,7 @@ contains
       integer, intent(in) :: later_round         !! round that was begun after this one; 0 for none
       character(:), allocatable :: line
 
-      line = 'solved'
-      if (missed) line = 'accuracy not reached'
-      if (failed_checks > 0 .and. .not. missed) line = 'check failed'
-      if (failed_checks > 0 .and. missed) line = 'check failed, '//line
-      line = line//', '//counted(increments, 'increment')
+      line = end_of_run(failed_checks, missed)//', '//counted(increments, 'increment')
       ! Read only while that round is solved, or where it did not come to its end.
       if (later_round > 0) line = line//'; round '//to_text(later_round)// &
          ' is being solved, or see ENDED EARLY at the end'
@@ -49,8 +46,7 @@ contains
 
       line = 'no *VERIFY checks'
       if (size(verifier%outcomes) > 0 .or. run%verify_passed + run%verify_failed > 0) then
-         line = counted(run%verify_passed, 'check')//' passed, '//to_text(run%verify_failed)// &
-            ' failed'
+         line = counts_of_checks(run%verify_passed, run%verify_failed)
          if (size(verifier%outcomes) == 0) line = line//' in round 1'
       end if
       counts = verifier%counts()

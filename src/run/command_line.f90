@@ -28,44 +28,36 @@ module command_line
       real(dp) :: accuracy = 0.0_dp                   !! --accuracy, a part of the values; 0: none
    end type command_type
 
-   character(*), parameter :: usage = &
-      'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]'// &
-      new_line('a')//'                           [--quiet] [--accuracy P%]'//new_line('a')// &
-      '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]'//new_line('a')// &
-      '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]'// &
-      new_line('a')// &
-      '                          [--limit SECONDS] [--jobs N]'//new_line('a')// &
-      '       thercon --help | --version'//new_line('a')//new_line('a')// &
-      '  run      solve each deck a/b.inp; write to DIR b.vtkhdf, b.lst, b.sta, b.cvg and, with'// &
-      new_line('a')//'           contact, b.contact.vtkhdf;'//new_line('a')// &
-      '           several decks run as a batch, each in a process of its own, and are listed'// &
-      new_line('a')//'           in DIR/thercon-batch.csv'//new_line('a')// &
-      '  check    read each deck and report every mistake; solve nothing'// &
-      new_line('a')// &
-      '  trade    solve a deck with other meshes, increments and methods; measure CPU seconds,'// &
-      new_line('a')// &
-      '           memory and errors; recommend settings for 10, 1 and 0.1 %; DIR/b.trade.csv'// &
-      new_line('a')//new_line('a')// &
-      '  --out DIR          write results to this folder, created if missing (current folder)'// &
-      new_line('a')// &
-      '  --width N          allow N columns in a card (80)'//new_line('a')// &
-      '  --set NAME=VALUE   override the value of a *PARAMETER of the deck'//new_line('a')// &
-      '  --quiet            print errors and warnings only'// &
-      new_line('a')// &
-      '  --accuracy P%      run: refine the mesh and shorten the increments until the error'// &
-      new_line('a')// &
-      '                     bounds of force, heat rate, peak pressure, edge of contact'// &
-      new_line('a')//'                     are within P per cent; replaces *ACCURACY'// &
-      new_line('a')// &
-      '  --limit SECONDS    trade: skip rows that would take more CPU time (30)'// &
-      new_line('a')// &
-      '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)'// &
-      new_line('a')//new_line('a')// &
-      'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,'// &
-      new_line('a')// &
-      '             4 a *VERIFY check failed or a requested accuracy was not reached,'// &
-      new_line('a')// &
-      '             5 ended by SIGINT or SIGTERM; of several decks the largest'   !! text of --help
+   !> Lines of --help
+   character(*), parameter :: usage(28) = [character(88) :: &
+      'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
+      '                           [--quiet] [--accuracy P%]', &
+      '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]', &
+      '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
+      '                          [--limit SECONDS] [--jobs N]', &
+      '       thercon --help | --version', &
+      '', &
+      '  run      solve each deck a/b.inp; write to DIR b.vtkhdf, b.lst, b.sta, b.cvg and, with', &
+      '           contact, b.contact.vtkhdf;', &
+      '           several decks run as a batch, each in a process of its own, and are listed', &
+      '           in DIR/thercon-batch.csv', &
+      '  check    read each deck and report every mistake; solve nothing', &
+      '  trade    solve a deck with other meshes, increments and methods; measure CPU seconds,', &
+      '           memory and errors; recommend settings for 10, 1 and 0.1 %; DIR/b.trade.csv', &
+      '', &
+      '  --out DIR          write results to this folder, created if missing (current folder)', &
+      '  --width N          allow N columns in a card (80)', &
+      '  --set NAME=VALUE   override the value of a *PARAMETER of the deck', &
+      '  --quiet            print errors and warnings only', &
+      '  --accuracy P%      run: refine the mesh and shorten the increments until the error', &
+      '                     bounds of force, heat rate, peak pressure, edge of contact', &
+      '                     are within P per cent; replaces *ACCURACY', &
+      '  --limit SECONDS    trade: skip rows that would take more CPU time (30)', &
+      '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)', &
+      '', &
+      'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,', &
+      '             4 a *VERIFY check failed or a requested accuracy was not reached,', &
+      '             5 ended by SIGINT or SIGTERM; of several decks the largest']
 
 contains
 
@@ -127,11 +119,8 @@ contains
          command%action = command_help
          return
       case ('--out', '--width', '--set', '--jobs', '--limit', '--accuracy')
-         if (i > command_argument_count()) then
-            call set_error(error, status_deck, 'option '//word//' needs a value')
-            return
-         end if
-         value = argument(i)
+         value = ''
+         if (i <= command_argument_count()) value = argument(i)
          if (len_trim(value) == 0) then
             call set_error(error, status_deck, 'option '//word//' needs a value')
             return

@@ -202,7 +202,7 @@ contains
       logical, intent(in) :: is_position    !! whether their errors are parts of h
       type(limit_type) :: limit             !! their limit
       real(dp) :: differences(size(values) - 1), ratio, added
-      integer :: n
+      integer :: k, n
 
       n = size(values)
       limit%value = values(n)
@@ -223,7 +223,10 @@ contains
          limit%uncertainty = max(abs(added), 0.5_dp*abs(differences(n - 1)))
          if (n == 3) limit%uncertainty = max(abs(added), abs(differences(2)))
       else
-         limit%uncertainty = irregular_uncertainty(values)
+         ! If errors fall at least as the steps do, that of the last value is at most
+         ! |v_k - v_n|/(2^(n-k) - 1) for any k; one of these may vanish by chance, not the largest.
+         limit%uncertainty = merge(safety_of_three, safety, n == 3)* &
+            maxval([(abs(values(k) - values(n))/(2.0_dp**(n - k) - 1.0_dp), k=1, n - 1)])
          associate (before => differences(n - 2), last => differences(n - 1))
             if (.not. is_position .and. (before > 0.0_dp .eqv. last > 0.0_dp) .and. &
                abs(before) < slowest*abs(last)) limit%uncertainty = max(limit%uncertainty, &
@@ -247,16 +250,5 @@ contains
       if (ratios(2) > faster*ratios(1) .or. ratios(1) > slower*ratios(2)) return
       ratio = minval(ratios)
    end function steady_ratio
-
-   !> If errors fall at least as the steps do, that of the last value is at most
-   !> |v_k - v_n|/(2^(n-k) - 1) for any k; one of these may vanish by chance, the largest hardly.
-   pure real(dp) function irregular_uncertainty(values) result(uncertainty)
-      real(dp), intent(in) :: values(:)
-      integer :: k, n
-
-      n = size(values)
-      uncertainty = merge(safety_of_three, safety, n == 3)* &
-         maxval([(abs(values(k) - values(n))/(2.0_dp**(n - k) - 1.0_dp), k=1, n - 1)])
-   end function irregular_uncertainty
 
 end module trade_reference

@@ -15,6 +15,9 @@ module trade_table
 
    real(dp), parameter :: megabyte = 1.0e6_dp               !! [byte]
    character(2), parameter :: elements(2) = ['Q4', 'Q8']    !! by their order
+   character(*), parameter :: columns_of_row = 'row,default,elements,level,contact_level,'// &
+      'increment_factor,varied,status,reason,increments,passes,runs,cpu_seconds,peak_megabytes'
+   integer, parameter :: longest_line = 10000               !! reasons are shorter than half of it
 
 contains
 
@@ -153,24 +156,21 @@ contains
       character(*), intent(in) :: path                     !! the file
       type(trade_type), intent(in) :: trade
       type(error_type), allocatable, intent(out) :: error
+      character(longest_line) :: line
       character(:), allocatable :: text
       integer :: i, k
 
-      text = 'row,default,elements,level,contact_level,increment_factor,varied,status,reason,'// &
-         'increments,passes,runs,cpu_seconds,peak_megabytes'
-      do i = 1, quantity_count
-         text = text//',error_'//trim(traded(i)%name)
-      end do
-      text = text//',error_worst,pareto,recommended_10,recommended_1,recommended_0.1'//new_line('a')
+      write (line, '(*(a))') columns_of_row, (',error_'//trim(traded(i)%name), &
+         i=1, quantity_count), &
+         ',error_worst,pareto,recommended_10,recommended_1,recommended_0.1'
+      text = trim(line)//new_line('a')
       do i = 1, size(trade%rows)
          associate (row => trade%rows(i), mesh => trade%rows(i)%variation)
-            text = text//to_text(i)//','//merge('1', '0', row%is_default)//','// &
-               elements(mesh%order)//','//to_text(mesh%levels)//','// &
-               to_text(mesh%contact_levels)//','//to_text(mesh%increments)//','//row%varied// &
-               ','//to_text(row%status)//','//quoted(row%reason)//','//to_text(row%increments)// &
-               ','//to_text(row%passes)//','//to_text(size(row%cpu))//fields([row%cpu_seconds, &
-               row%peak_bytes/megabyte, row%errors, row%worst])//','// &
-               merge('1', '0', row%is_optimal)
+            write (line, '(*(g0, ","))') i, merge(1, 0, row%is_default), elements(mesh%order), &
+               mesh%levels, mesh%contact_levels, to_text(mesh%increments), row%varied, &
+               row%status, quoted(row%reason), row%increments, row%passes, size(row%cpu)
+            text = text//trim(line)//fields([row%cpu_seconds, row%peak_bytes/megabyte, &
+               row%errors, row%worst])//merge(',1', ',0', row%is_optimal)
             do k = 1, target_count
                text = text//','
                if (.not. row%is_recommended(k)) cycle
@@ -181,12 +181,12 @@ contains
          end associate
          text = text//new_line('a')
       end do
-      text = text//'reference'//repeat(',', 13)//fields([trade%uncertainty, &
+      text = text//'reference'//repeat(',', 14)//fields([trade%uncertainty, &
          maxval(trade%uncertainty)])//repeat(',', target_count + 1)//new_line('a')
       call write_file(path, text, error)
    end subroutine write_trade
 
-   !> Numbers after commas; absent ones are empty.
+   !> Numbers between commas; absent ones are empty.
    pure function fields(numbers) result(text)
       real(dp), intent(in) :: numbers(:)
       character(:), allocatable :: text
@@ -197,7 +197,8 @@ contains
       do i = 1, size(numbers)
          write (buffer, '(es12.5)') numbers(i)
          if (.not. is_there(numbers(i))) buffer = ''
-         text = text//','//trim(adjustl(buffer))
+         if (i > 1) text = text//','
+         text = text//trim(adjustl(buffer))
       end do
    end function fields
 
