@@ -3,7 +3,7 @@
 !> had before it. Contact points, operators and reduction of the divided mesh are its own; nothing
 !> that the run reads is written.
 module divided_mesh
-   use all_contact_points, only: all_contact_points_type
+   use connections, only: connections_type
    use companion_steps, only: implicit_state, implicit_step
    use contact_states, only: contact_open
    use element_kinds, only: element_node_count
@@ -106,7 +106,7 @@ contains
    !> the faces where nothing is closed.
    pure function elements_at_contact(model, points, is_closed) result(chosen)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: is_closed(:)                 ! (m)
       logical :: chosen(size(model%mesh%element_number))
       logical :: at_face(size(chosen)), is_near(size(model%mesh%node_number))
@@ -293,7 +293,7 @@ contains
    !> points; friction counts from the relative displacements of the fields.
    function prolonged(self, points, state) result(divided)
       type(divided_mesh_type), intent(in) :: self
-      type(all_contact_points_type), intent(in) :: points  !! of the run
+      type(connections_type), intent(in) :: points  !! of the run
       type(solution_state_type), intent(in) :: state
       type(solution_state_type) :: divided
       integer, allocatable :: nearest(:)
@@ -328,7 +328,7 @@ contains
    !> The contact point of the run that is nearest to each one of the divided mesh.
    pure function nearest_points(self, points) result(nearest)
       type(divided_mesh_type), intent(in) :: self
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       integer :: nearest(size(self%run%bodies%points%slave))
       integer :: first, i, k, last
 

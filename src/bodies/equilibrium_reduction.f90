@@ -1,8 +1,8 @@
 !> Equilibrium reduced to the contact points: factors, the contact system from their Schur
 !> complement, and why a stiffness is singular although the rigid motions of its bodies are held.
 module equilibrium_reduction
-   use all_contact_points, only: all_contact_points_type
-   use contact_constraints, only: cycle_compliance, in_cycle, stiffness_alone
+   use connections, only: connections_type
+   use field_constraints, only: cycle_compliance, in_cycle, stiffness_alone
    use contact_system, only: contact_system_type
    use dense, only: column_space
    use element_kinds, only: axisymmetric, quad8_reduced
@@ -42,7 +42,7 @@ contains
       class(equilibrium_reduction_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(field_problem_type), intent(in) :: mechanical  !! equilibrium, numbered
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       real(dp), intent(in) :: rigid(:, :) !! (2 nodes, motions) that the supports leave free
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
@@ -64,7 +64,7 @@ contains
    !> The contact system, nothing closed, from the mechanical Schur complement.
    pure subroutine make_system(mechanical, points, rigid, schur, contact)
       type(field_problem_type), intent(in) :: mechanical
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       real(dp), intent(in) :: rigid(:, :)
       real(dp), allocatable, intent(inout) :: schur(:, :)   ! becomes a part of the system
       type(contact_system_type), intent(out) :: contact
@@ -84,7 +84,7 @@ contains
    !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
    !> force; what S makes of them is rounding, and is taken from it.
    pure subroutine set_motions(points, rigid, contact)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       real(dp), intent(in) :: rigid(:, :)
       type(contact_system_type), intent(inout) :: contact
       real(dp), allocatable :: forces(:, :)
@@ -114,7 +114,7 @@ contains
    !> point has for stiffness alone.
    pure subroutine set_cycles(mechanical, points, contact)
       type(field_problem_type), intent(in) :: mechanical
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       type(contact_system_type), intent(inout) :: contact
       integer :: k
       real(dp) :: own

@@ -11,7 +11,7 @@
 !> difference: on a curved one the combination acts on nearly nothing. So all directions of a face
 !> count as one, along its normals or its tangents.
 module held_points
-   use all_contact_points, only: all_contact_points_type
+   use connections, only: connections_type
    use constraint_rows, only: constraint_rows_type, dependent_rows, of_contact, row_origin_type
    use kinds, only: dp
    implicit none
@@ -33,7 +33,7 @@ contains
    !> Directions along which supports hold contact points: all nodes, or the two opposite ones if it
    !> is nearer to their tangent, as at the end of a line of symmetry.
    pure function held_directions(points, held) result(directions)
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       logical, intent(in) :: held(:)                      !! (2 nodes) prescribed displacements
       !> (2, m) unit vectors along which both nodes are held, while one of them is free across; 0
       !> where there are none
@@ -59,7 +59,7 @@ contains
    !> Contact points whose normal motion is prescribed: their nodes are held along both axes, or
    !> along the one that is their normal.
    pure function over_constrained(points, held) result(too_much)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
       logical :: too_much(size(points%slave))      !! (m)
       real(dp) :: axes(2, 2)
@@ -76,7 +76,7 @@ contains
    !> The degrees of freedom, of a contact point's nodes, that supports hold and that move it along
    !> its normal.
    pure function normal_supports(points, held, k) result(dofs)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
       integer, intent(in) :: k                     !! a contact point
       integer, allocatable :: dofs(:)
@@ -100,7 +100,7 @@ contains
    !> The axes of a contact point's slave node, and along which of them all nodes whose values it
    !> takes are held.
    pure subroutine find_shared_axes(points, held, k, axes, all_held)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)
       integer, intent(in) :: k
       real(dp), intent(out) :: axes(2, 2)           ! a unit vector each
@@ -120,7 +120,7 @@ contains
 
    !> The axis nearer to the tangent of a contact point, if supports hold a node along it; else 0.
    pure function held_along_tangent(points, held, k, node) result(direction)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)
       integer, intent(in) :: k, node
       real(dp) :: direction(2)
@@ -137,7 +137,7 @@ contains
 
    !> Part of a direction along which supports leave a node free.
    pure real(dp) function free_part(points, held, node, direction)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
       integer, intent(in) :: node
       real(dp), intent(in) :: direction(2)         !! unit vector
@@ -151,7 +151,7 @@ contains
    !> The axes along which cards name the displacements of a node, and which of these supports
    !> prescribe.
    pure subroutine find_axes(points, held, node, axes, fixed)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)
       integer, intent(in) :: node
       real(dp), intent(out) :: axes(2, 2)           ! a unit vector each
@@ -167,7 +167,7 @@ contains
    !> The node whose degrees of freedom cards name for a node: its partner where *TRANSFORM turns
    !> its axes.
    pure integer function named_node(points, node)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       integer, intent(in) :: node
       integer :: i
 
@@ -180,7 +180,7 @@ contains
    !> only as its supports do: while it is open, the position counts that it would have if it closed
    !> with the supports where they are.
    pure function tangential_positions(points, directions, displacement) result(position)
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       real(dp), intent(in) :: directions(:, :)     !! (2, m) as from held_directions
       real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
       real(dp) :: position(size(points%slave))     !! (m) [length]
@@ -204,7 +204,7 @@ contains
    !> A contact point of one interface whose normal force, or friction force, supports leave
    !> undetermined beside those of the others; 0 where there is none.
    pure integer function first_redundant(points, first, last, held, has_friction) result(found)
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       integer, intent(in) :: first, last                  !! those of the interface
       logical, intent(in) :: held(:)                      !! (2 nodes) prescribed displacements
       logical, intent(in) :: has_friction(:)              !! (m)
@@ -221,7 +221,7 @@ contains
    !> The same of some contact points in given directions. Those whose own node is free come first;
    !> only the others can be redundant.
    pure integer function redundant_along(points, chosen, direction, held) result(found)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       integer, intent(in) :: chosen(:)
       real(dp), intent(in) :: direction(:, :)             ! (2, m) unit vectors
       logical, intent(in) :: held(:)

@@ -4,7 +4,7 @@ module loads
    use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
    use load_histories, only: load_history_type, step_clock_type
-   use all_contact_points, only: all_contact_points_type
+   use connections, only: connections_type
    use mesh, only: mesh_type
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
@@ -241,7 +241,7 @@ contains
    !> Initial gaps of the contact points, counted from the overlaps that are allowed at present.
    pure function present_gaps(self, points) result(gap)
       class(loads_type), intent(in) :: self
-      type(all_contact_points_type), intent(in) :: points  !! all contact points
+      type(connections_type), intent(in) :: points  !! all contact points
       real(dp) :: gap(size(points%initial_gap))            !! (m) h [length]
       integer :: i, k
 

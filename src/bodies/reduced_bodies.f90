@@ -2,7 +2,7 @@
 !> the contact unknowns. Their heat is reduced for given films, by each run for itself
 !> (heat_reduction).
 module reduced_bodies
-   use contact_constraints, only: constrain_displacements, constrain_temperatures
+   use field_constraints, only: constrain_displacements, constrain_temperatures
    use contact_laws, only: contact_laws_type, laws_of_step
    use conductance_laws, only: is_constant
    use contact_points, only: contact_points_type
@@ -13,7 +13,7 @@ module reduced_bodies
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
-   use all_contact_points, only: all_contact_points_type, joined_points, match_surfaces, match_tie
+   use connections, only: connections_type, joined_points, match_surfaces, match_tie
    use held_points, only: held_directions
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
    use sparse_matrix, only: sparse_matrix_type
@@ -30,7 +30,7 @@ module reduced_bodies
    type :: reduced_bodies_type
       type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the order of the deck
       type(contact_points_type), allocatable :: ties(:)       !! points of the ties likewise
-      type(all_contact_points_type) :: points                 !! all their contact points
+      type(connections_type) :: points                 !! all their contact points
       type(contact_laws_type) :: laws                         !! theirs in the step
       !> (2, m) along which the supports hold contact points, as from held_directions
       real(dp), allocatable :: held_direction(:, :)
@@ -160,7 +160,7 @@ contains
    !> where those of the stiff one cancel, and their rounding with it.
    pure function slave_is_stiffer(model, points, mechanics) result(stiffer)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: mechanics
       logical :: stiffer(size(points%slave))
       real(dp) :: stiffness(size(model%mesh%node_number)), own

@@ -14,7 +14,7 @@ module rigid_motions
    use kinds, only: dp
    use mesh, only: mesh_type
    use text, only: to_text
-   use all_contact_points, only: tie_points_type
+   use connections, only: tie_points_type
    implicit none
    private
    public :: joint_type, free_motion_type, find_free_motions, joints_of, unsupported_motions

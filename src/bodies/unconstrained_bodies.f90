@@ -8,7 +8,7 @@ module unconstrained_bodies
    use dense, only: null_space
    use kinds, only: dp
    use model, only: model_type
-   use all_contact_points, only: all_contact_points_type
+   use connections, only: connections_type
    use rigid_motions, only: find_free_motions, free_motion_type, joint_type, joints_of
    use steps, only: load_film_coefficient
    use text, only: append, string_type, to_text
@@ -25,7 +25,7 @@ contains
    !> removed count as closed, those with friction as stuck. One message a body.
    subroutine unconstrained_in_step(model, points, laws, held, messages)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       type(contact_laws_type), intent(in) :: laws   !! theirs in the step
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
       type(string_type), allocatable, intent(out) :: messages(:)
@@ -63,7 +63,7 @@ contains
    !> message, such as '; body 2 (...) is free to slide along x'; empty where all are constrained.
    function unconstrained_now(model, points, has_friction, held, contact_state) result(words)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       logical, intent(in) :: has_friction(:)        !! (m)
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
       integer, intent(in) :: contact_state(:)     !! (m) contact_open, contact_slip or contact_stick
@@ -97,7 +97,7 @@ contains
    !> The free motions with the contact points in these states.
    subroutine free_motions(model, points, held, contact_state, motions)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)
       integer, intent(in) :: contact_state(:)
       type(free_motion_type), allocatable, intent(out) :: motions(:)
@@ -122,38 +122,22 @@ contains
 
    !> What a contact point holds along a direction.
    pure function joint_of(points, k, direction) result(joint)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       integer, intent(in) :: k
       real(dp), intent(in) :: direction(2)
       type(joint_type) :: joint
+      real(dp), allocatable :: along(:), across(:)
 
-      if (points%turns()) then
-         joint%nodes = [points%along%values_of(k), points%across%values_of(k)]
-         joint%share = reshape([parts(points%along%coefficients_of(k), direction), &
-            parts(points%across%coefficients_of(k), [-direction(2), direction(1)])], &
-            [2, size(joint%nodes)])
-      else
-         joint%nodes = points%nodes_of(k)
-         joint%share = reshape(parts(points%difference%coefficients_of(k), direction), &
-            [2, size(joint%nodes)])
-      end if
-
-   contains
-      !> Multiples of a vector, one after another.
-      pure function parts(factor, vector)
-         real(dp), intent(in) :: factor(:), vector(2)
-         real(dp) :: parts(2*size(factor))
-         integer :: i
-
-         parts = [(factor(i)*vector, i=1, size(factor))]
-      end function parts
+      call points%means_of(k, joint%nodes, along, across)
+      joint%share = spread(direction, 2, size(along))*spread(along, 1, 2) + &
+         spread([-direction(2), direction(1)], 2, size(along))*spread(across, 1, 2)
    end function joint_of
 
    !> Bodies whose temperature nothing can ever determine: contact points count as conducting where
    !> one side of their law is given. One message a body.
    subroutine undetermined_in_step(model, points, laws, held, step, messages)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       type(contact_laws_type), intent(in) :: laws   !! theirs in the step
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
       integer, intent(in) :: step                   !! the step, for its films
@@ -173,7 +157,7 @@ contains
    !> empty where there are none.
    function undetermined_now(model, points, held, step, conducts) result(words)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
       integer, intent(in) :: step                   !! the step, for its films
       logical, intent(in) :: conducts(:)            !! (m) contact points that carry heat
@@ -189,7 +173,7 @@ contains
    !> carried heat, in one message; empty where there are none.
    function undetermined_beside(model, points, determined) result(words)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points !! all contact points
+      type(connections_type), intent(in) :: points !! all contact points
       logical, intent(in) :: determined(:)          !! (nodes) nodes whose temperature is fixed
       character(:), allocatable :: words
       type(string_type), allocatable :: messages(:)
@@ -220,7 +204,7 @@ contains
    !> contact points and ties, which make that of two bodies equal, and by the equations.
    subroutine find_undetermined(model, points, has_source, held, conducts, messages)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: has_source(:)          ! (bodies)
       logical, intent(in) :: held(:)                ! (nodes) prescribed temperatures
       logical, intent(in) :: conducts(:)
@@ -275,7 +259,7 @@ contains
    !> body that they name, a column each.
    pure function equation_rows(model, points, held) result(rows)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)
       real(dp), allocatable :: rows(:, :)
       integer :: lone(size(held)), e, i, k, n

@@ -20,12 +20,12 @@ module deck_preparation
    use messages, only: print_error, print_line
    use model, only: model_type
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
-   use all_contact_points, only: all_contact_points_type
+   use connections, only: connections_type
    use held_points, only: first_redundant, normal_supports, over_constrained
    use progress, only: progress_type
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
-   use equation_checks, only: join_name, support_name
+   use constraint_checks, only: join_name, support_name
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
    use variations, only: variation_type, vary
@@ -254,7 +254,7 @@ contains
    !> The cards that prescribe the motion of a contact point along its normal, and that they do.
    pure function cards_at(model, points, supports, k) result(words)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       type(load_history_type), intent(in) :: supports
       integer, intent(in) :: k
       character(:), allocatable :: words

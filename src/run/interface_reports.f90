@@ -1,7 +1,7 @@
 !> Errors and warnings on the interfaces of a deck once they are made, and on *VERIFY cards at
 !> positions that only contact points can tell.
 module interface_reports
-   use all_contact_points, only: match_surfaces, match_tie
+   use connections, only: match_surfaces, match_tie
    use contact_points, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type

@@ -2,7 +2,7 @@
 !> the recovered fields, against what the reduced system says crosses the contacts. Of heat, those
 !> of the discrete equation (3.4) and of the states at its ends.
 module balances
-   use all_contact_points, only: all_contact_points_type
+   use connections, only: connections_type
    use contact_operator, only: unstrained_forces
    use contact_states, only: contact_open, contact_slip, contact_state_type, contact_stick
    use edge_heat, only: edge_heat_type, joined_conductance, supplied_heat
@@ -213,7 +213,7 @@ contains
    pure function force_residual(internal, load, points, state) result(residual)
       real(dp), intent(in) :: internal(:) !! (2 nodes) K u less the thermal load [force]
       real(dp), intent(in) :: load(:)                !! (2 nodes) applied forces [force]
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       type(contact_state_type), intent(in) :: state  !! contact forces
       real(dp) :: residual(size(internal)) !! (2 nodes) zero where not prescribed [force]
       real(dp) :: from_slave(2, size(points%slave))
@@ -270,7 +270,7 @@ contains
       !> (2 nodes) as from force_residual, without the forces of ties [force]
       real(dp), intent(in) :: residual(:)
       logical, intent(in) :: supported(:)            !! (2 nodes) prescribed rows
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       type(contact_state_type), intent(in) :: state  !! the state that is checked
       !> (m) of nodal forces, none where the tangent is no unknown
       type(friction_law_type), intent(in) :: friction(:)

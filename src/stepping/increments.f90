@@ -26,7 +26,7 @@ module increments
    use steps, only: solves_heat, solves_mechanics
    use text, only: counted, to_text
    use thermal_matrix, only: heat_equation_type
-   use tie_checks, only: check_prescribed_ties
+   use constraint_checks, only: check_prescribed_ties
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private

@@ -1,7 +1,7 @@
 !> How large the problems of a run are, and where its time goes.
 module run_sizes
-   use all_contact_points, only: all_contact_points_type
-   use equation_checks, only: check_equations
+   use connections, only: connections_type
+   use constraint_checks, only: check_equations, check_prescribed_ties
    use errors, only: error_type
    use heat_reduction, only: heat_reduction_type
    use kinds, only: dp, long
@@ -13,7 +13,6 @@ module run_sizes
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
-   use tie_checks, only: check_prescribed_ties
    implicit none
    private
    public :: measure_steps, measure_factors, run_seconds_type, run_size_type
@@ -41,7 +40,7 @@ contains
    !> Error: as reduced_bodies' enter_step; mistakes in equations and ties.
    subroutine measure_steps(model, points, loads, state, sizes, error)
       type(model_type), intent(in) :: model
-      type(all_contact_points_type), intent(in) :: points   !! contact points of all interfaces
+      type(connections_type), intent(in) :: points   !! contact points of all interfaces
       type(loads_type), intent(in) :: loads                 !! loads before the first step
       type(solution_state_type), intent(in) :: state        !! state before it
       type(run_size_type), intent(inout) :: sizes           !! receives the numbers of unknowns

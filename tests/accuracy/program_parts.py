@@ -11,7 +11,8 @@ COUPLING = {
     "conductance_graph", "contact_operator:contact_operator_pass", "contact_operator:make_graph",
     "contact_operator:opening_changes", "contact_operator:opening_derivative",
     "contact_operator:openings", "contact_operator:residual_floor", "coupled_increment",
-    "fixed_point", "increment_iteration", "jump_loads", "newton",
+    "fixed_point", "increment_iteration", "heat_reduction:loads_by_elimination",
+    "heat_reduction:loads_by_solves", "newton",
 }
 PARTS = {
     "heat": {
@@ -44,14 +45,15 @@ PARTS = {
         "increment_records:contact_record",
         "increment_solution:remember_slip", "increment_solution:conduct",
         "listing_increments:print_interface", "listing_tables:print_contact_table",
-        "interface_reports", "all_contact_points", "contact_laws", "contact_points", "result_fields:face_values",
+        "interface_reports", "connections", "contact_laws", "contact_points",
+        "result_fields:face_values",
         "result_fields:find_faces", "zone_diagram",
     },
     "friction": {
         "contact_states:next_contact_state", "contact_system:combine", "zone_edges:stick_edges",
     },
     "coupling": COUPLING,
-    "cycles of contact points": {"contact_constraints:stiffness_alone", "linear_constraints:links"},
+    "cycles of contact points": {"field_constraints:stiffness_alone", "linear_constraints:links"},
     "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
                                   "contact_system:free_motions", "contact_system:is_driven",

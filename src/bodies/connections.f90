@@ -1,6 +1,6 @@
 !> The contact points of all interfaces in one row, as the solution works on them, and beside them
 !> the points of all ties, the nodes that hang and the equations of the deck.
-module all_contact_points
+module connections
    use conductance_laws, only: is_constant, varies_with_temperature
    use contact_definitions, only: pairing_nodes, tie_definition_type
    use contact_pairs, only: make_contact_points, make_tie_points
@@ -17,24 +17,20 @@ module all_contact_points
    use transforms, only: partner_type
    implicit none
    private
-   public :: all_contact_points_type, tie_points_type, match_surfaces, match_tie, joined_points
+   public :: connections_type, tie_points_type, match_surfaces, match_tie, joined_points
 
    real(dp), parameter :: opposite = 1.0e-3_dp   !! offset of nodes face to face, of the side
 
    !> The points of all ties in one row.
-   type :: tie_points_type
+   type, extends(contact_points_type) :: tie_points_type
       integer, allocatable :: tie(:)            !! (n) index into the model's ties
-      integer, allocatable :: slave(:)          !! (n) node indexes
-      integer, allocatable :: master(:)         !! (n) the one opposite, or the nearest one
       logical, allocatable :: is_opposite(:)    !! (n) whether these two are face to face
       !> (n) whether it is a mortar point of a face without midside nodes
       logical, allocatable :: is_linear(:)
-      real(dp), allocatable :: weight(:)        !! (n) tributary areas [length^2]
-      type(sum_list_type) :: difference         !! (n, nodes) slave's value less master's
    end type tie_points_type
 
    !> The contact points of all interfaces in one row, and what else joins nodes.
-   type, extends(contact_points_type) :: all_contact_points_type
+   type, extends(contact_points_type) :: connections_type
       integer, allocatable :: interface_start(:)     !! (interfaces + 1) first contact point of each
       !> (m, nodes) mean of both faces; no sums where no conductance law varies with the temperature
       type(sum_list_type) :: mean
@@ -49,7 +45,7 @@ module all_contact_points
    contains
       procedure :: vary_with_temperature
       procedure :: means
-   end type all_contact_points_type
+   end type connections_type
 
 contains
 
@@ -95,7 +91,7 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! in the order of the deck
       type(contact_points_type), intent(in) :: of_ties(:)    !! (ties) in the order of the deck
       type(model_type), intent(in) :: model
-      type(all_contact_points_type) :: row                  !! all their contact points
+      type(connections_type) :: row                  !! all their contact points
       integer :: i, k
 
       row%slave = [(interfaces(i)%slave, i=1, size(interfaces))]
@@ -187,7 +183,7 @@ contains
    pure subroutine find_resolved_faces(model, interfaces, row)
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
-      type(all_contact_points_type), intent(inout) :: row
+      type(connections_type), intent(inout) :: row
       integer, allocatable :: nodes(:)
       integer :: i, k
 
@@ -209,7 +205,7 @@ contains
 
    !> Whether the conductance law of some contact point varies with the temperatures of its faces.
    pure logical function vary_with_temperature(self)
-      class(all_contact_points_type), intent(in) :: self
+      class(connections_type), intent(in) :: self
 
       vary_with_temperature = allocated(self%mean%start)
    end function vary_with_temperature
@@ -217,7 +213,7 @@ contains
    !> Mean of slave's and master's value of a field, at every contact point; 0 where no law asks for
    !> it.
    pure function means(self, field)
-      class(all_contact_points_type), intent(in) :: self
+      class(connections_type), intent(in) :: self
       real(dp), intent(in) :: field(:)             !! (nodes)
       real(dp) :: means(size(self%slave))          !! (m)
 
@@ -225,4 +221,4 @@ contains
       if (self%vary_with_temperature()) call self%mean%add_totals(field, means)
    end function means
 
-end module all_contact_points
+end module connections

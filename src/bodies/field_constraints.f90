@@ -8,22 +8,27 @@
 !> Contact points of a cycle that all stick share their friction in a way that statics leaves open,
 !> and their relations depend on each other. They therefore have a small part of the bodies'
 !> compliance.
-module contact_constraints
+!>
+!> A tie has a row for every point of its slave face. On sides without midside nodes the rows would
+!> be too many where the faces end at supports or at other ties: there the slave's end node follows
+!> from these, and the row would bind the master's inner nodes in its place. Such a point has no row
+!> of its own; its hat function goes to its neighbour's (Bernardi, Maday and Patera's multipliers,
+!> constant on the last side).
+module field_constraints
    use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_hanging, &
-      of_support, row_origin_type
+      of_support, of_tie, row_origin_type
    use equations, only: equation_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use linear_constraints, only: eliminate, linear_constraints_type, node_stiffness
-   use all_contact_points, only: all_contact_points_type
+   use connections, only: connections_type, tie_points_type
    use held_points, only: held_directions, over_constrained
    use sparse_matrix, only: sparse_matrix_type
-   use sum_lists, only: sum_list_type
-   use tie_constraints, only: add_ties, most_rows
+   use sum_lists, only: add_terms, sum_list_type
    implicit none
    private
    public :: constrain_displacements, constrain_temperatures, in_cycle, stiffness_alone, &
-      cycle_compliance, first_tied, displacement_rows, temperature_rows
+      cycle_compliance, first_tied, displacement_rows, temperature_rows, add_ties
 
    !> Compliance of a stuck contact point of a cycle, as a part of the bodies' at its nodes.
    real(dp), parameter :: cycle_compliance = 1.0e-8_dp
@@ -40,7 +45,7 @@ contains
       constraints, error)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
-      type(all_contact_points_type), intent(in) :: points !! contact points
+      type(connections_type), intent(in) :: points !! contact points
       logical, intent(in) :: has_friction(:)        !! (m)
       !> (m) whether the slave is to lead where neither node is prescribed; else the master does
       logical, intent(in) :: slave_leads(:)
@@ -61,7 +66,7 @@ contains
    !> The rows of the displacements.
    pure function displacement_rows(held, points, slave_leads) result(rows)
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
-      type(all_contact_points_type), intent(in) :: points !! as above
+      type(connections_type), intent(in) :: points !! as above
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(constraint_rows_type) :: rows
       real(dp) :: directions(2, size(slave_leads))
@@ -89,7 +94,7 @@ contains
    pure subroutine constrain_temperatures(used, held, points, slave_leads, constraints)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
-      type(all_contact_points_type), intent(in) :: points !! contact points
+      type(connections_type), intent(in) :: points !! contact points
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(linear_constraints_type), intent(out) :: constraints
 
@@ -100,7 +105,7 @@ contains
    !> The rows of the temperatures.
    pure function temperature_rows(held, points, slave_leads) result(rows)
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
-      type(all_contact_points_type), intent(in) :: points !! contact points
+      type(connections_type), intent(in) :: points !! contact points
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(constraint_rows_type) :: rows
       integer :: k
@@ -157,7 +162,7 @@ contains
    pure subroutine begin_rows(held, components, points, rows)
       logical, intent(in) :: held(:)
       integer, intent(in) :: components
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       type(constraint_rows_type), intent(out) :: rows
       integer :: dof, introduced, most
 
@@ -165,7 +170,7 @@ contains
       rows%dofs = size(held)
       introduced = components*size(points%slave)
       most = count(held) + components*points%hanging%count + size(points%equations) + &
-         most_rows(points%ties, components) + introduced
+         2*components*points%ties%difference%count + introduced
       allocate (rows%on_tail(introduced), source=.true.)
       allocate (rows%origin(most), rows%choice(most))
       call rows%reserve(most, 2*count(held) + components*(introduced + &
@@ -203,7 +208,7 @@ contains
    !> component of the slave's own node is to be written by the others, or of the master's; on faces
    !> that do not match always of the slave's.
    pure subroutine relate(points, k, component, direction, introduced, slave_leads, rows)
-      type(all_contact_points_type), intent(in) :: points
+      type(connections_type), intent(in) :: points
       integer, intent(in) :: k, component
       real(dp), intent(in) :: direction(:)          ! (components)
       real(dp), intent(in) :: introduced(:)         ! factors of its introduced values
@@ -242,7 +247,7 @@ contains
    !> none. A link then relates nothing but its own values.
    pure integer function first_tied(constraints, points)
       type(linear_constraints_type), intent(in) :: constraints !! of the displacements
-      type(all_contact_points_type), intent(in) :: points      !! all contact points
+      type(connections_type), intent(in) :: points      !! all contact points
       integer :: i, k
 
       do i = 1, constraints%link_unknowns%count
@@ -281,4 +286,114 @@ contains
       if (own >= held_by_others*stiffness) stiffness = own
    end function stiffness_alone
 
-end module contact_constraints
+   !> Adds the rows of all ties. Two nodes face to face that are both prescribed have a row of their
+   !> own: what prescribes them must agree there.
+   pure subroutine add_ties(ties, held, rows)
+      type(tie_points_type), intent(in) :: ties
+      logical, intent(in) :: held(:)                !! (dofs) prescribed values
+      type(constraint_rows_type), intent(inout) :: rows
+      logical :: determined(ties%difference%count), shared(size(held)/rows%components)
+      integer :: owner(ties%difference%count)
+      integer :: c, k, slave_dof, master_dof
+
+      shared = in_several(ties, size(shared))
+      do c = 1, rows%components
+         associate (of_component => held(c::rows%components))
+            do k = 1, size(determined)
+               associate (ends => [ties%slave(k), ties%master(k)])
+                  determined(k) = ties%is_linear(k) .and. all(of_component(ends) .or. &
+                     shared(ends)) .and. .not. all(of_component(ties%difference%values_of(k)))
+               end associate
+            end do
+         end associate
+         owner = owners(ties, determined)
+         do k = 1, size(determined)
+            slave_dof = rows%components*(ties%slave(k) - 1) + c
+            master_dof = rows%components*(ties%master(k) - 1) + c
+            if (ties%is_opposite(k) .and. held(slave_dof) .and. held(master_dof)) then
+               call add_row([slave_dof, master_dof], [1.0_dp, -1.0_dp], k, slave_dof, rows)
+            end if
+            if (owner(k) == k) call add_point(ties, owner, k, c, rows)
+         end do
+      end do
+   end subroutine add_ties
+
+   !> Nodes that several ties act on.
+   pure function in_several(ties, nodes) result(several)
+      type(tie_points_type), intent(in) :: ties
+      integer, intent(in) :: nodes
+      logical :: several(nodes)
+      integer :: first(nodes), k
+
+      several = .false.
+      first = 0
+      do k = 1, ties%difference%count
+         associate (own => ties%difference%values_of(k))
+            several(own) = several(own) .or. (first(own) > 0 .and. first(own) /= ties%tie(k))
+            first(own) = ties%tie(k)
+         end associate
+      end do
+   end function in_several
+
+   !> The point whose row takes each point's hat function: its own, or the nearest one of the same
+   !> tie along the face that is not determined.
+   pure function owners(ties, determined) result(owner)
+      type(tie_points_type), intent(in) :: ties
+      logical, intent(in) :: determined(:)
+      integer :: owner(size(determined))
+      integer :: distance, k, side
+
+      owner = [(k, k=1, size(owner))]
+      do k = 1, size(owner)
+         if (.not. determined(k)) cycle
+         search: do distance = 1, size(owner)
+            do side = -1, 1, 2
+               associate (other => k + side*distance)
+                  if (other < 1 .or. other > size(owner)) cycle
+                  if (determined(other) .or. ties%tie(other) /= ties%tie(k)) cycle
+                  owner(k) = other
+                  exit search
+               end associate
+            end do
+         end do search
+      end do
+   end function owners
+
+   !> Adds the row of one component of a point, the mean over the hat functions that it takes.
+   pure subroutine add_point(ties, owner, k, component, rows)
+      type(tie_points_type), intent(in) :: ties
+      integer, intent(in) :: owner(:)
+      integer, intent(in) :: k, component
+      type(constraint_rows_type), intent(inout) :: rows
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: share(:)
+      integer :: other
+
+      nodes = ties%difference%values_of(k)
+      share = ties%difference%coefficients_of(k)
+      if (count(owner == k) > 1) share = share*ties%weight(k)
+      do other = 1, size(owner)
+         if (owner(other) /= k .or. other == k) cycle
+         associate (more => ties%difference%values_of(other), &
+            part => ties%weight(other)*ties%difference%coefficients_of(other))
+            call add_terms(more, part, nodes, share)
+         end associate
+      end do
+      if (count(owner == k) > 1) share = share/sum(ties%weight, mask=owner == k)
+      call add_row(rows%components*(nodes - 1) + component, share, k, &
+         rows%components*(ties%slave(k) - 1) + component, rows)
+   end subroutine add_point
+
+   !> Adds a row.
+   pure subroutine add_row(dofs, share, point, choice, rows)
+      integer, intent(in) :: dofs(:)
+      real(dp), intent(in) :: share(:)
+      integer, intent(in) :: point, choice
+      type(constraint_rows_type), intent(inout) :: rows
+
+      call rows%add(dofs, share)
+      rows%origin(rows%count) = row_origin_type(of_tie, point)
+      rows%choice(rows%count) = choice
+   end subroutine add_row
+
+end module field_constraints
