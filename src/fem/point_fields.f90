@@ -264,7 +264,8 @@ contains
          do g = 1, n, 2
             call stress_from_strain(self%materials(i), g, strain, warmth, values)
             if (self%one_material(element)) cycle
-            if (g < n) call stress_of_second(self%materials(i + 1), g + 1, strain, warmth, values)
+            if (g < n) values(g + 1, :) = matmul(self%materials(i + 1)%elasticity, &
+               strain(g + 1, :)) - self%materials(i + 1)%thermal_modulus*warmth(g + 1)
             i = i + 2
          end do
          if (.not. allocated(mesh%initial_stress)) return
@@ -290,17 +291,6 @@ contains
             material%thermal_modulus(i)*warmth(g:g + 1)
       end do
    end subroutine stress_from_strain
-
-   !> One point of a material of its own.
-   pure subroutine stress_of_second(material, g, strain, warmth, values)
-      type(point_material_type), intent(in) :: material
-      integer, intent(in) :: g
-      real(dp), intent(in) :: strain(most, 4), warmth(most)
-      real(dp), intent(inout) :: values(most, 4)
-
-      values(g, :) = matmul(material%elasticity, strain(g, :)) - &
-         material%thermal_modulus*warmth(g)
-   end subroutine stress_of_second
 
    !> Heat flux of an element at its points along x and y, eq. (1.4).
    pure subroutine heat_flux(self, mesh, element, temperature, values)

@@ -48,12 +48,23 @@ contains
       integer, intent(in) :: kind                   !! kind of the element
       real(dp), intent(in) :: point(2)              !! xi, eta
       real(dp) :: psi(element_node_count(kind))     !! values
-      real(dp) :: area(3)
+      real(dp) :: area(3), eta, xi
+      integer :: q
 
       area = [1 - point(1) - point(2), point(1), point(2)]
       select case (kind)
       case (quad8, quad8_reduced)
-         psi = quad8_shape(point)
+         do q = 1, 4
+            xi = point(1)*square_position(1, q)
+            eta = point(2)*square_position(2, q)
+            psi(q) = (1 + xi)*(1 + eta)*(xi + eta - 1)/4
+         end do
+         do q = 5, 7, 2
+            psi(q) = (1 - point(1)**2)*(1 + point(2)*square_position(2, q))/2
+         end do
+         do q = 6, 8, 2
+            psi(q) = (1 - point(2)**2)*(1 + point(1)*square_position(1, q))/2
+         end do
       case (quad4)
          psi = (1 + point(1)*square_position(1, :4))*(1 + point(2)*square_position(2, :4))/4
       case (triangle6)
@@ -66,36 +77,34 @@ contains
       end select
    end function element_shape
 
-   pure function quad8_shape(point) result(psi)
-      real(dp), intent(in) :: point(2)
-      real(dp) :: psi(8)
-      real(dp) :: xi, eta
-      integer :: q
-
-      do q = 1, 4
-         xi = point(1)*square_position(1, q)
-         eta = point(2)*square_position(2, q)
-         psi(q) = (1 + xi)*(1 + eta)*(xi + eta - 1)/4
-      end do
-      do q = 5, 7, 2
-         psi(q) = (1 - point(1)**2)*(1 + point(2)*square_position(2, q))/2
-      end do
-      do q = 6, 8, 2
-         psi(q) = (1 - point(2)**2)*(1 + point(1)*square_position(1, q))/2
-      end do
-   end function quad8_shape
-
    !> Derivatives of psi^q by xi and eta.
    pure function local_gradients(kind, point) result(slope)
       integer, intent(in) :: kind                          !! kind of the element
       real(dp), intent(in) :: point(2)                     !! xi, eta
       real(dp) :: slope(2, element_node_count(kind))
-      real(dp) :: area(3)
+      real(dp) :: a, area(3), b, eta, xi
       integer :: q, next
 
       select case (kind)
       case (quad8, quad8_reduced)
-         slope = quad8_gradients(point)
+         do q = 1, 4
+            a = square_position(1, q)
+            b = square_position(2, q)
+            xi = point(1)*a
+            eta = point(2)*b
+            slope(1, q) = a*(1 + eta)*(2*xi + eta)/4
+            slope(2, q) = b*(1 + xi)*(2*eta + xi)/4
+         end do
+         do q = 5, 7, 2
+            b = square_position(2, q)
+            slope(1, q) = -point(1)*(1 + point(2)*b)
+            slope(2, q) = b*(1 - point(1)**2)/2
+         end do
+         do q = 6, 8, 2
+            a = square_position(1, q)
+            slope(1, q) = a*(1 - point(2)**2)/2
+            slope(2, q) = -point(2)*(1 + point(1)*a)
+         end do
       case (quad4)
          slope(1, :) = square_position(1, :4)*(1 + point(2)*square_position(2, :4))/4
          slope(2, :) = square_position(2, :4)*(1 + point(1)*square_position(1, :4))/4
@@ -112,32 +121,6 @@ contains
          slope = 0.0_dp
       end select
    end function local_gradients
-
-   pure function quad8_gradients(point) result(slope)
-      real(dp), intent(in) :: point(2)
-      real(dp) :: slope(2, 8)
-      real(dp) :: a, b, xi, eta
-      integer :: q
-
-      do q = 1, 4
-         a = square_position(1, q)
-         b = square_position(2, q)
-         xi = point(1)*a
-         eta = point(2)*b
-         slope(1, q) = a*(1 + eta)*(2*xi + eta)/4
-         slope(2, q) = b*(1 + xi)*(2*eta + xi)/4
-      end do
-      do q = 5, 7, 2
-         b = square_position(2, q)
-         slope(1, q) = -point(1)*(1 + point(2)*b)
-         slope(2, q) = b*(1 - point(1)**2)/2
-      end do
-      do q = 6, 8, 2
-         a = square_position(1, q)
-         slope(1, q) = a*(1 - point(2)**2)/2
-         slope(2, q) = -point(2)*(1 + point(1)*a)
-      end do
-   end function quad8_gradients
 
    !> Derivatives of psi^q by x and y, and the Jacobian determinant.
    pure subroutine element_gradients(kind, coordinates, point, gradients, jacobian)

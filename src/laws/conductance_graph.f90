@@ -197,13 +197,12 @@ contains
       class(conductance_graph_type), intent(in) :: self  !! the contact point
       real(dp), intent(in) :: omega                      !! conductance
       logical :: may_rest                                !! it lies between the two values
-      real(dp) :: closed, open
+      real(dp) :: ends(2)
 
-      closed = conductance(self%law, .true., 0.0_dp, 0.0_dp)
-      open = conductance(self%law, .false., 0.0_dp, 0.0_dp)
+      ends = rest_ends(self)
       ! The conductance of an end of the rest is one of the two values but for rounding.
-      may_rest = self%width > 0.0_dp .and. omega >= (1.0_dp - rounding)*min(closed, open) .and. &
-         omega <= (1.0_dp + rounding)*max(closed, open)
+      may_rest = self%width > 0.0_dp .and. omega >= (1.0_dp - rounding)*minval(ends) .and. &
+         omega <= (1.0_dp + rounding)*maxval(ends)
    end function may_rest
 
    !> Coordinate of an opening that is not 0.

@@ -5,7 +5,7 @@ module listing_increments
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use contact_states, only: contact_open, contact_stick
-   use increment_quantities, only: body_values, history_value
+   use increment_quantities, only: error_values, history_value
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, page_width, print_wrapped
@@ -88,8 +88,8 @@ contains
       write (unit, '(3x, a, 3(a, i0), a)') points%name, '   I ', zones(1), '   II ', zones(2), &
          '   III ', zones(3), edges
       write (unit, '(3x, a)') sums
-      call print_surplus(unit, 'contact', edge_count(contact%contact_state /= contact_open))
-      call print_surplus(unit, 'stick', edge_count(contact%contact_state == contact_stick))
+      call print_surplus(unit, 'contact', contact%contact_state /= contact_open)
+      call print_surplus(unit, 'stick', contact%contact_state == contact_stick)
    end subroutine print_interface
 
    !> The quantities of an increment that need the same, with their labels.
@@ -129,18 +129,13 @@ contains
       end if
    end function told
 
-   !> Ends of zones between two contact points.
-   pure integer function edge_count(in_zone)
-      logical, intent(in) :: in_zone(:)
-
-      edge_count = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
-   end function edge_count
-
-   subroutine print_surplus(unit, zone, edges)
+   subroutine print_surplus(unit, zone, in_zone)
       integer, intent(in) :: unit
       character(*), intent(in) :: zone
-      integer, intent(in) :: edges
+      logical, intent(in) :: in_zone(:)   ! (contact points)
+      integer :: edges
 
+      edges = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
       if (edges > edges_kept) write (unit, '(6x, 3a, i0, 3a, i0)') 'warning: the zones of ', &
          zone, ' have ', edges, ' edges; edges_', zone, ' of the result file holds the first ', &
          edges_kept
@@ -179,12 +174,12 @@ contains
       errors = pack(quantities, quantities%kind == of_bodies)
       bodies = 0
       do i = 1, size(errors)
-         bodies = max(bodies, size(body_values(errors(i)%name, record)))
+         bodies = max(bodies, size(error_values(errors(i), record)))
       end do
       do b = 1, bodies
          line = ''
          do i = 1, size(errors)
-            values = body_values(errors(i)%name, record)
+            values = error_values(errors(i), record)
             if (b > size(values)) cycle
             line = line//'   '//trim(errors(i)%label)//column(values(b), 9, 2)
          end do

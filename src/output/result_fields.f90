@@ -7,8 +7,9 @@ module result_fields
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
    use element_kinds, only: axisymmetric, element_node_count, kind_count
-   use field_quantities, only: element_values, point_values
+   use field_quantities, only: point_values
    use hdf5_writer, only: as_integer, hdf5_writer_type
+   use increment_quantities, only: error_values
    use kinds, only: dp
    use model, only: model_type, unit_labels_type
    use quantity_types, only: of_elements, of_contact_points, of_points, quantity_type
@@ -142,8 +143,7 @@ contains
          end associate
       end do
       do i = 1, size(self%cell_data)
-         call self%sets(size(self%point_data) + i)%append(element_values(self%cell_data(i)%name, &
-            record))
+         call self%sets(size(self%point_data) + i)%append(error_values(self%cell_data(i), record))
       end do
       call self%append_time(record%time)
    end subroutine append

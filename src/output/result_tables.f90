@@ -4,7 +4,7 @@ module result_tables
    use contact_quantities, only: contact_values, estimated, geometry_values
    use growing_datasets, only: growing_dataset_type, quantity_dataset
    use hdf5_writer, only: as_integer, hdf5_writer_type
-   use increment_quantities, only: body_values, history_value, pass_value
+   use increment_quantities, only: error_values, history_value, pass_value
    use kinds, only: dp
    use model, only: unit_labels_type
    use quantity_types, only: of_bodies, quantity_type
@@ -57,7 +57,7 @@ contains
 
       do i = 1, size(self%sets)
          if (self%quantities(i)%kind == of_bodies) then
-            call self%sets(i)%append(body_values(self%quantities(i)%name, record))
+            call self%sets(i)%append(error_values(self%quantities(i), record))
          else
             call self%sets(i)%append([history_value(self%quantities(i)%name, record)])
          end if

@@ -1,6 +1,7 @@
 !> Units of reported quantities in the labels of *OPTIONS, UNITS=.
 module unit_labels
    use model, only: unit_labels_type
+   use run_summaries, only: or_blank
    use steps, only: dof_temperature
    implicit none
    private
@@ -17,10 +18,7 @@ contains
 
       words = trim(unit)
       if (words == '-') return
-      if (.not. allocated(labels%length)) words = ''
-      if (len(words) > 0) then
-         if (labels%length == '') words = ''
-      end if
+      if (or_blank(labels%length) == '') words = ''
       if (words == '') return
       words = with('length', labels%length, words)
       words = with('stress', labels%stress, words)

@@ -4,10 +4,10 @@ module field_quantities
    use kinds, only: dp
    use quantity_types, only: needs_heat, needs_mechanics, needs_temperature, of_elements, &
       of_nodes, of_points, quantity_type
-   use records, only: field_record_type, increment_record_type
+   use records, only: field_record_type
    implicit none
    private
-   public :: field_table, point_values, element_values
+   public :: field_table, point_values
 
    type(quantity_type), parameter :: field_table(*) = [ &
       quantity_type('U1', of_nodes, 'length', needs_mechanics), &
@@ -103,22 +103,6 @@ contains
       case default   ! not known: none
       end select
    end function point_values
-
-   !> A quantity of every element.
-   pure function element_values(name, record) result(values)
-      character(*), intent(in) :: name                     !! one of of_elements
-      type(increment_record_type), intent(in) :: record
-      real(dp), allocatable :: values(:)                   !! (elements), or none
-
-      allocate (values(0))
-      select case (name)
-      case ('stress_error')
-         if (allocated(record%stress_error%element)) values = record%stress_error%element
-      case ('heat_flux_error')
-         if (allocated(record%heat_flux_error%element)) values = record%heat_flux_error%element
-      case default   ! not known: none
-      end select
-   end function element_values
 
    !> Rows of a field one beside the other, row 0 being zeros; of some indexes, or of all.
    pure function rows(field, components, indexes) result(values)

@@ -2,13 +2,14 @@
 module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
-   use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, of_bodies, of_history, &
-      of_passes, quantity_type
+   use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, of_bodies, of_elements, &
+      of_history, of_passes, quantity_type
+   use recovered_error, only: error_record_type
    use records, only: increment_record_type
    use solution_report, only: iteration_record_type
    implicit none
    private
-   public :: increment_table, history_value, body_values, pass_value
+   public :: increment_table, history_value, error_values, pass_value
 
    type(quantity_type), parameter :: increment_table(*) = [ &
       quantity_type('time', of_history, 'time', &
@@ -105,21 +106,19 @@ contains
       end select
    end function history_value
 
-   !> A quantity of the bodies.
-   pure function body_values(name, record) result(values)
-      character(*), intent(in) :: name                     !! one of of_bodies
+   !> A quantity of the bodies or of the elements.
+   pure function error_values(quantity, record) result(values)
+      type(quantity_type), intent(in) :: quantity          !! one of of_bodies or of_elements
       type(increment_record_type), intent(in) :: record
-      real(dp), allocatable :: values(:)                   !! (bodies), or none
+      real(dp), allocatable :: values(:)                   !! (bodies or elements), or none
+      type(error_record_type) :: error
 
+      if (quantity%name == 'stress_error') error = record%stress_error
+      if (quantity%name == 'heat_flux_error') error = record%heat_flux_error
       allocate (values(0))
-      select case (name)
-      case ('stress_error')
-         if (allocated(record%stress_error%body)) values = record%stress_error%body
-      case ('heat_flux_error')
-         if (allocated(record%heat_flux_error%body)) values = record%heat_flux_error%body
-      case default   ! not known: none
-      end select
-   end function body_values
+      if (quantity%kind == of_bodies .and. allocated(error%body)) values = error%body
+      if (quantity%kind == of_elements .and. allocated(error%element)) values = error%element
+   end function error_values
 
    !> A quantity of a pass.
    elemental function pass_value(name, pass) result(value)
