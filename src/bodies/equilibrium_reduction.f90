@@ -36,7 +36,7 @@ module equilibrium_reduction
 
 contains
 
-   !> Factors the stiffness, and forms the contact system.
+   !> Factors the stiffness, and forms the contact system, nothing closed.
    !> Errors: unconstrained bodies, a failure of the solver.
    subroutine reduce(self, model, mechanical, points, rigid, node_rank, error)
       class(equilibrium_reduction_type), intent(inout) :: self
@@ -57,29 +57,16 @@ contains
             error%message//'; '//words
          return
       end if
-      call make_system(mechanical, points, rigid, self%solver%schur, self%contact)
+      self%contact = contact_system_type()
+      associate (contact => self%contact, map => mechanical%map)
+         contact%normal = map%tail_index(map%introduced(1::2))
+         contact%tangent = map%tail_index(map%introduced(2::2))
+         call move_alloc(self%solver%schur, contact%schur)
+         call set_motions(points, rigid, contact)
+         call set_cycles(mechanical, points, contact)
+      end associate
       self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
    end subroutine reduce
-
-   !> The contact system, nothing closed, from the mechanical Schur complement.
-   pure subroutine make_system(mechanical, points, rigid, schur, contact)
-      type(field_problem_type), intent(in) :: mechanical
-      type(connections_type), intent(in) :: points
-      real(dp), intent(in) :: rigid(:, :)
-      real(dp), allocatable, intent(inout) :: schur(:, :)   ! becomes a part of the system
-      type(contact_system_type), intent(out) :: contact
-      integer :: m
-
-      m = size(points%slave)
-      allocate (contact%normal(m), contact%tangent(m))
-      associate (map => mechanical%map)
-         contact%normal(:) = map%tail_index(map%introduced(1::2))
-         contact%tangent(:) = map%tail_index(map%introduced(2::2))
-      end associate
-      call move_alloc(schur, contact%schur)
-      call set_motions(points, rigid, contact)
-      call set_cycles(mechanical, points, contact)
-   end subroutine make_system
 
    !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
    !> force; what S makes of them is rounding, and is taken from it.

@@ -208,10 +208,12 @@ contains
          if (record%coupling_gain < -1.0_dp .and. is_plain) call record%warn( &
             'the coupling gain is ', record%coupling_gain, &
             ', below -1: plain iteration (4.1) would diverge')
-         if (is_near_turning_point(record%coupling_gain_max)) call record%warn( &
-            'the largest real gain is ', record%coupling_gain_max, ', near 1: a turning point, '// &
-            'where solutions meet and small changes of the load have large effects', &
-            severity=-abs(record%coupling_gain_max - 1.0_dp))
+         if (.not. ieee_is_nan(record%coupling_gain_max)) then
+            if (abs(record%coupling_gain_max - 1.0_dp) <= near_turning_point) call record%warn( &
+               'the largest real gain is ', record%coupling_gain_max, &
+               ', near 1: a turning point, where solutions meet and small changes of the load '// &
+               'have large effects', severity=-abs(record%coupling_gain_max - 1.0_dp))
+         end if
          ! Where all gains are below 1 in modulus, det(I - U') is positive.
          if (any(next%resting) .or. abs(gains%largest) >= 1.0_dp) then
             if (is_unstable(bodies, heat, data, workspace, next)) call record%warn( &
@@ -220,14 +222,6 @@ contains
          end if
       end associate
    end subroutine judge
-
-   !> Whether the largest real gain is near 1; there may be none.
-   pure logical function is_near_turning_point(gain)
-      real(dp), intent(in) :: gain    ! NaN for none
-
-      is_near_turning_point = .not. ieee_is_nan(gain)
-      if (is_near_turning_point) is_near_turning_point = abs(gain - 1.0_dp) <= near_turning_point
-   end function is_near_turning_point
 
    !> Whether det(I - U') < 0.
    logical function is_unstable(bodies, heat, data, workspace, next)

@@ -33,7 +33,6 @@ module increment_data
       type(contact_state_type) :: previous           !! contact state
       real(dp), allocatable :: omega_before(:)       !! (m) omega_(i-1)
       logical, allocatable :: resting(:)             !! (m) contact points that rest
-      logical :: kept_imbalance = .false. !! whether the last increment's scheme damped no imbalance
       type(edge_heat_type) :: edge   !! heat at edges; none where (3.4) takes past conductances
       real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed

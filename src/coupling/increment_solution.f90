@@ -144,7 +144,6 @@ contains
          previous%temperature, bodies%points%weight, merge(omega, previous%omega, is_new), &
          previous%jump)
       data%omega_before = merge(omega, previous%omega_before, is_new)
-      data%kept_imbalance = previous%keeps_imbalance
       data%resting = previous%resting .and. .not. bodies%laws%removed
       if (.not. data%equation%takes_past_conductance()) data%edge = &
          previous%edge%without(bodies%laws%removed)

@@ -136,13 +136,20 @@ contains
       type(mumps_solver_type), intent(inout) :: self
       integer, intent(in) :: rank(:)                  !! (leading)
       type(error_type), allocatable, intent(out) :: error
+      integer :: i
 
       if (self%order == self%tail) return
       self%mumps%nnz = size(self%mumps%irn, kind=long)
       allocate (self%mumps%perm_in(self%order))
       self%mumps%perm_in(:) = positions_by_rank(rank, self%order)
       self%mumps%icntl(7) = order_given
-      if (self%tail > 0) call ask_for_schur(self)
+      if (self%tail > 0) then
+         ! The lower triangle of the Schur complement by rows, our upper triangle by columns.
+         self%mumps%icntl(19) = 1
+         self%mumps%size_schur = self%tail
+         allocate (self%mumps%listvar_schur(self%tail))
+         self%mumps%listvar_schur(:) = [(i, i=self%order - self%tail + 1, self%order)]
+      end if
       self%mumps%job = job_analyse
       call call_mumps(self%mumps)
       call check(self, 'analysis', error)
@@ -255,20 +262,6 @@ contains
          id%n = order
       end associate
    end subroutine start
-
-   !> Asks for the Schur complement of the tail: its lower triangle by rows, our upper triangle by
-   !> columns.
-   subroutine ask_for_schur(self)
-      type(mumps_solver_type), intent(inout) :: self
-      integer :: i
-
-      associate (id => self%mumps)
-         id%icntl(19) = 1
-         id%size_schur = self%tail
-         allocate (id%listvar_schur(self%tail))
-         id%listvar_schur(:) = [(i, i=self%order - self%tail + 1, self%order)]
-      end associate
-   end subroutine ask_for_schur
 
    !> Turns what MUMPS reports into an error.
    subroutine check(self, phase, error)
