@@ -19,29 +19,23 @@ contains
 
       if (unit == output_unit) then
          call print_text(printable(line)//new_line('a'))
+      else if (unit == error_unit) then
+         call pass_on(printable(line))
       else
          write (unit, '(a)', iostat=status) printable(line)
          if (status /= 0) return   ! there is nobody left to tell
-         if (unit == error_unit) call flush_errors()
       end if
    end subroutine print_line
 
-   !> Prints on stderr what another process of the program has printed.
+   !> Prints lines on stderr, such as those of another process of the program.
    subroutine pass_on(lines)
       character(*), intent(in) :: lines     !! with line ends between them
       integer :: status
 
       write (error_unit, '(a)', iostat=status) lines
+      if (status == 0) flush (error_unit, iostat=status)
       if (status /= 0) return   ! there is nobody left to tell
-      call flush_errors()
    end subroutine pass_on
-
-   subroutine flush_errors()
-      integer :: status
-
-      flush (error_unit, iostat=status)
-      if (status /= 0) return   ! there is nobody left to tell
-   end subroutine flush_errors
 
    !> Prints an error on stderr as `subject: error: message`.
    subroutine print_error(subject, message)
