@@ -266,28 +266,18 @@ contains
    pure subroutine keep_landings(model)
       type(model_type), intent(inout) :: model
       logical :: lands(size(model%verifications))
+      real(dp) :: ends(size(model%steps))   ! total times
       integer :: i
 
+      ends = [(sum(model%steps(:i)%period), i=1, size(ends))]
       do i = 1, size(lands)
          associate (check => model%verifications(i))
             lands(i) = .not. check%at_last
-            if (lands(i)) lands(i) = .not. model%steps(step_at(model, check%when))%direct
+            if (lands(i)) lands(i) = .not. model%steps(min(1 + count(check%when > ends), &
+               size(ends)))%direct
          end associate
       end do
       model%verifications = model%verifications(pack([(i, i=1, size(lands))], lands))
    end subroutine keep_landings
-
-   !> The step in which a total time lies.
-   pure integer function step_at(model, time)
-      type(model_type), intent(in) :: model
-      real(dp), intent(in) :: time
-      real(dp) :: ending
-
-      ending = 0.0_dp
-      do step_at = 1, size(model%steps) - 1
-         ending = ending + model%steps(step_at)%period
-         if (time <= ending) return
-      end do
-   end function step_at
 
 end module variations

@@ -45,7 +45,6 @@ module deck_outcomes
       type(string_type), allocatable :: summary(:)         !! what it comes to, lines
       type(string_type), allocatable :: failed_checks(:)   !! one line each
    contains
-      procedure :: begin
       procedure :: note
       procedure :: doubt
       procedure :: note_files
@@ -59,16 +58,6 @@ module deck_outcomes
    end type deck_outcome_type
 
 contains
-
-   !> Begins a round: what the one before left to be desired counts no longer.
-   pure subroutine begin(self, keeps_round)
-      class(deck_outcome_type), intent(inout) :: self     !! the run
-      logical, intent(in) :: keeps_round                  !! whether there is one before
-
-      self%keeps_round = keeps_round
-      self%known_to = 0.0_dp
-      if (allocated(self%reason)) deallocate (self%reason)
-   end subroutine begin
 
    !> Counts the passes of an increment, and what is written of it.
    subroutine note(self, record, accepted, files)

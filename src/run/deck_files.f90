@@ -80,6 +80,7 @@ contains
       type(string_type), intent(in) :: outputs(:)           !! paths, of which any may be missing
       type(error_type), allocatable, intent(out) :: error   !! names both files
       type(file_identity_type) :: written(size(outputs))
+      character(:), allocatable :: real_path
       integer :: i, k
 
       if (.not. allocated(self%paths)) return
@@ -88,7 +89,13 @@ contains
       end do
       do i = 1, size(self%paths)
          k = findloc(written%is_same(identity_of(self%paths(i)%value)), .true., dim=1)
-         if (k == 0) k = first_cleared(outputs, self%paths(i)%value)
+         if (k == 0) then
+            ! Leftovers of killed runs are removed beside an output, an input among them.
+            real_path = real_path_of(self%paths(i)%value)
+            do k = size(outputs), 1, -1
+               if (is_working_file(real_path, outputs(k)%value)) exit
+            end do
+         end if
          if (k == 0) cycle
          call set_error(error, status_deck, '"'//outputs(k)%value//'" would be written over "'// &
             self%paths(i)%value//'", from which the deck '//self%decks(i)%value// &
@@ -96,18 +103,5 @@ contains
          return
       end do
    end subroutine check
-
-   !> The first output beside which leftovers of killed runs are removed, an input among them; 0
-   !> for none.
-   integer function first_cleared(outputs, input)
-      type(string_type), intent(in) :: outputs(:)
-      character(*), intent(in) :: input
-      character(:), allocatable :: real_path
-
-      real_path = real_path_of(input)
-      do first_cleared = size(outputs), 1, -1
-         if (is_working_file(real_path, outputs(first_cleared)%value)) return
-      end do
-   end function first_cleared
 
 end module deck_files

@@ -92,7 +92,10 @@ contains
       associate (outcome => self%outcome, model => self%model, simulation => self%simulation, &
          output => self%output)
          if (allocated(rounds%variation)) output%kept_round = size(rounds%accuracy%rounds)
-         call outcome%begin(output%kept_round > 0)
+         outcome%keeps_round = output%kept_round > 0
+         ! What the round before left to be desired counts no longer.
+         outcome%known_to = 0.0_dp
+         if (allocated(outcome%reason)) deallocate (outcome%reason)
          if (outcome%keeps_round .and. .not. self%command%quiet) call self%end%prepare_summary( &
             outcome%round_summary(results_of(self%path, self%command)))
          call prepare_end(self, end_at_once)

@@ -97,14 +97,12 @@ contains
          words = 'every step solves it'
          return
       end if
-      words = 'step'
-      if (count(holds) > 1) words = words//'s'
+      words = 'step'//trim(merge('s', ' ', count(holds) > 1))
       do i = 1, size(holds)
          if (holds(i)) words = words//' '//to_text(i)
       end do
-      words = words//' of '//to_text(size(holds))
-      if (count(holds) == 1) words = words//' solves it'
-      if (count(holds) > 1) words = words//' solve it'
+      words = words//' of '//to_text(size(holds))//merge(' solves', ' solve ', count(holds) == 1)
+      words = trim(words)//' it'
    end function steps_that
 
    !> Contact Biot number omega L/K of the initial gaps: L the length of the interface, K the
