@@ -6,6 +6,7 @@ module divided_mesh
    use connections, only: connections_type
    use companion_steps, only: implicit_state, implicit_step
    use contact_states, only: contact_open
+   use controls, only: method_anderson
    use element_kinds, only: element_node_count
    use equations, only: equation_nodes
    use errors, only: error_type
@@ -15,11 +16,13 @@ module divided_mesh
    use kinds, only: dp
    use load_histories, only: end_of_step
    use local_refinement, only: choose_neighbours, elements_at_surfaces
+   use mesh, only: mesh_type
    use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type
+   use reduced_bodies, only: reduced_bodies_type
    use refinement, only: divide_model
    use solution_state, only: solution_state_type
-   use steps, only: boundary_type, solves_heat
+   use steps, only: boundary_type, solves_heat, step_type
    use thermal_matrix, only: heat_equation_type
    implicit none
    private
@@ -120,27 +123,23 @@ contains
       if (.not. any(is_closed)) is_near = .true.
       do beyond = 0, margin
          do e = 1, size(chosen)
-            chosen(e) = at_face(e) .and. any(is_near(nodes_of(e)))
+            chosen(e) = at_face(e) .and. any(is_near(nodes_of(model%mesh, e)))
          end do
          do e = 1, size(chosen)
-            if (chosen(e)) is_near(nodes_of(e)) = .true.
+            if (chosen(e)) is_near(nodes_of(model%mesh, e)) = .true.
          end do
       end do
       if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
          [model%ties%faces%slave, model%ties%faces%master])
-
-   contains
-
-      pure function nodes_of(element) result(nodes)
-         integer, intent(in) :: element
-         integer, allocatable :: nodes(:)
-
-         associate (mesh => model%mesh)
-            nodes = mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element)
-         end associate
-      end function nodes_of
-
    end function elements_at_contact
+
+   pure function nodes_of(mesh, element) result(nodes)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      integer, allocatable :: nodes(:)
+
+      nodes = mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element)
+   end function nodes_of
 
    !> Divides some elements, and prepares what solving increments takes of a run.
    !> Errors: as reduced_bodies' prepare.
@@ -155,11 +154,13 @@ contains
       self%is_divided = chosen
       self%model = model
       self%division = divide(model%mesh, chosen)
-      call divide_model(self%model, chosen)
+      call divide_model(self%model, self%division)
       call hold_new_nodes(self%division, self%model)
       call keep_to_equations(self%division, self%model)
       self%run = fresh_run
       self%heat = fresh_heat
+      self%run%heat%forms_on_demand = .true.
+      self%heat%forms_on_demand = .true.
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) then
          deallocate (self%is_divided)
@@ -241,7 +242,8 @@ contains
       end do
    end subroutine keep_to_equations
 
-   !> The quantities of the interfaces at the end of the run's step.
+   !> The quantities of the interfaces at the end of the run's step. Anderson's method solves the
+   !> increment without the loads of all jumps; where it fails, that of the deck solves it with them.
    !> Errors: as simulation_type's enter_step and reduce, or the increment has no solution.
    subroutine solve_end(self, simulation, previous, values, error)
       type(divided_mesh_type), intent(inout) :: self
@@ -249,25 +251,63 @@ contains
       type(solution_state_type), intent(in) :: previous
       real(dp), intent(out) :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
-      type(solution_state_type) :: before, next
+      type(solution_state_type) :: before, guess, next
+      type(step_type) :: step
 
       associate (run => self%run, number => simulation%control%step)
          call enter_step(self, number, error)
-         if (.not. allocated(error)) call run%reduce(self%model, error)
+         if (allocated(error)) return
+         call order_as_run(self, simulation%bodies)
+         call run%reduce(self%model, error)
          if (allocated(error)) return
          call run%loads%move_to(end_of_step(self%model%steps, number), self%model)
          before = prolonged(self, simulation%bodies%points, previous)
-         next = before
-         next%increment_size = simulation%state%increment_size
-         next%sources%load = run%loads%heat_load()
-         next%sources%film = run%loads%film_matrix()
-         next%force_load = run%loads%nodal_forces()
-         call implicit_state(run, self%heat, self%model, implicit_step(self%model%steps(number)), &
-            before, next, error)
+         guess = before
+         guess%increment_size = simulation%state%increment_size
+         guess%sources%load = run%loads%heat_load()
+         guess%sources%film = run%loads%film_matrix()
+         guess%force_load = run%loads%nodal_forces()
+         step = implicit_step(self%model%steps(number))
+         if (run%heat%forms_on_demand) step%fixed_point%method = method_anderson
+         next = guess
+         call implicit_state(run, self%heat, self%model, step, before, next, error)
+         if (allocated(error) .and. run%heat%forms_on_demand .and. run%bodies%is_coupled) then
+            run%heat%forms_on_demand = .false.
+            self%heat%forms_on_demand = .false.
+            step = implicit_step(self%model%steps(number))
+            next = guess
+            call run%reduce(self%model, error)
+            if (.not. allocated(error)) call implicit_state(run, self%heat, self%model, step, &
+               before, next, error)
+         end if
          if (allocated(error)) return
          call quantities_of_state(run%bodies, next, values)
       end associate
    end subroutine solve_end
+
+   !> Orders unknowns as the run does. New nodes come with the first one of the elements at them,
+   !> which joins all that they join: the fill is that of the run's order.
+   subroutine order_as_run(self, bodies)
+      type(divided_mesh_type), intent(inout) :: self
+      type(reduced_bodies_type), intent(in) :: bodies      !! of the run
+      integer, dimension(size(self%model%mesh%node_number)) :: known, node_rank
+      integer, allocatable :: nodes(:)
+      integer :: e
+
+      if (.not. allocated(bodies%equilibrium%rank)) return
+      nodes = bodies%mechanical%leading_nodes()
+      if (size(nodes) /= size(bodies%equilibrium%rank)) return
+      known = huge(1)
+      known(nodes) = bodies%equilibrium%rank
+      node_rank = known
+      do e = 1, size(self%model%mesh%element_number)
+         nodes = nodes_of(self%model%mesh, e)
+         node_rank(nodes) = min(node_rank(nodes), merge(minval(known(nodes)), huge(1), &
+            known(nodes) == huge(1)))
+      end do
+      where (node_rank == huge(1)) node_rank = 1
+      call self%run%heat%set_node_rank(self%run%bodies, node_rank)
+   end subroutine order_as_run
 
    !> Enters a step as the run did. The run's state at the start of steps shows in loads that ramp
    !> from there only, and not at the end of a step.

@@ -44,6 +44,9 @@ module heat_reduction
       !> (nodes) ranks in nested dissection of both fields as numbered; known where one elimination
       !> of both was made
       integer, allocatable :: node_rank(:)
+      !> Whether loads of jumps are formed as they are asked for, instead of jump_load for all of
+      !> them: less work for a single increment.
+      logical :: forms_on_demand = .false.
       integer, private :: ranked_displacements = 0   !! numbering of those in node_rank
       !> numbering and values of equilibrium in jump_load, 0 without it
       integer, private :: equilibrium(2) = 0
@@ -54,6 +57,8 @@ module heat_reduction
       procedure :: share_order
       procedure :: reduce
       procedure :: eliminate
+      procedure :: set_node_rank
+      procedure :: load_of_jumps
       procedure :: conductors
    end type heat_reduction_type
 
@@ -66,7 +71,7 @@ contains
       type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
 
       serves = self%is_of(bodies%thermal, film) .and. (.not. bodies%is_coupled .or. &
-         (has_loads(self, bodies) .and. self%is_balanced))
+         self%forms_on_demand .or. (has_loads(self, bodies) .and. self%is_balanced))
    end function serves
 
    !> Whether the loads of the jumps are those of the bodies' supports.
@@ -101,7 +106,7 @@ contains
          if (bodies%points%vary_with_temperature()) call form_jump_mean(self, bodies)
       end if
       if (allocated(of_loads)) call move_alloc(of_loads, error)
-      if (allocated(error) .or. .not. bodies%is_coupled) return
+      if (allocated(error) .or. .not. bodies%is_coupled .or. self%forms_on_demand) return
       if (.not. has_loads(self, bodies)) call loads_by_solves(bodies%thermal, self, &
          bodies%mechanical, bodies%equilibrium, bodies%thermal_load, self%jump_load)
       self%equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
@@ -121,7 +126,7 @@ contains
 
       call self%renumber_both(bodies)
       if (.not. self%is_for(bodies%thermal, film)) self%equilibrium = 0
-      if (has_loads(self, bodies) .or. .not. bodies%is_coupled) return
+      if (has_loads(self, bodies) .or. .not. bodies%is_coupled .or. self%forms_on_demand) return
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       self%is_balanced = .false.
       if (model%solver /= solver_mumps) return
@@ -162,6 +167,17 @@ contains
       self%ranked_displacements = other%ranked_displacements
    end subroutine share_order
 
+   !> Gives the order of the unknowns of both fields.
+   subroutine set_node_rank(self, bodies, node_rank)
+      class(heat_reduction_type), intent(inout) :: self
+      type(reduced_bodies_type), intent(in) :: bodies  !! numbered
+      integer, intent(in) :: node_rank(:)              !! (nodes) ranks, several may be the same
+
+      call self%renumber_both(bodies)
+      self%node_rank = node_rank
+      self%ranked_displacements = bodies%mechanical%numbering
+   end subroutine set_node_rank
+
    !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
    !> is on them or on a body that contact points join to them.
    subroutine name_cold_bodies(model, bodies, film, error)
@@ -196,6 +212,24 @@ contains
       end associate
       self%is_balanced = .true.
    end subroutine balance_jump_load
+
+   !> Condensed mechanical load of given jumps, by a solution of each field.
+   function load_of_jumps(self, bodies, on_tail) result(load)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: on_tail(:)                  !! (thermal tail) [temperature]
+      real(dp) :: load(bodies%mechanical%map%tail)        !! (mechanical tail) [force]
+      real(dp) :: condensed(size(load), 1), forces(bodies%thermal_load%row_count, 1)
+      real(dp) :: none(size(bodies%rigid, 2))
+
+      call bodies%thermal_load%multiply_columns(self%extended(bodies%thermal, reshape(on_tail, &
+         [size(on_tail), 1])), forces)
+      call bodies%equilibrium%condense_forces(bodies%mechanical, forces, condensed)
+      none = 0.0_dp
+      associate (contact => bodies%equilibrium%contact)
+         load = balanced_load(condensed(:, 1), contact%rigid, contact%motion, none)
+      end associate
+   end function load_of_jumps
 
    !> Mean temperature of the faces at all contact points, of a unit jump at each.
    subroutine form_jump_mean(self, bodies)

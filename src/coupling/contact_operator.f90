@@ -60,9 +60,13 @@ contains
       end if
       if (allocated(error)) return
       load = data%welded_load
-      do k = 1, size(workspace%on_tail)
-         load = load + heat%jump_load(:, k)*workspace%on_tail(k)
-      end do
+      if (heat%forms_on_demand) then
+         load = load + heat%load_of_jumps(bodies, workspace%on_tail)
+      else
+         do k = 1, size(workspace%on_tail)
+            load = load + heat%jump_load(:, k)*workspace%on_tail(k)
+         end do
+      end if
       call solve_increment(bodies%equilibrium%contact, data%previous, load, workspace%contact, &
          workspace%held, state, error)
       if (allocated(error)) return

@@ -83,6 +83,8 @@ contains
          call use_method(bodies, heat, controls, data, workspace, next, error)
       end if
       if (.not. allocated(error)) return
+      ! Newton's method needs the loads of all jumps.
+      if (heat%forms_on_demand) return
       if (controls%method /= method_newton) then
          if (any(workspace%pass%graph%width > 0.0_dp)) then
             deallocate (error)

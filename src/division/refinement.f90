@@ -54,13 +54,12 @@ contains
       model%refinement_levels = model%refinement_levels + levels
    end subroutine refine
 
-   !> Divides some elements of a model that is complete, and puts its loads and supports on the new
-   !> mesh.
-   subroutine divide_model(model, chosen)
+   !> Divides a model that is complete, and puts its loads and supports on the new mesh.
+   subroutine divide_model(model, division)
       type(model_type), intent(inout) :: model
-      logical, intent(in) :: chosen(:)   !! (elements) as in divide
+      type(division_type), intent(in) :: division   !! of its mesh
 
-      call refine_chosen(model, chosen)
+      call apply_division(model, division)
       if (allocated(model%requests)) then
          call apply_requests(model)
          call apply_transforms(model)
@@ -75,9 +74,17 @@ contains
       !> (elements) how often they are still to be divided; afterwards of the children
       integer, allocatable, intent(inout), optional :: levels(:)
       type(division_type) :: division
-      integer :: i
 
       division = divide(model%mesh, chosen)
+      if (present(levels)) levels = max(levels(parents_of(division)) - 1, 0)
+      call apply_division(model, division)
+   end subroutine refine_chosen
+
+   subroutine apply_division(model, division)
+      type(model_type), intent(inout) :: model
+      type(division_type), intent(in) :: division
+      integer :: i
+
       if (allocated(model%initial_temperature)) then
          model%initial_temperature = division%weights%multiply(model%initial_temperature)
       end if
@@ -89,9 +96,8 @@ contains
             end associate
          end do
       end if
-      if (present(levels)) levels = max(levels(parents_of(division)) - 1, 0)
       call refine_mesh(division, model%mesh)
-   end subroutine refine_chosen
+   end subroutine apply_division
 
    subroutine refine_mesh(division, mesh)
       type(division_type), intent(in) :: division
