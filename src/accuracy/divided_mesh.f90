@@ -16,7 +16,6 @@ module divided_mesh
    use kinds, only: dp
    use load_histories, only: end_of_step
    use local_refinement, only: choose_neighbours, elements_at_surfaces
-   use mesh, only: mesh_type
    use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
@@ -123,23 +122,27 @@ contains
       if (.not. any(is_closed)) is_near = .true.
       do beyond = 0, margin
          do e = 1, size(chosen)
-            chosen(e) = at_face(e) .and. any(is_near(nodes_of(model%mesh, e)))
+            chosen(e) = at_face(e) .and. any(is_near(nodes_of(e)))
          end do
          do e = 1, size(chosen)
-            if (chosen(e)) is_near(nodes_of(model%mesh, e)) = .true.
+            if (chosen(e)) is_near(nodes_of(e)) = .true.
          end do
       end do
       if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
          [model%ties%faces%slave, model%ties%faces%master])
+
+   contains
+
+      pure function nodes_of(element) result(nodes)
+         integer, intent(in) :: element
+         integer, allocatable :: nodes(:)
+
+         associate (mesh => model%mesh)
+            nodes = mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element)
+         end associate
+      end function nodes_of
+
    end function elements_at_contact
-
-   pure function nodes_of(mesh, element) result(nodes)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: element
-      integer, allocatable :: nodes(:)
-
-      nodes = mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element)
-   end function nodes_of
 
    !> Divides some elements, and prepares what solving increments takes of a run.
    !> Errors: as reduced_bodies' prepare.
@@ -243,7 +246,7 @@ contains
    end subroutine keep_to_equations
 
    !> The quantities of the interfaces at the end of the run's step. Anderson's method solves the
-   !> increment without the loads of all jumps; where it fails, that of the deck solves it with them.
+   !> increment without the loads of all jumps; where it fails, that of the deck does with them.
    !> Errors: as simulation_type's enter_step and reduce, or the increment has no solution.
    subroutine solve_end(self, simulation, previous, values, error)
       type(divided_mesh_type), intent(inout) :: self
@@ -285,27 +288,27 @@ contains
       end associate
    end subroutine solve_end
 
-   !> Orders unknowns as the run does. New nodes come with the first one of the elements at them,
-   !> which joins all that they join: the fill is that of the run's order.
+   !> Orders unknowns as the run does. A new node comes with the first one of its side, or of its
+   !> element if it lies inside: what it joins, that one joins already, so separators stay.
    subroutine order_as_run(self, bodies)
       type(divided_mesh_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies      !! of the run
-      integer, dimension(size(self%model%mesh%node_number)) :: known, node_rank
+      integer :: node_rank(size(self%model%mesh%node_number))
       integer, allocatable :: nodes(:)
-      integer :: e
+      integer :: i
 
       if (.not. allocated(bodies%equilibrium%rank)) return
       nodes = bodies%mechanical%leading_nodes()
       if (size(nodes) /= size(bodies%equilibrium%rank)) return
-      known = huge(1)
-      known(nodes) = bodies%equilibrium%rank
-      node_rank = known
-      do e = 1, size(self%model%mesh%element_number)
-         nodes = nodes_of(self%model%mesh, e)
-         node_rank(nodes) = min(node_rank(nodes), merge(minval(known(nodes)), huge(1), &
-            known(nodes) == huge(1)))
-      end do
-      where (node_rank == huge(1)) node_rank = 1
+      node_rank = huge(1)
+      node_rank(nodes) = bodies%equilibrium%rank
+      associate (weights => self%division%weights)
+         do i = self%division%nodes + 1, self%division%nodes_after
+            node_rank(i) = minval(node_rank(weights%column(weights%row_start(i): &
+               weights%row_start(i + 1) - 1)))
+         end do
+      end associate
+      where (node_rank == huge(1)) node_rank = maxval([1, bodies%equilibrium%rank])
       call self%run%heat%set_node_rank(self%run%bodies, node_rank)
    end subroutine order_as_run
 

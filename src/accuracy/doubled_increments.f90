@@ -79,7 +79,10 @@ contains
       type(heat_equation_type) :: equation
 
       if (.not. self%is_led .or. self%is_lost) return
-      call wait_for(self, model, record)
+      if (record%step /= self%step) self%waiting = &
+         modulo(ceiling(planned_increments(model%steps(record%step)) - almost_none), 2)
+      self%step = record%step
+      self%waiting = self%waiting + 1
       if (self%waiting < 2 .and. .not. record%last_of_step) return
       self%has_doubled = self%has_doubled .or. &
          record%time - self%time > 1.5_dp*run%state%increment_size
@@ -126,18 +129,6 @@ contains
          end if
       end subroutine solve_with
    end subroutine follow
-
-   !> Counts the increments of the run since the last one of the second run.
-   subroutine wait_for(self, model, record)
-      class(doubled_increments_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(increment_record_type), intent(in) :: record
-
-      if (record%step /= self%step) self%waiting = &
-         modulo(ceiling(planned_increments(model%steps(record%step)) - almost_none), 2)
-      self%step = record%step
-      self%waiting = self%waiting + 1
-   end subroutine wait_for
 
    !> Frees the factors.
    subroutine release(self)

@@ -20,7 +20,7 @@ module error_estimator
    use recovered_error, only: error_record_type
    use solution_state, only: solution_state_type
    use text, only: append
-   use value_courses, only: value_courses_type
+   use quantity_histories, only: quantity_histories_type
    implicit none
    private
    public :: error_estimator_type
@@ -39,7 +39,7 @@ module error_estimator
       type(divided_mesh_type) :: divided           !! the model with divided elements
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
-      type(value_courses_type) :: courses          !! quantities at the increments before
+      type(quantity_histories_type) :: histories   !! quantities at the increments before
       real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
@@ -73,13 +73,13 @@ contains
    end subroutine begin_increment
 
    !> Follows an accepted increment; at the end of a step its record receives the bounds.
-   subroutine end_increment(self, model, simulation, record, courses)
+   subroutine end_increment(self, model, simulation, record, histories)
       class(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation        !! the run at its end
       type(increment_record_type), intent(inout) :: record
       !> (steps) at their ends in the round before, empty in the first; receives the present ones
-      type(value_courses_type), intent(inout) :: courses(:)
+      type(quantity_histories_type), intent(inout) :: histories(:)
       real(dp) :: values(size(estimated), size(record%contacts))
       character(:), allocatable :: no_mesh
       integer :: i, q
@@ -87,7 +87,7 @@ contains
       if (.not. self%is_on) return
       if (record%step /= self%step) then
          self%step = record%step
-         call self%courses%begin_step(size(estimated), size(record%contacts), &
+         call self%histories%begin_step(size(estimated), size(record%contacts), &
             simulation%loads%corners(model%amplitudes, simulation%control%step_start))
       end if
       call self%doubled%follow(model, simulation, record)
@@ -97,14 +97,21 @@ contains
             self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact))
          end associate
       end do
-      call self%courses%follow(record%time, values)
+      call self%histories%follow(record%time, values)
       if (.not. record%last_of_step) return
       allocate (record%errors(size(record%contacts)))
-      call store(values, record%errors)
-      call bound_mesh(self, model, simulation, record, courses(record%step), no_mesh)
+      do i = 1, size(record%errors)
+         associate (errors => record%errors(i))
+            errors%value = values(:, i)
+            allocate (errors%mesh(size(estimated)), source=ieee_value(1.0_dp, ieee_quiet_nan))
+            allocate (errors%increment(size(estimated)), source=0.0_dp)
+            allocate (errors%iteration(size(estimated)), source=0.0_dp)
+         end associate
+      end do
+      call bound_mesh(self, model, simulation, record, histories(record%step), no_mesh)
       if (no_mesh /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
          'estimated: '//no_mesh)
-      courses(record%step) = self%courses
+      histories(record%step) = self%histories
       call bound_increments(self, simulation, record%errors)
       call bound_iteration(record)
       do i = 1, size(record%errors)
@@ -149,26 +156,13 @@ contains
       end if
    end function reason
 
-   subroutine store(values, errors)
-      real(dp), intent(in) :: values(:, :)
-      type(interface_errors_type), intent(inout) :: errors(:)
-      integer :: i
-
-      do i = 1, size(errors)
-         errors(i)%value = values(:, i)
-         allocate (errors(i)%mesh(size(estimated)), source=ieee_value(1.0_dp, ieee_quiet_nan))
-         allocate (errors(i)%increment(size(estimated)), source=0.0_dp)
-         allocate (errors(i)%iteration(size(estimated)), source=0.0_dp)
-      end do
-   end subroutine store
-
    !> Bounds of the errors of the mesh.
    subroutine bound_mesh(self, model, simulation, record, before, why_not)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
-      type(value_courses_type), intent(in) :: before         ! courses in the round before
+      type(quantity_histories_type), intent(in) :: before    ! histories in the round before
       character(:), allocatable, intent(out) :: why_not      ! why there are none; else ''
       type(error_type), allocatable :: error
       real(dp) :: change(size(estimated), size(record%errors))
@@ -185,9 +179,9 @@ contains
       do i = 1, size(record%errors)
          associate (bounds => record%errors(i)%mesh)
             bounds = bounds_of_mesh(simulation%bodies%interfaces(i), record%contacts(i), &
-               change(:, i), self%courses%scatter(i, before), self%most_locked(i), energy)
+               change(:, i), self%histories%scatter(i, before), self%most_locked(i), energy)
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
-               left_by_round*abs(self%courses%change_since(i, before)))
+               left_by_round*abs(self%histories%change_since(i, before)))
          end associate
       end do
    end subroutine bound_mesh

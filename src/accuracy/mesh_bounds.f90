@@ -67,7 +67,13 @@ contains
       if (any(points%at_corner .and. contact%contact_state([1, size(points%arc_length)]) /= &
          contact_open)) bounds = max(bounds, of_change_at_corner)
       bounds = bounds*abs(change) + known_scatter
-      call add_energy(contact, energy, bounds)
+      ! Where displacements and temperatures are prescribed, force and heat rate err as the energy,
+      ! by the square of its norm's error.
+      associate (force => bounds(find_quantity(estimated, 'normal_force')), &
+         heat => bounds(find_quantity(estimated, 'heat_rate')))
+         force = force + of_energy*energy*abs(contact%normal_force)
+         heat = heat + of_energy*energy*abs(contact%heat_rate)
+      end associate
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
       if (length > 0.0_dp) locked = most_locked/length
@@ -128,20 +134,6 @@ contains
          end if
       end associate
    end subroutine bound_edges
-
-   !> What elements that are not halved add: where displacements and temperatures are prescribed,
-   !> force and heat rate err as the energy, by the square of its norm's error.
-   pure subroutine add_energy(contact, energy, bounds)
-      type(contact_record_type), intent(in) :: contact
-      real(dp), intent(in) :: energy
-      real(dp), intent(inout) :: bounds(:)
-
-      associate (force => bounds(find_quantity(estimated, 'normal_force')), &
-         heat => bounds(find_quantity(estimated, 'heat_rate')))
-         force = force + of_energy*energy*abs(contact%normal_force)
-         heat = heat + of_energy*energy*abs(contact%heat_rate)
-      end associate
-   end subroutine add_energy
 
    !> What the pressure on the axis, which few elements tell, exceeds the even parabola through the
    !> two contact points beside by, where it is the largest; 0 elsewhere.

@@ -14,7 +14,7 @@ module accuracy_rounds
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use text, only: to_text
-   use value_courses, only: value_courses_type
+   use quantity_histories, only: quantity_histories_type
    implicit none
    private
    public :: accuracy_rounds_type, accuracy_round_type, finding_type
@@ -75,7 +75,7 @@ module accuracy_rounds
       real(dp), allocatable :: largest(:)                    !! (demands) largest scale so far
       !> (steps) the quantities at the last increments of each in the last round, as the error
       !> estimator wrote them
-      type(value_courses_type), allocatable :: courses(:)
+      type(quantity_histories_type), allocatable :: histories(:)
    contains
       procedure :: begin_round
       procedure :: drop_round
@@ -96,7 +96,7 @@ contains
       type(accuracy_round_type), allocatable :: rounds(:)
       integer :: i, k, n
 
-      if (.not. allocated(self%courses)) allocate (self%courses(steps))
+      if (.not. allocated(self%histories)) allocate (self%histories(steps))
       self%is_on = allocated(request%targets)
       if (.not. self%is_on) return
       if (.not. allocated(self%demands)) then

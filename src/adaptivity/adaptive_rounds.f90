@@ -91,7 +91,7 @@ contains
          call estimator%begin_increment(simulation)
          call simulation%advance(model, record, error)
          if (.not. allocated(error)) then
-            call estimator%end_increment(model, simulation, record, self%accuracy%courses)
+            call estimator%end_increment(model, simulation, record, self%accuracy%histories)
             call self%accuracy%follow(simulation%bodies%interfaces, record)
             if (self%accuracy%is_on .and. record%last_of_step) call indicators%take(model, &
                simulation%bodies%interfaces, self%accuracy, record)

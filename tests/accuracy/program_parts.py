@@ -61,7 +61,7 @@ PARTS = {
     "films": {"loads:film_matrix", "unit_loads:film_matrix"},
     "estimated errors": {
         "companion_steps", "divided_mesh", "doubled_increments", "error_estimator",
-        "interface_quantities", "mesh_bounds", "value_courses",
+        "interface_quantities", "mesh_bounds", "quantity_histories",
     },
     "refinement": {"hanging_nodes", "local_refinement", "mesh_division", "refinement"},
     "printed tables": {"increment_records:points_of_set", "listing_tables:print_contact_table",

@@ -1,17 +1,17 @@
 !> How quantities vary over the last increments of a step.
-module value_courses
+module quantity_histories
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use kinds, only: dp
    implicit none
    private
-   public :: value_courses_type, scatter_of
+   public :: quantity_histories_type, scatter_of
 
    integer, parameter :: needed = 9                !! values that tell a scatter
    integer, parameter :: kept = 2*needed - 1       !! as many of every second increment
    real(dp), parameter :: same_time = 1.0e-6_dp    !! of an increment
 
    !> The quantities of all interfaces at the last increments of a step.
-   type :: value_courses_type
+   type :: quantity_histories_type
       private
       real(dp) :: time(kept) = 0.0_dp              !! ends of the increments, the newest last
       real(dp), allocatable :: corners(:)          !! instants at which the loads turn [time]
@@ -22,13 +22,13 @@ module value_courses
       procedure :: follow
       procedure :: scatter
       procedure :: change_since
-   end type value_courses_type
+   end type quantity_histories_type
 
 contains
 
    !> Forgets the values of the step before.
    pure subroutine begin_step(self, quantities, interfaces, corners)
-      class(value_courses_type), intent(inout) :: self
+      class(quantity_histories_type), intent(inout) :: self
       integer, intent(in) :: quantities, interfaces   !! numbers of them
       real(dp), intent(in) :: corners(:)              !! instants at which the loads turn [time]
 
@@ -39,7 +39,7 @@ contains
 
    !> Takes the values at the end of an increment.
    pure subroutine follow(self, time, values)
-      class(value_courses_type), intent(inout) :: self
+      class(quantity_histories_type), intent(inout) :: self
       real(dp), intent(in) :: time                !! that end [time]
       real(dp), intent(in) :: values(:, :)        !! (quantities, interfaces)
 
@@ -49,12 +49,12 @@ contains
    end subroutine follow
 
    !> How much the quantities of an interface scatter; NaN where they have too few values. Where the
-   !> step was solved on another mesh too, no more than what the two differ by: a course that bends
+   !> step was solved on another mesh too, no more than what the two differ by: a history that bends
    !> by itself scatters on both alike.
    pure function scatter(self, interface, other)
-      class(value_courses_type), intent(in) :: self
+      class(quantity_histories_type), intent(in) :: self
       integer, intent(in) :: interface
-      type(value_courses_type), intent(in) :: other   !! on the other mesh; empty without one
+      type(quantity_histories_type), intent(in) :: other   !! on the other mesh; empty without one
       real(dp) :: scatter(size(self%values, 2))
       real(dp) :: difference(kept, size(self%values, 2)), of_both, time(kept)
       integer :: q
@@ -71,9 +71,9 @@ contains
    !> What the quantities of an interface differ by at the end from those on another mesh; 0 where
    !> one of them has no value.
    pure function change_since(self, interface, other) result(change)
-      class(value_courses_type), intent(in) :: self
+      class(quantity_histories_type), intent(in) :: self
       integer, intent(in) :: interface
-      type(value_courses_type), intent(in) :: other   !! on the other mesh; empty without one
+      type(quantity_histories_type), intent(in) :: other   !! on the other mesh; empty without one
       real(dp) :: change(size(self%values, 2))
 
       change = 0.0_dp
@@ -82,11 +82,11 @@ contains
       where (ieee_is_nan(change)) change = 0.0_dp
    end function change_since
 
-   !> What two courses differ by at the last instants that both have.
+   !> What two histories differ by at the last instants that both have.
    pure subroutine compare(self, other, interface, time, difference)
-      type(value_courses_type), intent(in) :: self, other
+      type(quantity_histories_type), intent(in) :: self, other
       integer, intent(in) :: interface
-      real(dp), intent(out) :: time(:), difference(:, :)   ! as of the courses
+      real(dp), intent(out) :: time(:), difference(:, :)   ! as of the histories
       real(dp) :: same
       integer :: j, k, n
 
@@ -103,12 +103,12 @@ contains
       end do
    end subroutine compare
 
-   !> How much the last values scatter about a smooth course. Increments so short that an edge of
+   !> How much the last values scatter about a smooth history. Increments so short that an edge of
    !> contact passes a node only in several of them tell it over every second one.
    pure real(dp) function scatter_of(time, values, corners)
       real(dp), intent(in) :: time(:)     !! (17) the newest last [time]
       real(dp), intent(in) :: values(:)   !! (17) likewise; NaN where there is none
-      real(dp), intent(in) :: corners(:)  !! instants at which the course may turn [time]
+      real(dp), intent(in) :: corners(:)  !! instants at which the history may turn [time]
       real(dp) :: longer
 
       scatter_of = deviation(time(needed:), values(needed:), corners)
@@ -116,7 +116,7 @@ contains
       if (.not. ieee_is_nan(longer)) scatter_of = max(scatter_of, longer)
    end function scatter_of
 
-   !> The standard deviation that fourth divided differences tell, in which a course that is cubic
+   !> The standard deviation that fourth divided differences tell, in which a history that is cubic
    !> in time vanishes, whatever the increments; NaN where a value is missing. Those across a corner
    !> count only where corners are so close that there are no others.
    pure real(dp) function deviation(time, values, corners)
@@ -151,4 +151,4 @@ contains
       end do
    end function difference_weights
 
-end module value_courses
+end module quantity_histories
