@@ -23,7 +23,7 @@ module variations
    use order_reduction, only: reduce_order
    use refined_regions, only: refined_region_type
    use refinement, only: numbering_fault, refine, refine_chosen
-   use shape_checks, only: point_jacobians
+   use mesh_checks, only: point_jacobians
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, to_text
    implicit none

@@ -6,20 +6,17 @@ module deck_builder
    use controls, only: method_names
    use deck_builder_accuracy, only: build_accuracy
    use deck_builder_contact, only: build_contacts, build_ties
-   use deck_builder_couplings, only: build_couplings
-   use deck_builder_equations, only: build_equations
+   use deck_builder_equations, only: build_couplings, build_equations
    use deck_builder_histories, only: build_amplitudes, build_temperatures
    use deck_builder_interactions, only: build_interactions
    use deck_builder_lines, only: build_lines, split_line_sets
    use deck_builder_materials, only: build_materials
    use deck_builder_mesh, only: build_elements, build_nodes
-   use deck_builder_options, only: build_load_axis, build_options
-   use deck_builder_refinement, only: build_regions
+   use deck_builder_options, only: build_load_axis, build_options, build_regions
    use deck_builder_sections, only: build_orientations, build_sections
-   use deck_builder_sets, only: build_sets
+   use deck_builder_sets, only: build_sets, build_surfaces
    use deck_builder_steps, only: build_steps
    use deck_builder_stresses, only: build_initial_stresses
-   use deck_builder_surfaces, only: build_surfaces
    use deck_builder_transforms, only: build_transforms
    use deck_builder_verify, only: build_verifications, check_heat_quantities, heatless
    use deck_checks, only: check_model
@@ -27,7 +24,7 @@ module deck_builder
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
    use heat_checks, only: check_constants, check_heat_paths, check_starts
-   use shape_checks, only: check_folds
+   use mesh_checks, only: check_folds
    use load_application, only: apply_requests, collect_fields
    use load_checks, only: check_amplitudes, first_heat
    use local_axes, only: turn_equations

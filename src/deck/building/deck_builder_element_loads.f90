@@ -1,9 +1,10 @@
 !> Data cards of *DLOAD, *DFLUX and *FILM: element or set, label, values.
+!> Data cards of *DLOAD with GRAV and CENTRIF, which act on the mass of elements.
+!> Data cards of *DSLOAD, *DSFLUX and *SFILM: surface, label, values.
 module deck_builder_element_loads
-   use card_values, only: check_extra, need_field
+   use card_values, only: check_extra, need_field, need_plane_vector, need_vector
    use cards, only: data_card_type, field_place, field_text
-   use deck_builder_mass_loads, only: build_gravity, build_rotation
-   use deck_context, only: deck_context_type, read_target
+   use deck_context, only: deck_context_type, read_surface, read_target
    use deck_report, only: deck_report_type
    use element_kinds, only: element_corner_count
    use kinds, only: dp
@@ -12,12 +13,14 @@ module deck_builder_element_loads
    use model, only: model_type
    use named_items, only: find_named
    use spelling, only: known_choices
-   use steps, only: load_body_force, load_body_heat, load_face_heat, load_film_coefficient, &
-      load_film_sink, load_pressure
+   use steps, only: centrifugal_round, load_body_force, load_body_heat, load_centrifugal, &
+      load_face_heat, load_film_coefficient, load_film_sink, load_gravity, load_pressure, &
+      load_traction
    use text, only: append, string_type, to_text, to_upper
    implicit none
    private
-   public :: build_element_load, build_on_faces, report_label
+   public :: build_element_load, build_on_faces, report_label, build_gravity, build_rotation, &
+      build_surface_load
 
 contains
 
@@ -233,5 +236,156 @@ contains
       call context%loads%add(film)
       call context%loads%add(sink)
    end subroutine build_film
+
+   !> Magnitude and direction; along x and along y the gravity is a load of its own.
+   subroutine build_gravity(data, request, context, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
+      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      logical, intent(inout) :: valid                      !! becomes false after an error
+      real(dp) :: vector(2)
+      integer :: i
+
+      call need_plane_vector(data, 3, report, vector, valid)
+      call check_extra(data, 6, 'element or set, GRAV, magnitude, direction x, y, z', report)
+      if (.not. valid) return
+      request%kind = load_gravity
+      do i = 1, 2
+         if (abs(vector(i)) <= 0.0_dp) cycle
+         request%component = i
+         request%value = vector(i)
+         call context%loads%add(request)
+      end do
+   end subroutine build_gravity
+
+   !> Speed squared, a point and the direction of the axis: the y axis, or one along z, round which
+   !> a plane turns. Round a point (x0, y0) the force is that round the origin less (x0, y0) times
+   !> the density, which makes four loads of a place.
+   subroutine build_rotation(data, request, context, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
+      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      logical, intent(inout) :: valid                      !! becomes false after an error
+      real(dp) :: point(3), direction(3), values(4)
+      integer :: i
+
+      call need_field(data, 3, 'speed squared', report, request%value, valid)
+      call need_vector(data, 4, 'point of the axis', report, point, valid)
+      call need_vector(data, 7, 'direction of the axis', report, direction, valid)
+      call check_extra(data, 9, &
+         'element or set, CENTRIF, speed squared, point x, y, z, direction x, y, z', report)
+      if (.not. valid) return
+      if (request%value < 0.0_dp) then
+         call report%error(field_place(data, 3), 'the square of a speed is not negative')
+      else if (norm2(direction) <= 0.0_dp) then
+         call report%error(field_place(data, 7), 'the direction is zero')
+      else if (norm2(direction(:2)) <= 0.0_dp) then
+         request%kind = load_centrifugal
+         values(1:2) = request%value
+         values(3:4) = -request%value*point(:2)
+         do i = 1, 4
+            request%component = i
+            request%value = values(i)
+            call context%loads%add(request)
+         end do
+      else if (norm2(direction([1, 3])) > 0.0_dp) then
+         call report%error(field_place(data, 7), 'the axis must be the y axis, or along z')
+      else if (norm2(point([1, 3])) > 0.0_dp) then
+         call report%error(field_place(data, 4), 'the axis must be the y axis: x and z are 0 on it')
+      else
+         request%kind = load_centrifugal
+         request%component = centrifugal_round
+         call context%loads%add(request)
+      end if
+   end subroutine build_rotation
+
+   !> Takes one data card.
+   subroutine build_surface_load(keyword, data, request, film_amplitude, model, context, report)
+      character(*), intent(in) :: keyword                  !! DSLOAD, DSFLUX or SFILM
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request         !! step, amplitude, card and place
+      integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
+      type(model_type), intent(in) :: model                !! surfaces
+      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: label, labels
+      integer :: errors, surface
+      logical :: valid
+
+      valid = .true.
+      errors = report%error_count()
+      call read_surface(data, 1, 'surface', model%mesh%surfaces, report, surface)
+      valid = surface > 0
+      select case (keyword)
+      case ('DSFLUX')
+         labels = 'S'
+         call check_extra(data, 3, 'surface, S, heat flux', report)
+      case ('SFILM')
+         labels = 'F'
+         call check_extra(data, 4, 'surface, F, sink temperature, film coefficient', report)
+      case default
+         labels = 'P/TRVEC'
+      end select
+      call need_field(data, 2, labels, report, label, valid)
+      if (len(label) == 0) return
+      label = to_upper(label)
+      request%set = 0
+      if (index('/'//labels//'/', '/'//label//'/') == 0) then
+         call report_label(keyword, label, labels, data, report)
+         return
+      end if
+      select case (label)
+      case ('P')
+         call need_field(data, 3, 'pressure', report, request%value, valid)
+         call check_extra(data, 3, 'surface, P, pressure', report)
+         request%kind = load_pressure
+         if (valid) call add_faces(model%mesh%surfaces(surface), request, 1, 0, context)
+      case ('TRVEC')
+         call build_traction(data, request, model, surface, context, report, valid)
+      case default
+         if (surface == 0 .or. report%error_count() > errors) return
+         call build_on_faces(label//'1', model%mesh%surfaces(surface), data, &
+            request, film_amplitude, context, report)
+      end select
+   end subroutine build_surface_load
+
+   !> Magnitude and direction of a traction vector.
+   subroutine build_traction(data, request, model, surface, context, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: surface
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      real(dp) :: vector(2)
+      integer :: i
+
+      call need_plane_vector(data, 3, report, vector, valid)
+      call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', report)
+      if (.not. valid) return
+      request%kind = load_traction
+      do i = 1, 2
+         request%value = vector(i)
+         call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, context)
+      end do
+   end subroutine build_traction
+
+   !> One request a face, its component a multiple of the face's number and an offset.
+   subroutine add_faces(surface, request, multiple, offset, context)
+      type(surface_type), intent(in) :: surface
+      type(request_type), intent(inout) :: request
+      integer, intent(in) :: multiple, offset
+      type(deck_context_type), intent(inout) :: context
+      integer :: i
+
+      do i = 1, size(surface%faces, 2)
+         request%item = surface%faces(1, i)
+         request%component = multiple*surface%faces(2, i) + offset
+         call context%loads%add(request)
+      end do
+   end subroutine add_faces
 
 end module deck_builder_element_loads

@@ -5,8 +5,7 @@ module deck_builder_loads
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use deck_builder_boundaries, only: build_boundary, dof_rotation
-   use deck_builder_element_loads, only: build_element_load
-   use deck_builder_surface_loads, only: build_surface_load
+   use deck_builder_element_loads, only: build_element_load, build_surface_load
    use deck_context, only: deck_context_type, read_target, take_named
    use deck_report, only: deck_report_type
    use kinds, only: dp

@@ -1,12 +1,14 @@
 !> *STEP to *END STEP -> steps; loads become requests.
+!> Data card of an analysis -> first increment, period, smallest and largest increment of a step.
 module deck_builder_steps
    use card_parameters, only: choose, has_parameter, is_on, lacks_parameter, parameter_place, &
       take_parameter
-   use cards, only: cards_type, has_field, keyword_card_type
+   use card_values, only: check_extra, take_field
+   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use controls, only: fixed_point_type, implicit_scheme, start_type, thermal_scheme_type
+   use decimal_commas, only: decimal_comma, report_decimal_comma
+   use deck_builder_contact, only: build_contact_change
    use deck_builder_controls, only: build_fixed_point, build_start, build_thermal_scheme
-   use deck_builder_increments, only: build_increments
-   use deck_builder_contact_changes, only: build_contact_change
    use deck_builder_loads, only: build_load_card
    use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
@@ -16,11 +18,11 @@ module deck_builder_steps
    use mesh, only: mesh_type
    use model, only: model_type
    use steps, only: analysis_coupled, analysis_heat, analysis_static, increment_growth, &
-      planned_increments, solves_heat, solves_mechanics, step_type
+      least_increment, planned_increments, solves_heat, solves_mechanics, step_type
    use text, only: to_text
    implicit none
    private
-   public :: build_steps, increment_rounding
+   public :: build_steps, increment_rounding, build_increments
 
    real(dp), parameter :: increment_rounding = 1.0e-6_dp   !! a shorter rest is none, relative
    real(dp), parameter :: most_counted = 1.0e9_dp   !! increments that a message counts
@@ -39,6 +41,8 @@ module deck_builder_steps
       integer :: node_prints = 0
       integer :: element_prints = 0
    end type card_counts_type
+
+   real(dp), parameter :: smallest_part = 1.0e-5_dp   !! of a period: smallest increment
 
 contains
 
@@ -292,5 +296,107 @@ contains
       if (files > 1) frequency = min(frequency, step%field_frequency)
       step%field_frequency = frequency
    end subroutine build_file_output
+
+   !> First increment, period, smallest and largest increment.
+   subroutine build_increments(data, context, report, step)
+      type(data_card_type), intent(in) :: data             !! data card of the analysis
+      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
+      type(step_type), intent(inout) :: step               !! receives the times
+      integer :: comma
+      logical :: valid
+
+      valid = .true.
+      call take_field(data, 1, 'first increment', report, step%first_increment, valid)
+      call take_field(data, 2, 'period', report, step%period, valid)
+      step%smallest_increment = min(smallest_part*step%period, step%first_increment)
+      step%largest_increment = step%first_increment
+      call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
+      call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
+      call note_increments(data, step, context)
+      comma = decimal_comma(data)
+      if (comma > 0 .and. (size(data%fields) > 4 .or. .not. times_fit(data, step))) then
+         call report_decimal_comma(data, comma, report)
+         valid = .false.
+      else
+         call check_extra(data, 4, 'first increment, period, smallest, largest increment', report)
+         if (valid) call check_times(data, step, report, valid)
+      end if
+      if (.not. valid) then
+         step%first_increment = 1.0_dp
+         step%period = 1.0_dp
+      else if (step%largest_increment < step%first_increment) then
+         step%first_increment = step%largest_increment
+         step%smallest_increment = min(step%smallest_increment, step%first_increment)
+         call report%warning(field_place(data, 4), 'the first increment is longer than the '// &
+            'largest, and is shortened to it')
+      else if (step%smallest_increment < least_increment*step%period) then
+         step%smallest_increment = least_increment*step%period
+         call context%note('smallest increment raised to '//to_text(step%smallest_increment)// &
+            ': a smaller part of the period is lost in rounding')
+      end if
+   end subroutine build_increments
+
+   !> Whether the times of a step are positive, and the first increment lies between the smallest
+   !> and the period.
+   pure logical function times_fit(data, step)
+      type(data_card_type), intent(in) :: data
+      type(step_type), intent(in) :: step
+
+      times_fit = .not. any(not_positive(data, step)) .and. &
+         step%first_increment <= step%period .and. step%smallest_increment <= step%first_increment
+   end function times_fit
+
+   !> Which of the times that the card gives are not positive.
+   pure function not_positive(data, step)
+      type(data_card_type), intent(in) :: data
+      type(step_type), intent(in) :: step
+      logical :: not_positive(4)
+      integer :: i
+
+      not_positive = [step%first_increment, step%period, step%smallest_increment, &
+         step%largest_increment] <= 0.0_dp .and. [(has_field(data, i), i=1, 4)]
+   end function not_positive
+
+   subroutine check_times(data, step, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(step_type), intent(in) :: step
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      logical :: wrong(4)
+      integer :: i
+
+      valid = times_fit(data, step)
+      wrong = not_positive(data, step)
+      do i = 1, 4
+         if (wrong(i)) call report%error(field_place(data, i), &
+            'increments and periods must be positive')
+      end do
+      if (valid .or. any(wrong)) return
+      if (step%first_increment > step%period) then
+         call report%error(field_place(data, 1), 'the first increment is longer than the '// &
+            'period; give a shorter one')
+      else
+         call report%error(field_place(data, 3), 'the smallest increment is longer than the '// &
+            'first; give a shorter one')
+      end if
+   end subroutine check_times
+
+   !> Notes the defaults of the card, and what of it does not act.
+   subroutine note_increments(data, step, context)
+      type(data_card_type), intent(in) :: data
+      type(step_type), intent(in) :: step
+      type(deck_context_type), intent(inout) :: context
+
+      if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
+      if (.not. has_field(data, 2)) call context%note('period not given: 1')
+      if (step%direct) then
+         if (has_field(data, 3) .or. has_field(data, 4)) call context%note( &
+            'smallest and largest increment ignored: with DIRECT increments are fixed')
+         return
+      end if
+      if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &
+         to_text(step%smallest_increment))
+   end subroutine note_increments
 
 end module deck_builder_steps

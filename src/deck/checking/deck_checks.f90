@@ -5,10 +5,9 @@ module deck_checks
    use deck_report, only: deck_report_type
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
-   use shape_checks, only: check_jacobians, check_slenderness
+   use mesh_checks, only: check_jacobians, check_planes, check_sides, check_slenderness
    use kinds, only: dp, long
    use load_checks, only: check_loads
-   use mesh_checks, only: check_planes, check_sides
    use model, only: model_type
    use refinement, only: numbering_fault
    use steps, only: solves_heat, solves_mechanics

@@ -1,17 +1,25 @@
 !> Checks once all elements are read: whether their planes agree, whether they meet along
 !> whole sides.
+!> Shapes of elements: whether their Jacobian is positive, and no side far shorter than the others.
+!>
+!> The forces of nodes that nearly coincide, made of stiffnesses that grow as the side shrinks, are
+!> known to rounding times the square of the ratio of the sides, in parts of an even load: nothing
+!> is left of the pressure at a contact point of such a side at 1e-8.
 module mesh_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use element_kinds, only: axisymmetric, element_corner_count, element_node_count, &
+   use element_kinds, only: axisymmetric, element_corner_count, element_node_count, linear_kind, &
       side_node_count, side_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
+   use quadrature, only: integration_rule, most_points, point_count
+   use shape_functions, only: element_gradients, element_shape, node_position
    use sorting, only: sort_order
    use text, only: others, to_text
    implicit none
    private
-   public :: check_planes, check_sides
+   public :: check_planes, check_sides, check_jacobians, check_folds, check_slenderness, &
+      point_jacobians
 
    !> One side of one element.
    type :: element_side_type
@@ -21,6 +29,15 @@ module mesh_checks
       integer :: high = 0      !! the other
       integer :: middle = 0    !! midside node, 0 if there is none
    end type element_side_type
+
+   !> Negative Jacobian at a node, as a part of the largest at the nodes of its element, and part of
+   !> a side past a quarter point, from which on an element is warned of. At quarter points and at
+   !> corners in one place the Jacobian is 0, but for the few digits of coordinates.
+   real(dp), parameter :: folded = 1.0e-2_dp
+   real(dp), parameter :: quarter = 0.25_dp    !! nearest to a corner that a midside node may be
+
+   real(dp), parameter :: hopeless = 1.0e-7_dp   !! shortest side over the longest, to be refused
+   real(dp), parameter :: doubtful = 1.0e-5_dp   !! the same, to be warned of
 
 contains
 
@@ -199,5 +216,194 @@ contains
       end do
       where (wrong) uses = 0
    end subroutine check_faces
+
+   !> The Jacobian is positive at the integration points of every element. Elements that go round
+   !> clockwise are reported once.
+   subroutine check_jacobians(context, mesh, inverted, report)
+      type(deck_context_type), intent(in) :: context       !! places for messages
+      type(mesh_type), intent(in) :: mesh
+      logical, intent(out) :: inverted(:)    !! (elements) whether its sides may be wrong
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      real(dp), allocatable :: jacobians(:)
+      logical :: clockwise(size(inverted))
+      integer :: e
+
+      inverted = .false.
+      clockwise = .false.
+      do e = 1, size(inverted)
+         if (.not. context%element_valid(e)) cycle
+         jacobians = point_jacobians(mesh, e)
+         inverted(e) = any(jacobians <= 0.0_dp)
+         clockwise(e) = all(jacobians < 0.0_dp)
+         if (inverted(e) .and. .not. clockwise(e)) call report%error(context%element_place(e), &
+            inversion(mesh, e, place_words(mesh, e, minloc(jacobians, dim=1))))
+      end do
+      e = findloc(clockwise, .true., dim=1)
+      if (e > 0) call report%error(context%element_place(e), inversion(mesh, e, &
+         'any integration point')//others(count(clockwise), '; such elements: '))
+   end subroutine check_jacobians
+
+   !> Message on an element that is inverted somewhere.
+   pure function inversion(mesh, e, where) result(message)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      character(*), intent(in) :: where
+      character(:), allocatable :: message
+
+      message = 'the Jacobian of element '//to_text(mesh%element_number(e))// &
+         ' is not positive at '//where//': write its corners anticlockwise'
+      if (side_node_count(mesh%element_kind(e)) == 3) message = message// &
+         ', then its midside nodes, each near the middle of its side'
+      message = message//', or correct their coordinates'
+   end function inversion
+
+   !> An integration point of an element in words.
+   pure function place_words(mesh, e, g) result(words)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e, g   ! element and its integration point
+      character(:), allocatable :: words
+      real(dp) :: points(2, most_points), weights(most_points), x(2)
+
+      associate (kind => mesh%element_kind(e))
+         call integration_rule(kind, points, weights)
+         x = matmul(mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)), &
+            element_shape(kind, points(:, g)))
+      end associate
+      words = 'integration point '//to_text(g)//' at '//to_text(x(1))//', '//to_text(x(2))
+   end function place_words
+
+   !> Jacobians of an element at its integration points.
+   pure function point_jacobians(mesh, e) result(jacobians)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      real(dp), allocatable :: jacobians(:)      ! [length^2]
+      real(dp) :: points(2, most_points), weights(most_points)
+
+      associate (kind => mesh%element_kind(e))
+         call integration_rule(kind, points, weights)
+         jacobians = jacobians_at(kind, points(:, :point_count(kind)), &
+            mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)))
+      end associate
+   end function point_jacobians
+
+   pure function jacobians_at(kind, points, coordinates) result(jacobians)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: points(:, :)            ! (2, points) xi, eta
+      real(dp), intent(in) :: coordinates(:, :)       ! (2, nodes) [length]
+      real(dp) :: jacobians(size(points, 2))          ! [length^2]
+      real(dp) :: gradients(2, size(coordinates, 2))
+      integer :: g
+
+      do g = 1, size(jacobians)
+         call element_gradients(kind, coordinates, points(:, g), gradients, jacobians(g))
+      end do
+   end function jacobians_at
+
+   !> Warns of elements that are folded at a node, although their Jacobian is positive at all
+   !> integration points: their map is not one to one.
+   subroutine check_folds(context, mesh, report)
+      type(deck_context_type), intent(in) :: context       !! places for messages, order
+      type(mesh_type), intent(in) :: mesh                  !! sound at the integration points
+      type(deck_report_type), intent(inout) :: report      !! receives a warning
+      integer :: at, e, first, kind, n, node, number_folded
+
+      number_folded = 0
+      do e = 1, size(mesh%element_number)
+         kind = mesh%element_kind(e)
+         if (context%order == 1) kind = linear_kind(kind)
+         n = element_node_count(kind)
+         at = folded_node(kind, mesh%coordinates(:, mesh%element_nodes(:n, e)))
+         if (at == 0) cycle
+         number_folded = number_folded + 1
+         if (number_folded > 1) cycle
+         first = e
+         node = mesh%node_number(mesh%element_nodes(at, e))
+      end do
+      if (number_folded == 0) return
+      call report%warning(context%element_place(first), 'element '// &
+         to_text(mesh%element_number(first))//' is folded at node '//to_text(node)// &
+         ': its Jacobian is negative near it, where fields are wrong; move the midside nodes '// &
+         'towards the middle of their sides and make its corners convex'// &
+         others(number_folded, '; folded elements: '))
+   end subroutine check_folds
+
+   !> The node at which an element is folded, as its position in the element; 0 where there is none.
+   !> At a corner to which both its sides return the Jacobian is positive again.
+   pure integer function folded_node(kind, coordinates)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: coordinates(:, :)            ! (2, nodes) [length]
+      real(dp) :: jacobians(size(coordinates, 2)), part
+      integer :: corners, i
+
+      folded_node = 0
+      corners = element_corner_count(kind)
+      jacobians = jacobians_at(kind, node_position(kind), coordinates)
+      if (minval(jacobians) < -folded*maxval(jacobians)) folded_node = minloc(jacobians, dim=1)
+      if (folded_node > 0 .or. size(coordinates, 2) == corners) return
+      do i = 1, corners
+         associate (a => coordinates(:, i), b => coordinates(:, mod(i, corners) + 1))
+            if (all(abs(b - a) <= 0.0_dp)) cycle
+            part = dot_product(coordinates(:, corners + i) - a, b - a)/sum((b - a)**2)
+         end associate
+         if (part < quarter - folded) folded_node = i
+         if (part > 1 - quarter + folded) folded_node = mod(i, corners) + 1
+      end do
+   end function folded_node
+
+   !> No side of an element is far shorter than the others. Corners in one place are left to the
+   !> Jacobian.
+   subroutine check_slenderness(context, mesh, report)
+      type(deck_context_type), intent(in) :: context       !! places for messages
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report      !! receives errors and a warning
+      real(dp) :: least, ratio
+      integer :: e, worst, count_doubtful
+
+      worst = 0
+      count_doubtful = 0
+      least = doubtful
+      do e = 1, size(mesh%element_number)
+         if (.not. context%element_valid(e)) cycle
+         ratio = side_ratio(mesh, e)
+         if (ratio < hopeless) call report%error(context%element_place(e), said(mesh, e, ratio)// &
+            ', and rounding would spoil the result')
+         if (ratio < hopeless .or. ratio >= doubtful) cycle
+         count_doubtful = count_doubtful + 1
+         if (ratio < least) worst = e
+         least = min(least, ratio)
+      end do
+      if (worst > 0) call report%warning(context%element_place(worst), &
+         said(mesh, worst, least)//', and pressures there are accurate to '// &
+         to_text(epsilon(1.0_dp)/least**2)//' only (number of such elements: '// &
+         to_text(count_doubtful)//')')
+   end subroutine check_slenderness
+
+   !> The shortest side that has a length, over the longest; of corners alone.
+   pure real(dp) function side_ratio(mesh, e)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      real(dp) :: lengths(4)
+      integer :: i, n
+
+      n = element_corner_count(mesh%element_kind(e))
+      do i = 1, n
+         lengths(i) = norm2(mesh%coordinates(:, mesh%element_nodes(1 + mod(i, n), e)) - &
+            mesh%coordinates(:, mesh%element_nodes(i, e)))
+      end do
+      side_ratio = 1.0_dp
+      if (any(lengths(:n) > 0.0_dp)) side_ratio = minval(lengths(:n), mask=lengths(:n) > 0.0_dp)/ &
+         maxval(lengths(:n))
+   end function side_ratio
+
+   !> The part of a message that names an element and the ratio of its sides.
+   pure function said(mesh, e, ratio) result(words)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      real(dp), intent(in) :: ratio
+      character(:), allocatable :: words
+
+      words = 'nodes of element '//to_text(mesh%element_number(e))// &
+         ' nearly coincide: its shortest side is '//to_text(ratio)//' of its longest'
+   end function said
 
 end module mesh_checks
