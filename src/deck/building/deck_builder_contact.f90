@@ -1,4 +1,4 @@
-!> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied.
+!> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied;
 !> *CHANGE FRICTION, *MODEL CHANGE and *CONTACT INTERFERENCE -> what a step changes of contact.
 module deck_builder_contact
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, &

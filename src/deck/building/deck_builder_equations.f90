@@ -1,5 +1,4 @@
-!> *EQUATION -> linear equations between degrees of freedom.
-!> *COUPLING with *KINEMATIC -> faces that follow a reference node.
+!> *EQUATION, and *COUPLING with *KINEMATIC -> linear equations between degrees of freedom.
 module deck_builder_equations
    use card_parameters, only: need_parameter, parameter_place
    use card_values, only: check_extra, need_field, take_field

@@ -1,6 +1,5 @@
 !> *ELEMENT of lines, which mesh generators write for the curves of a drawing: they are no elements
-!> of the mesh, but their sets name nodes and faces.
-!> Lines along the sides of elements -> the faces under them.
+!> of the mesh, but their sets name nodes, and the faces under them.
 module deck_builder_lines
    use card_parameters, only: parameter_place, parameter_text
    use card_values, only: check_extra, need_field

@@ -1,5 +1,4 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
-!> *REFINE with a surface or a set.
 module deck_builder_options
    use card_parameters, only: choose, has_parameter, lacks_parameter, need_choice, &
       parameter_place, parameter_text, take_parameter, take_positive

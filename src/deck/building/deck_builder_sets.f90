@@ -1,5 +1,4 @@
-!> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets.
-!> *SURFACE -> sets of element faces.
+!> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets; *SURFACE -> sets of faces.
 module deck_builder_sets
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, &
       parameter_text

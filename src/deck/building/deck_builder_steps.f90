@@ -1,5 +1,4 @@
-!> *STEP to *END STEP -> steps; loads become requests.
-!> Data card of an analysis -> first increment, period, smallest and largest increment of a step.
+!> *STEP to *END STEP -> steps with their increments; loads become requests.
 module deck_builder_steps
    use card_parameters, only: choose, has_parameter, is_on, lacks_parameter, parameter_place, &
       take_parameter

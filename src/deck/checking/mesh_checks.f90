@@ -1,6 +1,5 @@
-!> Checks once all elements are read: whether their planes agree, whether they meet along
-!> whole sides.
-!> Shapes of elements: whether their Jacobian is positive, and no side far shorter than the others.
+!> Checks once all elements are read: whether their planes agree, whether they meet along whole
+!> sides, whether their Jacobian is positive, and no side far shorter than the others.
 !>
 !> The forces of nodes that nearly coincide, made of stiffnesses that grow as the side shrinks, are
 !> known to rounding times the square of the ratio of the sides, in parts of an even load: nothing
