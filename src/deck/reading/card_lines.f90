@@ -123,7 +123,7 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
 
-      if (self%fixed%is_open()) then
+      if (self%fixed%open) then
          call self%fixed%release(fields)
          if (allocated(fields)) then
             if (size(fields) > 0) call take_data(self, fields, fields(size(fields))%place%image, &
@@ -273,7 +273,7 @@ contains
          call add_data(cards, fields, place_type(image, last_text(line) + 1))
          return
       end if
-      if (self%fixed%is_open()) then
+      if (self%fixed%open) then
          call self%fixed%take(line, image, report, complete)
          if (.not. complete) return
          call self%fixed%release(fields)

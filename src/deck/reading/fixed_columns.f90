@@ -40,7 +40,7 @@ module fixed_columns
    !> begins anew on each line.
    type :: fixed_columns_type
       private
-      logical :: open = .false.                     !! whether the keyword card has a format
+      logical, public :: open = .false.             !! whether the keyword card has a format
       type(edit_type), allocatable :: edits(:)      !! the format, its repeats written out
       integer :: due = 0                            !! fields of a complete card
       integer :: count = 0                          !! those so far
@@ -48,7 +48,6 @@ module fixed_columns
       type(field_type), allocatable :: fields(:)    !! (due) its fields
    contains
       procedure :: begin
-      procedure :: is_open
       procedure :: take
       procedure :: release
    end type fixed_columns_type
@@ -197,13 +196,6 @@ contains
          return
       end select
    end function edit_fault
-
-   !> Whether data cards are in fixed columns.
-   pure logical function is_open(self)
-      class(fixed_columns_type), intent(in) :: self   !! the format
-
-      is_open = self%open
-   end function is_open
 
    !> Takes one line. A shifted column is an error.
    subroutine take(self, line, image, report, complete)

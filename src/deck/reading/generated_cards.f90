@@ -78,8 +78,8 @@ contains
       type(cards_type), intent(inout) :: all
       type(string_type) :: words(3)
       real(dp) :: place(2), x(2, 2)
-      integer :: ends(2), at, step, i, n
-      logical :: valid
+      integer :: ends(2), at, step, i, j, n
+      logical :: valid, is_number
 
       valid = .true.
       step = 1
@@ -92,7 +92,10 @@ contains
          at = position_of(ends(i), nodes)
          valid = at > 0
          if (valid) then
-            x(:, i) = coordinates_of(all%data(nodes%card(at)))
+            ! A coordinate that is no number is 0 here and reported elsewhere.
+            do j = 1, 2
+               call read_real(field_text(all%data(nodes%card(at)), j + 1), x(j, i), is_number)
+            end do
          else
             call report%error(field_place(data, i), 'no *NODE before this card has node '// &
                to_text(ends(i)))
@@ -163,8 +166,8 @@ contains
          parameter_text(all%keywords(elements%keyword(at)), 'TYPE'), all)
       do j = 0, counts(2) - 1
          do i = 0, counts(1) - 1
-            if (i + j > 0) call add_element(data, master + i*steps(2, 1) + j*steps(2, 2), &
-               corners, i*steps(1, 1) + j*steps(1, 2), all)
+            if (i + j > 0) call add_numbers(data, [master + i*steps(2, 1) + j*steps(2, 2), &
+               corners + i*steps(1, 1) + j*steps(1, 2)], all)
          end do
       end do
    end subroutine generate_elements
@@ -196,20 +199,6 @@ contains
       valid = .false.
    end subroutine read_rows
 
-   subroutine add_element(data, number, corners, shift, all)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: number, corners(:), shift
-      type(cards_type), intent(inout) :: all
-      type(string_type) :: words(1 + size(corners))
-      integer :: i
-
-      words(1)%value = to_text(number)
-      do i = 2, size(words)
-         words(i)%value = to_text(corners(i - 1) + shift)
-      end do
-      call add_fields(data, words, all)
-   end subroutine add_element
-
    !> Puts what the generating card names itself into its set.
    subroutine add_set(card, keyword, data, numbers, all)
       type(keyword_card_type), intent(in) :: card
@@ -217,15 +206,10 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: numbers(:)
       type(cards_type), intent(inout) :: all
-      type(string_type) :: words(size(numbers))
-      integer :: i
 
       if (.not. has_parameter(card, keyword)) return
       call add_generated(card, keyword, '', all)
-      do i = 1, size(numbers)
-         words(i)%value = to_text(numbers(i))
-      end do
-      call add_fields(data, words, all)
+      call add_numbers(data, numbers, all)
    end subroutine add_set
 
    !> Adds a keyword card in the place of the generating one, and with its set.
@@ -254,6 +238,19 @@ contains
       end if
       call add_keyword(all, generated)
    end subroutine add_generated
+
+   subroutine add_numbers(data, numbers, all)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: numbers(:)
+      type(cards_type), intent(inout) :: all
+      type(string_type) :: words(size(numbers))
+      integer :: i
+
+      do i = 1, size(numbers)
+         words(i)%value = to_text(numbers(i))
+      end do
+      call add_fields(data, words, all)
+   end subroutine add_numbers
 
    subroutine add_fields(data, words, all)
       type(data_card_type), intent(in) :: data
@@ -301,19 +298,6 @@ contains
       if (given%count > 0) position_of = findloc(given%number(:given%count), number, dim=1, &
          back=.true.)
    end function position_of
-
-   !> x and y of a node; 0 where a field is no number.
-   pure function coordinates_of(data) result(x)
-      type(data_card_type), intent(in) :: data
-      real(dp) :: x(2)         ! [length]
-      integer :: i
-      logical :: valid
-
-      do i = 1, 2
-         call read_real(field_text(data, i + 1), x(i), valid)
-         if (.not. valid) x(i) = 0.0_dp
-      end do
-   end function coordinates_of
 
    !> Nodes of an element, up to the first field that is no number.
    pure function corners_of(data) result(corners)
