@@ -70,7 +70,6 @@ contains
    subroutine grow(self)
       type(deck_source_type), intent(inout) :: self
       type(string_type), allocatable :: images(:)
-      integer, allocatable :: numbers(:)
       integer :: i
 
       allocate(images(2*self%count))
@@ -78,12 +77,8 @@ contains
          call move_alloc(self%images(i)%value, images(i)%value)
       end do
       call move_alloc(images, self%images)
-      allocate(numbers(2*self%count), source=0)
-      numbers(:self%count) = self%file
-      call move_alloc(numbers, self%file)
-      allocate(numbers(2*self%count), source=0)
-      numbers(:self%count) = self%line
-      call move_alloc(numbers, self%line)
+      self%file = [self%file, spread(0, 1, self%count)]
+      self%line = [self%line, spread(0, 1, self%count)]
    end subroutine grow
 
    !> The lines of a text file, with ends of line in the manner of Unix or Windows.

@@ -3,7 +3,7 @@ module generated_cards
    use card_parameters, only: has_parameter, parameter_text
    use card_values, only: check_extra, need_field, take_field
    use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_text, &
-      field_type, keyword_card_type, replace_cards
+      field_type, keyword_card_type, parameter_type, replace_cards
    use deck_report, only: deck_report_type
    use keywords, only: find_keyword
    use kinds, only: dp
@@ -219,22 +219,16 @@ contains
       character(*), intent(in) :: element_type    ! TYPE=, or empty
       type(cards_type), intent(inout) :: all
       type(keyword_card_type) :: generated
-      integer :: i, n
+      type(parameter_type) :: type_parameter
 
       generated%name = keyword
       generated%meant = ''
       generated%known = find_keyword(keyword)
       generated%place = card%place
-      n = size(card%parameters)
-      allocate(generated%parameters(n + min(1, len(element_type))))
-      do i = 1, n
-         generated%parameters(i) = card%parameters(i)
-      end do
+      generated%parameters = card%parameters
       if (len(element_type) > 0) then
-         generated%parameters(n + 1)%name = 'TYPE'
-         generated%parameters(n + 1)%text = element_type
-         generated%parameters(n + 1)%place = card%place
-         generated%parameters(n + 1)%value_place = card%place
+         type_parameter = parameter_type('TYPE', element_type, card%place, card%place)
+         generated%parameters = [generated%parameters, type_parameter]
       end if
       call add_keyword(all, generated)
    end subroutine add_generated

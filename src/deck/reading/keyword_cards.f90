@@ -164,11 +164,7 @@ contains
          n = n + 1
          found(n) = parameter
       end do
-      deallocate(card%parameters)
-      allocate(card%parameters(n))
-      do i = 1, n
-         card%parameters(i) = found(i)
-      end do
+      card%parameters = found(:n)
    end subroutine take_parameters
 
    !> Reports a number among the parameters: the decimals of a value, or the first of data that
@@ -207,6 +203,7 @@ contains
       logical, intent(out) :: valid
       type(known_parameter_type) :: known
       type(advice_type) :: advice
+      character(:), allocatable :: value
       integer :: equals, errors
 
       errors = report%error_count()
@@ -218,7 +215,10 @@ contains
       parameter%name = known%name
       parameter%place = field%place
       parameter%value_place = field%place
-      call take_value(field%text(min(equals + 1, len(field%text) + 1):), equals, parameter)
+      value = field%text(min(equals + 1, len(field%text) + 1):)
+      parameter%text = without_quotes(value(first_text(value):))
+      if (len(value) > 0) parameter%value_place%column = field%place%column + equals + &
+         first_text(value) - 1
       if (len(field%text) == 0 .and. .not. field%undefined) then
          call report%error(field%place, 'an empty parameter')
       else if (len(known%name) == 0) then
@@ -295,16 +295,5 @@ contains
 
       is_near = 2*edit_distance(to_upper(name), known) <= len(name)
    end function is_near
-
-   !> The value behind the equals sign.
-   pure subroutine take_value(string, equals, parameter)
-      character(*), intent(in) :: string
-      integer, intent(in) :: equals
-      type(parameter_type), intent(inout) :: parameter
-
-      parameter%text = without_quotes(string(first_text(string):))
-      if (len(string) == 0) return
-      parameter%value_place%column = parameter%place%column + equals + first_text(string) - 1
-   end subroutine take_value
 
 end module keyword_cards
