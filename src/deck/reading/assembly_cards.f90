@@ -17,8 +17,10 @@ module assembly_cards
    private
    public :: flatten_cards
 
-   ! Where a card is.
+   ! Where a card is; from 1 what its keyword opens, and where that one must be.
    integer, parameter :: at_model = 0, at_part = 1, at_assembly = 2, at_instance = 3
+   character(*), parameter :: structures(3) = [character(8) :: 'PART', 'ASSEMBLY', 'INSTANCE']
+   integer, parameter :: outside(3) = [at_model, at_model, at_assembly]
 
    real(dp), parameter :: degree = acos(-1.0_dp)/180
    real(dp), parameter :: negligible = 1.0e-9_dp   !! part of a direction or distance
@@ -54,7 +56,8 @@ contains
       type(reading_type) :: open
       integer :: k, n
 
-      if (.not. any([(is_structure(cards%keywords(k)), k=1, size(cards%keywords))])) return
+      if (.not. any([(level_of(cards%keywords(k)%name) /= at_model .or. &
+         has_parameter(cards%keywords(k), 'INSTANCE'), k=1, size(cards%keywords))])) return
       allocate (open%parts(0), open%first(0), open%last(0), open%instances(0))
       open%assembly%name = ''
       n = count([(cards%keywords(k)%name == 'INSTANCE', k=1, size(cards%keywords))])
@@ -70,17 +73,14 @@ contains
       call replace_cards(cards, all)
    end subroutine flatten_cards
 
-   !> Whether a card is of parts and assemblies.
-   pure logical function is_structure(card)
-      type(keyword_card_type), intent(in) :: card
+   !> What a keyword opens or ends; at_model where it is of no part and no assembly.
+   pure integer function level_of(keyword)
+      character(*), intent(in) :: keyword
 
-      select case (card%name)
-      case ('PART', 'END PART', 'ASSEMBLY', 'END ASSEMBLY', 'INSTANCE', 'END INSTANCE')
-         is_structure = .true.
-      case default
-         is_structure = has_parameter(card, 'INSTANCE')
-      end select
-   end function is_structure
+      do level_of = size(structures), 1, -1
+         if (keyword == structures(level_of) .or. keyword == 'END '//structures(level_of)) return
+      end do
+   end function level_of
 
    !> The smallest power of ten above all numbers of nodes and elements.
    subroutine find_step(cards, instances, report, step)
@@ -138,29 +138,11 @@ contains
       type(reading_type), intent(inout) :: open
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
-      logical :: enters
+      integer :: level
 
       associate (card => cards%keywords(k))
-         select case (card%name)
-         case ('PART')
-            call enter(card, k, at_model, at_part, open, report, enters)
-            if (enters) then
-               call append(open%parts, to_upper(name_of(card, report)))
-               open%first = [open%first, k + 1]
-               open%last = [open%last, k]
-            end if
-         case ('ASSEMBLY')
-            call enter(card, k, at_model, at_assembly, open, report, enters)
-         case ('INSTANCE')
-            call enter(card, k, at_assembly, at_instance, open, report, enters)
-            if (enters) call open_instance(cards, card, open, all, report)
-         case ('END PART')
-            call leave(card, at_part, at_model, open, report)
-         case ('END ASSEMBLY')
-            call leave(card, at_assembly, at_model, open, report)
-         case ('END INSTANCE')
-            call leave(card, at_instance, at_assembly, open, report)
-         case default
+         level = level_of(card%name)
+         if (level == at_model) then
             select case (open%level)
             case (at_part)
                open%last(size(open%last)) = k
@@ -169,44 +151,30 @@ contains
             case default
                call take_flat(cards, card, open, all, report)
             end select
-         end select
+         else if (index(card%name, 'END ') == 1) then
+            if (open%level == level) then
+               open%level = outside(level)
+            else
+               call report%error(card%place, '*'//card%name//' without *'//card%name(5:))
+            end if
+         else if (open%level /= outside(level) .and. level == at_instance) then
+            call report%error(card%place, '*INSTANCE must be between *ASSEMBLY and *END ASSEMBLY')
+         else if (open%level /= outside(level)) then
+            call report%error(card%place, '*'//card%name// &
+               ' must not be within another *PART or *ASSEMBLY')
+         else
+            open%level = level
+            open%opened = k
+            if (level == at_part) then
+               call append(open%parts, to_upper(name_of(card, report)))
+               open%first = [open%first, k + 1]
+               open%last = [open%last, k]
+            else if (level == at_instance) then
+               call open_instance(cards, card, open, all, report)
+            end if
+         end if
       end associate
    end subroutine take_card
-
-   !> Opens something where it may be.
-   subroutine enter(card, k, from, to, open, report, enters)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: k, from, to
-      type(reading_type), intent(inout) :: open
-      type(deck_report_type), intent(inout) :: report
-      logical, intent(out) :: enters
-      character(*), parameter :: where_to(2) = [character(60) :: &
-         ' must not be within another *PART or *ASSEMBLY', &
-         ' must be between *ASSEMBLY and *END ASSEMBLY']
-
-      enters = open%level == from
-      if (enters) then
-         open%level = to
-         open%opened = k
-      else
-         call report%error(card%place, '*'//card%name//trim(where_to(merge(2, 1, &
-            to == at_instance))))
-      end if
-   end subroutine enter
-
-   !> Closes what is open.
-   subroutine leave(card, from, to, open, report)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: from, to
-      type(reading_type), intent(inout) :: open
-      type(deck_report_type), intent(inout) :: report
-
-      if (open%level == from) then
-         open%level = to
-      else
-         call report%error(card%place, '*'//card%name//' without *'//card%name(5:))
-      end if
-   end subroutine leave
 
    function name_of(card, report) result(name)
       type(keyword_card_type), intent(in) :: card
