@@ -95,12 +95,16 @@ contains
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
       type(set_type), allocatable :: sets(:)
+      integer, allocatable :: corners(:, :)
       integer :: errors
 
       call build_nodes(cards, context, mesh, report)
       call build_lines(cards, context, report)
       call build_elements(cards, context, mesh, report)
-      call find_dropped(context, mesh)
+      ! ORDER=1 drops nodes between corners. Refined elements have those of the deck at their corners.
+      allocate (corners(2, size(mesh%node_number)), source=0)
+      if (context%order == 1 .and. context%levels == 0) corners = side_corners(mesh)
+      context%dropped = corners(1, :) > 0
       errors = report%error_count()
       call build_sets('element', cards, context, mesh, report, sets)
       call split_line_sets(size(mesh%element_number), sets, context%line_sets)
@@ -114,29 +118,24 @@ contains
          .not. report%has_lost('node set')
    end subroutine build_mesh
 
-   !> Finds the nodes of the deck that ORDER=1 drops. Refined elements have the midside nodes of the
-   !> deck at their corners: then all of them stay.
-   subroutine find_dropped(context, mesh)
-      type(deck_context_type), intent(inout) :: context
-      type(mesh_type), intent(in) :: mesh
-      integer :: corners(2, size(mesh%node_number))
-
-      corners = 0
-      if (context%order == 1 .and. context%levels == 0) corners = side_corners(mesh)
-      context%dropped = corners(1, :) > 0
-   end subroutine find_dropped
-
    !> Puts the loads and supports of a sound deck on its mesh, and checks what that shows.
    subroutine complete_model(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(inout) :: model
       type(deck_report_type), intent(inout) :: report
+      integer :: s
 
       call find_bodies(model%mesh)
       call check_folds(context, model%mesh, report)
       call check_touches(context, model, report)
-      call drop_idle_heat(context, model, report)
+      do s = 1, first_heat(context, model) - 1
+         if (model%steps(s)%analysis /= analysis_coupled) cycle
+         model%steps(s)%analysis = analysis_static
+         call report%suspect(context%step_place(s), 'step '//to_text(s)//' solves no heat: '// &
+            'nothing prescribes a temperature and nothing heats the bodies; give *BOUNDARY '// &
+            'with degree of freedom 11, or take *STATIC', heatless)
+      end do
       call check_heat_quantities(context%verifiable, model, report)
       call turn_equations(model)
       model%deck_equations = size(model%equations)
@@ -175,23 +174,6 @@ contains
          end associate
       end do
    end subroutine take_requests
-
-   !> A step in which, and before which, no temperature is prescribed and no heat loaded solves
-   !> none. That is rarely meant.
-   subroutine drop_idle_heat(context, model, report)
-      type(deck_context_type), intent(in) :: context
-      type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
-      integer :: s
-
-      do s = 1, first_heat(context, model) - 1
-         if (model%steps(s)%analysis /= analysis_coupled) cycle
-         model%steps(s)%analysis = analysis_static
-         call report%suspect(context%step_place(s), 'step '//to_text(s)//' solves no heat: '// &
-            'nothing prescribes a temperature and nothing heats the bodies; give *BOUNDARY '// &
-            'with degree of freedom 11, or take *STATIC', heatless)
-      end do
-   end subroutine drop_idle_heat
 
    !> Notes the defaults of what the deck does not say at all.
    subroutine note_defaults(cards, context, model)

@@ -61,29 +61,42 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_report_type), intent(inout) :: report
       type(accuracy_target_type) :: target
-      integer :: errors
+      integer :: errors, i
+      logical :: valid
 
       errors = report%error_count()
       call read_quantity(data, estimated, report, target%quantity)
-      call read_bound(data, report, target)
-      call find_interface(data, model, report, target%interface)
-      if (is_repeated(target, model%accuracy%targets)) call report%error(field_place(data, 1), &
-         'an earlier card has a target of '//target%quantity//' already')
+      valid = .true.
+      call need_field(data, 2, 'target', report, target%bound, valid)
+      if (valid .and. target%bound <= 0.0_dp) call report%error(field_place(data, 2), &
+         'the target must be above 0')
+      select case (to_upper(field_text(data, 3)))
+      case ('ABS')
+         target%is_relative = .false.
+      case ('', 'REL')
+         target%is_relative = .true.
+         if (target%bound >= 1.0_dp) call report%error(field_place(data, 2), &
+            'a target relative to the value must be below 1; 0.01 is 1 %')
+      case default
+         call report%error(field_place(data, 3), ''''//field_text(data, 3)// &
+            ''' is neither REL nor ABS')
+      end select
+      target%interface = 0
+      if (has_field(data, 4) .and. size(model%contacts) > 0) then
+         target%interface = find_named(model%contacts, field_text(data, 4))
+         if (target%interface == 0) call report_unknown('contact pair', field_text(data, 4), &
+            model%contacts, field_place(data, 4), report)
+      end if
+      do i = 1, size(model%accuracy%targets)
+         associate (other => model%accuracy%targets(i))
+            if (other%quantity == target%quantity .and. any(target%interface == [0, &
+               other%interface] .or. other%interface == 0)) call report%error(field_place(data, &
+               1), 'an earlier card has a target of '//target%quantity//' already')
+         end associate
+      end do
       call check_extra(data, 4, 'quantity, target, REL or ABS, contact pair', report)
       if (report%error_count() == errors) model%accuracy%targets = [model%accuracy%targets, target]
    end subroutine build_target
-
-   !> Whether a target names a quantity of an interface that another one names.
-   pure logical function is_repeated(target, others)
-      type(accuracy_target_type), intent(in) :: target, others(:)
-      integer :: i
-
-      is_repeated = .false.
-      do i = 1, size(others)
-         is_repeated = is_repeated .or. (others(i)%quantity == target%quantity .and. &
-            any(target%interface == [0, others(i)%interface] .or. others(i)%interface == 0))
-      end do
-   end function is_repeated
 
    subroutine read_quantity(data, estimated, report, name)
       type(data_card_type), intent(in) :: data
@@ -109,42 +122,5 @@ contains
       call report%error(field_place(data, 1), 'no error of '//name//' is estimated'// &
          known_choices(name, names))
    end subroutine read_quantity
-
-   subroutine read_bound(data, report, target)
-      type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
-      type(accuracy_target_type), intent(inout) :: target
-      logical :: valid
-
-      valid = .true.
-      call need_field(data, 2, 'target', report, target%bound, valid)
-      if (valid .and. target%bound <= 0.0_dp) call report%error(field_place(data, 2), &
-         'the target must be above 0')
-      select case (to_upper(field_text(data, 3)))
-      case ('ABS')
-         target%is_relative = .false.
-      case ('', 'REL')
-         target%is_relative = .true.
-         if (target%bound >= 1.0_dp) call report%error(field_place(data, 2), &
-            'a target relative to the value must be below 1; 0.01 is 1 %')
-      case default
-         call report%error(field_place(data, 3), ''''//field_text(data, 3)// &
-            ''' is neither REL nor ABS')
-      end select
-   end subroutine read_bound
-
-   !> The interface of the fourth field; 0 for all where it is empty.
-   subroutine find_interface(data, model, report, found)
-      type(data_card_type), intent(in) :: data
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(out) :: found
-
-      found = 0
-      if (.not. has_field(data, 4) .or. size(model%contacts) == 0) return
-      found = find_named(model%contacts, field_text(data, 4))
-      if (found == 0) call report_unknown('contact pair', field_text(data, 4), model%contacts, &
-         field_place(data, 4), report)
-   end subroutine find_interface
 
 end module deck_builder_accuracy

@@ -37,7 +37,9 @@ contains
       integer, allocatable :: held(:)
       logical :: valid
 
-      request%card = request_card(context)
+      request%card = 1
+      if (context%boundaries%count > 0) request%card = &
+         context%boundaries%items(context%boundaries%count)%card + 1
       valid = .true.
       request%value = 0.0_dp
       call read_target(data, 1, 'node', context%node_index, model%mesh%node_sets, report, &
@@ -208,15 +210,5 @@ contains
          call context%boundaries%add(rotation)
       end do
    end subroutine add_rotations
-
-   !> Number of the next data card of *BOUNDARY.
-   pure integer function request_card(context)
-      type(deck_context_type), intent(in) :: context
-
-      request_card = 1
-      if (context%boundaries%count > 0) then
-         request_card = context%boundaries%items(context%boundaries%count)%card + 1
-      end if
-   end function request_card
 
 end module deck_builder_boundaries

@@ -95,13 +95,24 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(contact_definition_type), intent(out) :: contact
       character(:), allocatable :: pairing
+      logical :: is_number
 
       call need_named(card, 'INTERACTION', 'surface interaction', model%interactions, report, &
          contact%interaction)
       call choose(card, 'PAIRING', 'NODES/SURFACES', report, pairing)
       if (allocated(pairing)) contact%pairing = merge(pairing_nodes, pairing_surfaces, &
          pairing == 'NODES')
-      if (has_parameter(card, 'ADJUST')) call read_adjustment(card, model%mesh, report, contact)
+      contact%adjusts = has_parameter(card, 'ADJUST')
+      if (contact%adjusts) then   ! a distance, or a node set
+         call read_real(parameter_text(card, 'ADJUST'), contact%adjusted, is_number)
+         if (.not. is_number) then
+            call need_named(card, 'ADJUST', 'node set', model%mesh%node_sets, report, &
+               contact%adjusted_set)
+         else if (contact%adjusted < 0.0_dp) then
+            call report%error(parameter_place(card, 'ADJUST'), &
+               'the distance of ADJUST= must not be negative')
+         end if
+      end if
       contact%card = card%place%image
       contact%name = parameter_text(card, 'NAME')
       if (card%last_data >= card%first_data) call read_faces(card, cards%data(card%first_data), &
@@ -127,24 +138,6 @@ contains
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
       call context%note('*'//card%name//' without NAME=: '//faces%name//', the slave surface')
    end subroutine read_faces
-
-   !> A distance, or a node set.
-   subroutine read_adjustment(card, mesh, report, contact)
-      type(keyword_card_type), intent(in) :: card
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-      type(contact_definition_type), intent(inout) :: contact
-      logical :: is_number
-
-      contact%adjusts = .true.
-      call read_real(parameter_text(card, 'ADJUST'), contact%adjusted, is_number)
-      if (.not. is_number) then
-         call need_named(card, 'ADJUST', 'node set', mesh%node_sets, report, contact%adjusted_set)
-      else if (contact%adjusted < 0.0_dp) then
-         call report%error(parameter_place(card, 'ADJUST'), &
-            'the distance of ADJUST= must not be negative')
-      end if
-   end subroutine read_adjustment
 
    !> A name stands for a group of the result file: it is used once, and is one that HDF5
    !> allows for a group.
@@ -226,6 +219,7 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(contact_changes_type) :: changes
+      type(friction_change_type) :: change
 
       if (step == 0) return
       changes = model%steps(step)%changes
@@ -235,7 +229,12 @@ contains
          call report%error(cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION after it')
       case ('FRICTION')
          if (is_keyword(cards, k - 1, 'CHANGE FRICTION')) then
-            call change_friction(cards, k, model, context, report, changes)
+            call build_friction(cards, cards%keywords(k), context, report, change%friction)
+            call need_named(cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
+               model%interactions, report, change%interaction)
+            if (change%interaction == 0) return
+            if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
+            changes%frictions = [changes%frictions, change]
          else
             call report%error(cards%keywords(k)%place, &
                '*FRICTION in a step needs *CHANGE FRICTION, INTERACTION= before it')
@@ -247,24 +246,6 @@ contains
       end select
       model%steps(step)%changes = changes
    end subroutine build_contact_change
-
-   !> The friction of the interaction that the card before names.
-   subroutine change_friction(cards, k, model, context, report, changes)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: k
-      type(model_type), intent(in) :: model
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      type(contact_changes_type), intent(inout) :: changes
-      type(friction_change_type) :: change
-
-      call build_friction(cards, cards%keywords(k), context, report, change%friction)
-      call need_named(cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
-         model%interactions, report, change%interaction)
-      if (change%interaction == 0) return
-      if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
-      changes%frictions = [changes%frictions, change]
-   end subroutine change_friction
 
    !> The interfaces that *MODEL CHANGE removes or adds.
    subroutine change_pairs(cards, card, model, report, changes)

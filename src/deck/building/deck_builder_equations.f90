@@ -199,6 +199,7 @@ contains
       type(deck_context_type), intent(inout) :: context    !! numbers -> indexes; receives notes
       type(model_type), intent(inout) :: model             !! receives the couplings
       type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: name
       integer :: errors, k, n
 
       errors = report%error_count()
@@ -208,7 +209,17 @@ contains
          if (cards%keywords(k)%name == 'COUPLING') then
             n = n + 1
             model%couplings(n)%rotation = size(model%mesh%node_number) - size(model%couplings) + n
-            call build_coupling(cards%keywords(k), context, model, report, model%couplings(n))
+            associate (card => cards%keywords(k), coupling => model%couplings(n))
+               coupling%card = card%place%image
+               coupling%title = '*COUPLING, '//report%source%words_of(card%place)
+               call need_parameter(card, 'REF NODE', report, name)
+               if (len(name) > 0) call find_reference(name, card, context, model, report, &
+                  coupling%reference)
+               if (coupling%reference > 0) model%mesh%coordinates(:, coupling%rotation) = &
+                  model%mesh%coordinates(:, coupling%reference)
+               call need_named(card, 'SURFACE', 'surface', model%mesh%surfaces, report, &
+                  coupling%surface)
+            end associate
             if (is_keyword(cards, k + 1, 'KINEMATIC') .or. is_keyword(cards, k + 1, '')) cycle
             call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
                'directly follow *COUPLING and name the degrees of freedom')
@@ -223,24 +234,6 @@ contains
       end do
       if (report%error_count() > errors) call report%lose('equation')
    end subroutine build_couplings
-
-   !> Name, reference node and surface.
-   subroutine build_coupling(card, context, model, report, coupling)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
-      type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
-      type(coupling_type), intent(inout) :: coupling
-      character(:), allocatable :: name
-
-      coupling%card = card%place%image
-      coupling%title = '*COUPLING, '//report%source%words_of(card%place)
-      call need_parameter(card, 'REF NODE', report, name)
-      if (len(name) > 0) call find_reference(name, card, context, model, report, coupling%reference)
-      if (coupling%reference > 0) model%mesh%coordinates(:, coupling%rotation) = &
-         model%mesh%coordinates(:, coupling%reference)
-      call need_named(card, 'SURFACE', 'surface', model%mesh%surfaces, report, coupling%surface)
-   end subroutine build_coupling
 
    !> The reference node: its number, or a set of one node.
    subroutine find_reference(name, card, context, model, report, node)

@@ -50,7 +50,17 @@ contains
       amplitude%total_time = kind == 'TOTAL TIME'
       kind = 'RELATIVE'
       call choose(card, 'VALUE', 'RELATIVE', report, kind)
-      call read_definition(card, report, kind)
+      kind = to_upper(parameter_text(card, 'DEFINITION'))
+      select case (kind)
+      case ('PERIODIC', 'MODULATED', 'DECAY', 'SOLUTION DEPENDENT', 'ACTUATOR', 'SPECTRUM', &
+         'USER', 'BUBBLE')
+         call report%error(parameter_place(card, 'DEFINITION'), 'DEFINITION='//kind// &
+            ' is refused; give times and values')
+         kind = ''
+      case default
+         kind = 'TABULAR'
+         call choose(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', report, kind)
+      end select
       amplitude%smooth = kind == 'SMOOTH STEP'
       if (len(kind) == 0) then
          allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
@@ -64,25 +74,6 @@ contains
          call read_points(cards, card, report, amplitude)
       end if
    end subroutine build_amplitude
-
-   !> What the data cards are; those that are a formula in Abaqus are refused, and then it is empty.
-   subroutine read_definition(card, report, kind)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      character(:), allocatable, intent(inout) :: kind
-
-      kind = to_upper(parameter_text(card, 'DEFINITION'))
-      select case (kind)
-      case ('PERIODIC', 'MODULATED', 'DECAY', 'SOLUTION DEPENDENT', 'ACTUATOR', 'SPECTRUM', &
-         'USER', 'BUBBLE')
-         call report%error(parameter_place(card, 'DEFINITION'), 'DEFINITION='//kind// &
-            ' is refused; give times and values')
-         kind = ''
-      case default
-         kind = 'TABULAR'
-         call choose(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', report, kind)
-      end select
-   end subroutine read_definition
 
    !> Values at equal intervals, any number of them a card.
    subroutine read_values(cards, card, report, amplitude)

@@ -42,7 +42,14 @@ contains
       call read_operation(card, step, model, context, report)
       call take_named(card, 'AMPLITUDE', 'amplitude', model%amplitudes, report, request%amplitude)
       call take_named(card, 'FILM AMPLITUDE', 'amplitude', model%amplitudes, report, film_amplitude)
-      if (film_amplitude > 0) call check_film(card, model%amplitudes(film_amplitude), report)
+      if (film_amplitude > 0) then
+         associate (film => model%amplitudes(film_amplitude))
+            if (any(film%values < 0.0_dp)) call report%error(parameter_place(card, &
+               'FILM AMPLITUDE'), 'amplitude '//film%name//' becomes negative ('// &
+               to_text(minval(film%values))//'), but a film coefficient must not; give '// &
+               'factors of at least 0')
+         end associate
+      end if
       if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, &
          model%steps(step)%ramped, context)
       do j = card%first_data, card%last_data
@@ -123,18 +130,6 @@ contains
          end select
       end associate
    end subroutine end_loads
-
-   !> A film coefficient is never negative, at whatever time.
-   subroutine check_film(card, amplitude, report)
-      type(keyword_card_type), intent(in) :: card
-      type(amplitude_type), intent(in) :: amplitude
-      type(deck_report_type), intent(inout) :: report
-
-      if (all(amplitude%values >= 0.0_dp)) return
-      call report%error(parameter_place(card, 'FILM AMPLITUDE'), 'amplitude '//amplitude%name// &
-         ' becomes negative ('//to_text(minval(amplitude%values))//'), but a film coefficient '// &
-         'must not; give factors of at least 0')
-   end subroutine check_film
 
    !> Notes what coefficient and sink of a film do where the card gives no amplitude.
    subroutine note_film(card, ramped, context)

@@ -171,7 +171,7 @@ contains
       type(mesh_type), intent(inout) :: mesh               !! receives the elements
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, message, note
-      integer, allocatable :: card(:)
+      integer, allocatable :: card(:), places(:)
       integer :: k, j, kind, n, plane
 
       card = element_cards(cards, of_lines=.false.)
@@ -208,22 +208,11 @@ contains
          end do
       end do
       call context%element_index%build(mesh%element_number)
-      call check_element_numbers(cards, card, context, mesh, report)
-   end subroutine build_elements
-
-   !> Elements and lines have different numbers.
-   subroutine check_element_numbers(cards, card, context, mesh, report)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: card(:)
-      type(deck_context_type), intent(inout) :: context
-      type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
-      integer, allocatable :: places(:)
-
+      ! Elements and lines have different numbers.
       call check_repeated('element', cards, [card, element_cards(cards, of_lines=.true.)], &
          [mesh%element_number, context%line_number], report, places)
       call context%member_index%build([mesh%element_number, context%line_number])
-   end subroutine check_element_numbers
+   end subroutine build_elements
 
    subroutine read_element_nodes(data, context, report, nodes, valid)
       type(data_card_type), intent(in) :: data

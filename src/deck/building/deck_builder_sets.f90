@@ -256,7 +256,7 @@ contains
       character(:), allocatable :: kind
       type(place_type), allocatable :: named(:)
       integer, allocatable :: elements(:), keys(:), order(:)
-      integer :: element, set, face, j, errors
+      integer :: element, set, face, i, j, errors
       logical :: valid
 
       kind = 'ELEMENT'
@@ -295,22 +295,13 @@ contains
          keys = [keys, 4*elements + face - 1]
          named = [named, spread(field_place(cards%data(j), 1), 1, size(keys) - size(named))]
       end do
-      call sort_faces(keys, order)
+      order = sort_order(keys)
+      order = pack(order, [(i == 1 .or. keys(order(i)) /= keys(order(max(i - 1, 1))), &
+         i=1, size(order))])
       places%items = named(order)
       surface%faces = reshape([keys(order)/4, mod(keys(order), 4) + 1], [2, size(order)], &
          order=[2, 1])
    end subroutine build_surface
-
-   !> The order of faces by their keys, of equal ones the first alone.
-   subroutine sort_faces(keys, order)
-      integer, intent(in) :: keys(:)
-      integer, allocatable, intent(out) :: order(:)
-      integer :: i
-
-      order = sort_order(keys)
-      order = pack(order, [(i == 1 .or. keys(order(i)) /= keys(order(max(i - 1, 1))), &
-         i=1, size(order))])
-   end subroutine sort_faces
 
    !> Adds the faces under the lines of a set; the first line under which there is none, or one
    !> inside a body, is an error.

@@ -54,6 +54,7 @@ contains
       type(lasting_controls_type) :: controls
       type(card_counts_type) :: counts
       type(step_type) :: before
+      integer, allocatable :: places(:)
       integer :: k, n
 
       context%analyses_sound = .not. report%has_lost('*STEP')
@@ -70,7 +71,6 @@ contains
                context%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
-               call set_controls(controls, model%steps(n))
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT')
                counts%analyses = counts%analyses + 1
                if (counts%analyses > 1) call report%error(card%place, &
@@ -81,9 +81,12 @@ contains
                context%analyses_sound = .false.
                call report%missing(card%place, &
                   'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
-            case ('FIXED POINT', 'START', 'THERMAL SCHEME')
-               call build_control(cards, card, model, report, controls)
-               if (n > 0) call set_controls(controls, model%steps(n))
+            case ('FIXED POINT')
+               call build_fixed_point(card, report, controls%fixed_point)
+            case ('START')
+               call build_start(cards, card, model, report, controls%start)
+            case ('THERMAL SCHEME')
+               call build_thermal_scheme(cards, card, report, controls%scheme)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
                'SFILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
@@ -100,49 +103,17 @@ contains
                end if
             end select
          end associate
+         if (n == 0) cycle
+         model%steps(n)%fixed_point = controls%fixed_point
+         model%steps(n)%start = controls%start
+         model%steps(n)%scheme = controls%scheme
       end do
-      call warn_of_nlgeom(cards, report, model%steps)
-   end subroutine build_steps
-
-   !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
-   subroutine warn_of_nlgeom(cards, report, steps)
-      type(cards_type), intent(in) :: cards
-      type(deck_report_type), intent(inout) :: report
-      type(step_type), intent(inout) :: steps(:)
-      integer, allocatable :: places(:)
-
-      steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
-      places = pack(cards_of(cards, 'STEP'), steps%nlgeom)
+      ! It means nothing where no displacements are solved, and is warned of once elsewhere.
+      model%steps%nlgeom = model%steps%nlgeom .and. solves_mechanics(model%steps%analysis)
+      places = pack(cards_of(cards, 'STEP'), model%steps%nlgeom)
       if (size(places) > 0) call report%warning(parameter_place(cards%keywords(places(1)), &
          'NLGEOM'), 'NLGEOM is not modelled: displacements and strains stay small')
-   end subroutine warn_of_nlgeom
-
-   !> Reads a card that is valid for this step and all that follow.
-   subroutine build_control(cards, card, model, report, controls)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      type(lasting_controls_type), intent(inout) :: controls
-
-      select case (card%name)
-      case ('FIXED POINT')
-         call build_fixed_point(card, report, controls%fixed_point)
-      case ('START')
-         call build_start(cards, card, model, report, controls%start)
-      case default
-         call build_thermal_scheme(cards, card, report, controls%scheme)
-      end select
-   end subroutine build_control
-
-   pure subroutine set_controls(controls, step)
-      type(lasting_controls_type), intent(in) :: controls
-      type(step_type), intent(inout) :: step
-
-      step%fixed_point = controls%fixed_point
-      step%start = controls%start
-      step%scheme = controls%scheme
-   end subroutine set_controls
+   end subroutine build_steps
 
    !> Reads a card of a step that asks for output; others are ignored.
    subroutine build_output(cards, card, context, mesh, counts, report, step)
@@ -312,7 +283,12 @@ contains
       step%largest_increment = step%first_increment
       call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
       call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
-      call note_increments(data, step, context)
+      if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
+      if (.not. has_field(data, 2)) call context%note('period not given: 1')
+      if (step%direct .and. (has_field(data, 3) .or. has_field(data, 4))) call context%note( &
+         'smallest and largest increment ignored: with DIRECT increments are fixed')
+      if (.not. (step%direct .or. has_field(data, 3))) call context%note('smallest increment '// &
+         'not given: '//to_text(step%smallest_increment))
       comma = decimal_comma(data)
       if (comma > 0 .and. (size(data%fields) > 4 .or. .not. times_fit(data, step))) then
          call report_decimal_comma(data, comma, report)
@@ -380,22 +356,5 @@ contains
             'first; give a shorter one')
       end if
    end subroutine check_times
-
-   !> Notes the defaults of the card, and what of it does not act.
-   subroutine note_increments(data, step, context)
-      type(data_card_type), intent(in) :: data
-      type(step_type), intent(in) :: step
-      type(deck_context_type), intent(inout) :: context
-
-      if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
-      if (.not. has_field(data, 2)) call context%note('period not given: 1')
-      if (step%direct) then
-         if (has_field(data, 3) .or. has_field(data, 4)) call context%note( &
-            'smallest and largest increment ignored: with DIRECT increments are fixed')
-         return
-      end if
-      if (.not. has_field(data, 3)) call context%note('smallest increment not given: '// &
-         to_text(step%smallest_increment))
-   end subroutine note_increments
 
 end module deck_builder_steps
