@@ -4,10 +4,11 @@ module deck_builder
    use mesh_bodies, only: find_bodies
    use cards, only: cards_type
    use controls, only: method_names
-   use deck_builder_accuracy, only: build_accuracy
+   use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities, &
+      heatless
    use deck_builder_contact, only: build_contacts, build_ties
    use deck_builder_equations, only: build_couplings, build_equations
-   use deck_builder_histories, only: build_amplitudes, build_temperatures
+   use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures
    use deck_builder_interactions, only: build_interactions
    use deck_builder_lines, only: build_lines, split_line_sets
    use deck_builder_materials, only: build_materials
@@ -16,9 +17,7 @@ module deck_builder
    use deck_builder_sections, only: build_orientations, build_sections
    use deck_builder_sets, only: build_sets, build_surfaces
    use deck_builder_steps, only: build_steps
-   use deck_builder_stresses, only: build_initial_stresses
    use deck_builder_transforms, only: build_transforms
-   use deck_builder_verify, only: build_verifications, check_heat_quantities, heatless
    use deck_checks, only: check_model
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type

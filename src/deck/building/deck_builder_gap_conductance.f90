@@ -2,10 +2,10 @@
 !> temperature of the faces or at several.
 module deck_builder_gap_conductance
    use card_parameters, only: has_parameter, parameter_place
-   use card_values, only: check_extra, need_field, take_field
+   use card_values, only: check_extra, check_unneeded_temperature, decimal_comma, need_field, &
+      report_decimal_comma, take_field
    use cards, only: cards_type, field_place, has_field, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure
-   use decimal_commas, only: check_unneeded_temperature, decimal_comma, report_decimal_comma
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp

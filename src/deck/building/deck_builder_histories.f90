@@ -1,21 +1,34 @@
 !> *AMPLITUDE and *INITIAL CONDITIONS: what loads and temperatures start from and follow.
+!> *INITIAL CONDITIONS, TYPE=STRESS -> one initial stress an element. Abaqus gives it to elements or
+!> sets, CalculiX to the integration points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
    use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
       parameter_text, take_parameter, take_positive
-   use card_values, only: check_extra, need_field
+   use card_values, only: check_extra, decimal_comma, need_field, report_decimal_comma, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use decimal_commas, only: decimal_comma, report_decimal_comma
    use deck_context, only: deck_context_type, name_last, read_target
    use deck_report, only: deck_report_type
    use deck_structure, only: cards_of
+   use element_kinds, only: kind_count, plane_stress
    use kinds, only: dp
    use load_requests, only: request_type
+   use mesh, only: mesh_type
    use model, only: model_type
-   use text, only: read_real, to_upper
+   use text, only: read_integer, read_real, to_text, to_upper
    implicit none
    private
-   public :: build_amplitudes, build_temperatures
+   public :: build_amplitudes, build_temperatures, build_initial_stresses
+
+   !> Points of CalculiX's solid element, by the kind of the plane one.
+   integer, parameter :: solid_points(kind_count) = [27, 8, 8, 9, 2]
+
+   !> Stresses of points of one element agree within what printed digits leave.
+   real(dp), parameter :: printed = 1.0e-6_dp
+
+   integer, parameter :: most_fields = 5   !! of a card that gives no integration point
+
+   character(*), parameter :: layout = 'element, integration point, s11, s22, s33, s12, s13, s23'
 
 contains
 
@@ -190,5 +203,143 @@ contains
          end associate
       end do
    end subroutine build_temperatures
+
+   !> Reads all initial stresses; later cards replace earlier ones.
+   subroutine build_initial_stresses(cards, context, mesh, report)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(in) :: context       !! numbers of elements
+      type(mesh_type), intent(inout) :: mesh               !! receives the stresses
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, allocatable :: points(:)
+      integer :: j, k
+
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k))
+            if (card%name /= 'INITIAL CONDITIONS') cycle
+            if (to_upper(parameter_text(card, 'TYPE')) /= 'STRESS') cycle
+            if (.not. allocated(mesh%initial_stress)) allocate (mesh%initial_stress(4, &
+               size(mesh%element_number)), source=0.0_dp)
+            points = spread(0, 1, size(mesh%element_number))
+            do j = card%first_data, card%last_data
+               if (size(cards%data(j)%fields) > most_fields) then
+                  call take_point(cards%data(j), context, points, mesh, report)
+               else
+                  call take_elements(cards%data(j), context, mesh, report)
+               end if
+            end do
+            do j = 1, size(points)
+               if (points(j) <= 0 .or. points(j) == solid_points(mesh%element_kind(j))) cycle
+               call report%error(card%place, 'element '//to_text(mesh%element_number(j))// &
+                  ' has a stress at '//to_text(points(j))//' of the '// &
+                  to_text(solid_points(mesh%element_kind(j)))//' integration points that it '// &
+                  'has in CalculiX, and none at the others; an element has one stress here')
+               exit
+            end do
+         end associate
+      end do
+   end subroutine build_initial_stresses
+
+   !> Element or set, s11, s22, s33, s12; in plane stress Abaqus leaves s33 out.
+   subroutine take_elements(data, context, mesh, report)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+      type(mesh_type), intent(inout) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: members(:)
+      real(dp) :: stress(4)
+      integer :: i, item, number, set
+      logical :: is_flat, valid
+
+      valid = .true.
+      call read_target(data, 1, 'element', context%element_index, mesh%element_sets, report, &
+         item, set, valid)
+      call read_stress(data, 2, 4, report, stress, valid)
+      if (.not. valid) return
+      members = [item]
+      if (set > 0) members = mesh%element_sets(set)%members
+      if (item > 0) then
+         call read_integer(data%fields(2)%text, number, valid)
+         if (valid .and. number > 0 .and. number <= solid_points(mesh%element_kind(item))) then
+            call report%error(field_place(data, 2), 'integration point or stress? Give '// &
+               layout//', or a stress with a decimal point')
+            return
+         end if
+      end if
+      is_flat = .true.
+      do i = 1, size(members)
+         is_flat = is_flat .and. mesh%element_plane(members(i)) == plane_stress
+      end do
+      if (is_flat .and. size(data%fields) == 4) stress = [stress(:2), 0.0_dp, stress(3)]
+      if (any(mesh%element_plane(members) == plane_stress) .and. abs(stress(3)) > 0.0_dp) then
+         call report%error(field_place(data, 4), 's33 is 0 in plane stress; the card is '// &
+            'element or set, s11, s22, s12, or with s33=0 before s12')
+         return
+      end if
+      mesh%initial_stress(:, members) = spread(stress, 2, size(members))
+   end subroutine take_elements
+
+   !> One integration point of an element as CalculiX has it; all of its points have one stress.
+   subroutine take_point(data, context, points, mesh, report)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+      !> (elements) points that were given, -1 where one of them is wrong
+      integer, intent(inout) :: points(:)
+      type(mesh_type), intent(inout) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: stress(6)
+      integer :: item, next, point, set
+      logical :: valid
+
+      valid = .true.
+      point = 0
+      next = 1
+      call read_target(data, 1, 'element', context%element_index, mesh%element_sets, report, &
+         item, set, valid)
+      call need_field(data, 2, 'integration point', report, point, valid)
+      call read_stress(data, 3, 6, report, stress, valid)
+      call check_extra(data, 8, layout, report)
+      if (item > 0) then
+         if (points(item) < 0) return
+         next = points(item) + 1
+         points(item) = -1
+      end if
+      if (.not. valid) return
+      if (set > 0) then
+         call report%error(field_place(data, 1), 'an element set has no integration points; '// &
+            'the card is set, s11, s22, s33, s12, or '//layout)
+      else if (any(abs(stress(5:)) > 0.0_dp)) then
+         call report%error(field_place(data, 7), 's13 and s23 are 0 in a plane')
+      else if (mesh%element_plane(item) == plane_stress .and. abs(stress(3)) > 0.0_dp) then
+         call report%error(field_place(data, 5), 's33 is 0 in plane stress')
+      else if (point /= next .or. point > solid_points(mesh%element_kind(item))) then
+         call report%error(field_place(data, 2), 'the integration points of an element follow '// &
+            'each other from 1 to '//to_text(solid_points(mesh%element_kind(item)))//', as in '// &
+            'CalculiX')
+      else if (point > 1 .and. maxval(abs(stress(:4) - mesh%initial_stress(:, item))) > &
+         printed*maxval(abs(stress))) then
+         call report%error(field_place(data, 2), 'the stress differs from that at point 1 of '// &
+            'element '//to_text(mesh%element_number(item))//'; an element has one stress here')
+      else
+         if (point == 1) mesh%initial_stress(:, item) = stress(:4)
+         points(item) = point
+      end if
+   end subroutine take_point
+
+   !> Components in a row; those that are left out are 0.
+   subroutine read_stress(data, first, components, report, stress, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: first                    !! field of the first
+      integer, intent(in) :: components               !! how many there can be
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(out) :: stress(:)
+      logical, intent(inout) :: valid
+      integer :: i
+
+      stress = 0.0_dp
+      call need_field(data, first, 'stress', report, stress(1), valid)
+      do i = 2, components
+         call take_field(data, first + i - 1, 'stress', report, stress(i), valid)
+      end do
+   end subroutine read_stress
 
 end module deck_builder_histories

@@ -1,14 +1,13 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, take_parameter
-   use card_values, only: check_extra, need_field, take_field
+   use card_values, only: check_extra, check_unneeded, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
    use deck_builder_gap_conductance, only: build_gap_conductance, join_gap_conductance
    use deck_builder_gap_laws, only: build_gap_law
-   use decimal_commas, only: check_unneeded
    use deck_context, only: deck_context_type, name_last
    use deck_report, only: deck_report_type
    use deck_source, only: place_type

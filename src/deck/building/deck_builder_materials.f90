@@ -1,9 +1,9 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY.
 module deck_builder_materials
    use card_parameters, only: choose
-   use card_values, only: check_extra, need_field, take_field
+   use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
+      take_field
    use cards, only: cards_type, field_place, has_field, keyword_card_type
-   use decimal_commas, only: check_unneeded, check_unneeded_temperature
    use deck_context, only: deck_context_type, name_last
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count

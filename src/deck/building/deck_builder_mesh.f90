@@ -1,9 +1,8 @@
 !> *NODE and *ELEMENT -> nodes and elements of the mesh.
 module deck_builder_mesh
    use card_parameters, only: need_parameter, parameter_place
-   use card_values, only: check_extra, need_field, take_field
+   use card_values, only: check_extra, check_unneeded, may_be_decimals, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, is_undefined
-   use decimal_commas, only: check_unneeded, may_be_decimals
    use deck_builder_lines, only: element_cards, is_line_card, read_node
    use deck_context, only: deck_context_type, plane_by_element
    use deck_report, only: deck_report_type

@@ -2,10 +2,9 @@
 module deck_builder_steps
    use card_parameters, only: choose, has_parameter, is_on, lacks_parameter, parameter_place, &
       take_parameter
-   use card_values, only: check_extra, take_field
+   use card_values, only: check_extra, decimal_comma, report_decimal_comma, take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use controls, only: fixed_point_type, implicit_scheme, start_type, thermal_scheme_type
-   use decimal_commas, only: decimal_comma, report_decimal_comma
    use deck_builder_contact, only: build_contact_change
    use deck_builder_controls, only: build_fixed_point, build_start, build_thermal_scheme
    use deck_builder_loads, only: build_load_card

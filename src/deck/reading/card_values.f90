@@ -1,14 +1,16 @@
 !> Values of the fields of a data card, with an error at their place where they are not what they
 !> should be.
+!> Numbers written with a decimal comma, which the dialect reads as two fields.
 module card_values
    use cards, only: data_card_type, field_place, field_text, has_field, is_undefined
-   use decimal_commas, only: decimal_comma_words, surplus_comma
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use text, only: integer_fault, read_integer, read_real, real_fault
+   use text, only: integer_fault, is_whole, read_integer, read_real, real_fault
    implicit none
    private
-   public :: need_field, take_field, check_extra, need_vector, need_plane_vector
+   public :: need_field, take_field, check_extra, need_vector, need_plane_vector, decimal_comma, &
+      surplus_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, &
+      check_unneeded_temperature
 
    !> Value of a field; an error where it is missing.
    interface need_field
@@ -22,6 +24,10 @@ module card_values
       module procedure take_integer_field
       module procedure take_real_field
    end interface take_field
+
+   !> Freezing point of water in kelvin. A whole number below it behind a property may well be
+   !> decimals; one above it is rather the temperature that the property was measured at.
+   real(dp), parameter :: least_plausible = 273.0_dp
 
 contains
 
@@ -182,5 +188,125 @@ contains
          vector = magnitude*direction(:2)/norm2(direction)
       end if
    end subroutine need_plane_vector
+
+   !> Position of the first field whose decimals, be they 0, the next one may be: the comma has no
+   !> blank behind it, and other commas of the card have one, or no field of the card has a point. 0
+   !> where there is none.
+   pure integer function decimal_comma(data)
+      type(data_card_type), intent(in) :: data
+      integer :: i
+      logical :: differs
+
+      differs = .true.
+      do i = 1, size(data%fields)
+         differs = differs .and. scan(data%fields(i)%text, '.eEdD') == 0
+      end do
+      do i = 1, size(data%fields) - 1
+         differs = differs .or. .not. adjacent(data, i)
+      end do
+      decimal_comma = 0
+      if (.not. differs) return
+      do i = 1, size(data%fields) - 1
+         if (.not. adjacent(data, i)) cycle
+         if (.not. may_be_decimals(data, i + 1) .and. .not. (is_whole(data%fields(i)%text) .and. &
+            verify(data%fields(i + 1)%text, '0') == 0)) cycle
+         decimal_comma = i
+         return
+      end do
+   end function decimal_comma
+
+   !> Position of the field whose decimals make a card longer than it may be; 0 where there is none.
+   pure integer function surplus_comma(data, most)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: most                         !! most fields, fewer than it has
+
+      surplus_comma = decimal_comma(data)
+      if (may_be_decimals(data, most + 1)) then
+         if (adjacent(data, most)) surplus_comma = most
+      end if
+   end function surplus_comma
+
+   !> Whether the next field begins right behind the comma.
+   pure logical function adjacent(data, i)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+
+      associate (one => data%fields(i), other => data%fields(i + 1))
+         adjacent = one%place%image == other%place%image .and. &
+            other%place%column == one%place%column + len(one%text) + 1 .and. len(other%text) > 0
+      end associate
+   end function adjacent
+
+   !> Reports a decimal comma.
+   subroutine report_decimal_comma(data, i, report)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                            !! what decimal_comma found
+      type(deck_report_type), intent(inout) :: report     !! receives the error
+
+      call report%explain(field_place(data, i), 'a '//decimal_comma_words( &
+         data%fields(i)%text, data%fields(i + 1)%text))
+   end subroutine report_decimal_comma
+
+   !> Message on a decimal comma.
+   pure function decimal_comma_words(whole, decimals) result(words)
+      character(*), intent(in) :: whole       !! before the comma
+      character(*), intent(in) :: decimals    !! behind it
+      character(:), allocatable :: words
+
+      words = 'decimal comma? A comma separates fields; write '//whole//'.'//decimals//' for '// &
+         whole//','//decimals
+   end function decimal_comma_words
+
+   !> Whether a field may be the decimals of the one before it, torn off by a decimal comma, as in
+   !> 0,155 for 0.155: that one is written without a point and an exponent, this one is digits with
+   !> or without an exponent. Zeros alone are no decimals that matter.
+   pure logical function may_be_decimals(data, i)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                   !! position of the field, from 1
+      character(:), allocatable :: decimals
+      real(dp) :: number
+
+      may_be_decimals = .false.
+      if (i < 2) return
+      decimals = field_text(data, i)
+      if (.not. is_whole(field_text(data, i - 1)) .or. verify(decimals, '0') == 0) return
+      if (scan(decimals(1:1), '0123456789') == 0 .or. index(decimals, '.') > 0) return
+      call read_real(decimals, number, may_be_decimals)
+   end function may_be_decimals
+
+   !> Warns of a field that is read and means nothing where it may be the decimals of the field
+   !> before it.
+   subroutine check_unneeded(data, i, what, report, group)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                            !! position of the field, from 2
+      character(*), intent(in) :: what                    !! what the field is, with its article
+      type(deck_report_type), intent(inout) :: report     !! receives the warning
+      character(*), intent(in), optional :: group         !! by which it is convicted
+
+      if (.not. may_be_decimals(data, i)) return
+      associate (whole => data%fields(i - 1)%text, decimals => data%fields(i)%text)
+         call report%suspect(field_place(data, i - 1), 'decimal comma? '//whole//','//decimals// &
+            ' is two fields: '//whole//', and '//what//', which is ignored; write '//whole// &
+            '.'//decimals//', or '//whole//'. if that is meant', group)
+      end associate
+   end subroutine check_unneeded
+
+   !> As check_unneeded for the temperature behind a property: a plausible one is no decimals,
+   !> unless it is directly behind the comma of `0,`.
+   subroutine check_unneeded_temperature(data, i, report)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                            !! position of the field, from 2
+      type(deck_report_type), intent(inout) :: report     !! receives the warning
+      real(dp) :: temperature
+      logical :: is_number
+
+      if (.not. may_be_decimals(data, i)) return
+      call read_real(field_text(data, i), temperature, is_number)
+      associate (before => data%fields(i - 1), field => data%fields(i))
+         if (temperature >= least_plausible .and. (verify(before%text, '+-0') > 0 .or. &
+            field%place%column > before%place%column + len(before%text) + 1)) return
+      end associate
+      call check_unneeded(data, i, 'a temperature', report)
+   end subroutine check_unneeded_temperature
 
 end module card_values

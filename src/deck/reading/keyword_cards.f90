@@ -3,7 +3,7 @@ module keyword_cards
    use card_fields, only: first_text, without_quotes
    use card_slips, only: is_number
    use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
-   use decimal_commas, only: decimal_comma_words
+   use card_values, only: decimal_comma_words
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use keywords, only: advice_type, built, find_advice, find_keyword, find_parameter, is_word, &
