@@ -7,18 +7,16 @@ module deck_builder
    use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities, &
       heatless
    use deck_builder_contact, only: build_contacts, build_ties
-   use deck_builder_equations, only: build_couplings, build_equations
+   use deck_builder_equations, only: build_couplings, build_equations, build_transforms
    use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures
    use deck_builder_interactions, only: build_interactions
    use deck_builder_lines, only: build_lines, split_line_sets
-   use deck_builder_materials, only: build_materials
+   use deck_builder_materials, only: build_materials, build_orientations, build_sections
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_options, only: build_load_axis, build_options, build_regions
-   use deck_builder_sections, only: build_orientations, build_sections
    use deck_builder_sets, only: build_sets, build_surfaces
    use deck_builder_steps, only: build_steps
-   use deck_builder_transforms, only: build_transforms
-   use deck_checks, only: check_model
+   use deck_checks, only: check_model, check_usage
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
@@ -34,7 +32,6 @@ module deck_builder
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
    use text, only: to_text
    use touch_checks, only: check_touches
-   use usage_checks, only: check_usage
    implicit none
    private
    public :: build_model

@@ -1,6 +1,6 @@
-!> *AMPLITUDE and *INITIAL CONDITIONS: what loads and temperatures start from and follow.
-!> *INITIAL CONDITIONS, TYPE=STRESS -> one initial stress an element. Abaqus gives it to elements or
-!> sets, CalculiX to the integration points of its solid elements, into which it turns plane ones.
+!> *AMPLITUDE and *INITIAL CONDITIONS: what loads and temperatures start from and follow. An initial
+!> stress is one for an element: Abaqus gives it to elements or sets, CalculiX to the integration
+!> points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
    use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &

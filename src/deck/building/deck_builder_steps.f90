@@ -6,9 +6,9 @@ module deck_builder_steps
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use controls, only: fixed_point_type, implicit_scheme, start_type, thermal_scheme_type
    use deck_builder_contact, only: build_contact_change
-   use deck_builder_controls, only: build_fixed_point, build_start, build_thermal_scheme
+   use deck_builder_controls, only: build_fixed_point, build_print, build_start, &
+      build_thermal_scheme, read_frequency
    use deck_builder_loads, only: build_load_card
-   use deck_builder_prints, only: build_print, read_frequency
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, cards_of

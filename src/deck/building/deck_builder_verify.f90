@@ -1,5 +1,4 @@
-!> *VERIFY -> checks of the results.
-!> *ACCURACY -> targets of the errors.
+!> *VERIFY -> checks of the results, *ACCURACY -> targets of the errors.
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
    use card_parameters, only: need_choice, parameter_text, take_from
@@ -99,7 +98,7 @@ contains
       check%where = field_text(data, 2)
       places = [field_place(data, 1), field_place(data, 2)]
       check%columns = places%column
-      call read_quantity(data, context%verifiable, report, quantity)
+      call read_quantity(data, context%verifiable, '', report, quantity)
       if (quantity > 0) then
          check%quantity = trim(context%verifiable(quantity)%name)
          call check_where(data, context%verifiable(quantity)%kind, context, model, report, check)
@@ -123,14 +122,15 @@ contains
       end select
    end subroutine build_check
 
-   !> The first field: index into verifiable, 0 after an error.
-   subroutine read_quantity(data, verifiable, report, quantity)
+   !> The first field: index into known quantities, 0 after an error.
+   subroutine read_quantity(data, known, refusal, report, quantity)
       type(data_card_type), intent(in) :: data
-      type(quantity_type), intent(in) :: verifiable(:)
+      type(quantity_type), intent(in) :: known(:)
+      character(*), intent(in) :: refusal   ! of others than these few; empty where they are many
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: quantity
       character(:), allocatable :: name, hint
-      type(string_type) :: names(size(verifiable))
+      type(string_type) :: names(size(known))
       logical :: valid
       integer :: i
 
@@ -138,11 +138,15 @@ contains
       quantity = 0
       call need_field(data, 1, 'quantity', report, name, valid)
       if (.not. valid) return
-      quantity = find_quantity(verifiable, name)
+      quantity = find_quantity(known, name)
       if (quantity > 0) return
       do i = 1, size(names)
-         names(i)%value = trim(verifiable(i)%name)
+         names(i)%value = trim(known(i)%name)
       end do
+      if (len(refusal) > 0) then
+         call report%error(field_place(data, 1), refusal//known_choices(name, names))
+         return
+      end if
       hint = nearest_known(name, names)
       if (len(hint) == 0) hint = '; docs/deck.md lists those that are known'
       call report%error(field_place(data, 1), 'unknown quantity '//name//hint)
@@ -324,7 +328,10 @@ contains
       logical :: valid
 
       errors = report%error_count()
-      call read_quantity(data, estimated, report, target%quantity)
+      call read_quantity(data, estimated, 'no error of '//field_text(data, 1)//' is estimated', &
+         report, i)
+      target%quantity = ''
+      if (i > 0) target%quantity = trim(estimated(i)%name)
       valid = .true.
       call need_field(data, 2, 'target', report, target%bound, valid)
       if (valid .and. target%bound <= 0.0_dp) call report%error(field_place(data, 2), &
@@ -356,30 +363,5 @@ contains
       call check_extra(data, 4, 'quantity, target, REL or ABS, contact pair', report)
       if (report%error_count() == errors) model%accuracy%targets = [model%accuracy%targets, target]
    end subroutine build_target
-
-   subroutine read_quantity(data, estimated, report, name)
-      type(data_card_type), intent(in) :: data
-      type(quantity_type), intent(in) :: estimated(:)
-      type(deck_report_type), intent(inout) :: report
-      character(:), allocatable, intent(out) :: name
-      type(string_type) :: names(size(estimated))
-      integer :: i
-      logical :: valid
-
-      valid = .true.
-      name = ''
-      call need_field(data, 1, 'quantity', report, name, valid)
-      if (.not. valid) return
-      i = find_quantity(estimated, name)
-      if (i > 0) then
-         name = trim(estimated(i)%name)
-         return
-      end if
-      do i = 1, size(names)
-         names(i)%value = trim(estimated(i)%name)
-      end do
-      call report%error(field_place(data, 1), 'no error of '//name//' is estimated'// &
-         known_choices(name, names))
-   end subroutine read_quantity
 
 end module deck_builder_verify

@@ -1,6 +1,5 @@
 !> Values of the fields of a data card, with an error at their place where they are not what they
-!> should be.
-!> Numbers written with a decimal comma, which the dialect reads as two fields.
+!> should be, such as numbers with a decimal comma, which the dialect reads as two fields.
 module card_values
    use cards, only: data_card_type, field_place, field_text, has_field, is_undefined
    use deck_report, only: deck_report_type

@@ -1,7 +1,6 @@
 !> Errors and warnings of a deck with their places, printed in one go.
 module deck_report
-   use alike_messages, only: first_alike
-   use card_echo, only: column_of, print_card
+   use card_echo, only: column_of, first_alike, print_card
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: print_line
