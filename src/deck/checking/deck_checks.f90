@@ -63,9 +63,7 @@ contains
       without = count(model%mesh%element_section == 0)
       if (size(model%sections) == 0 .or. without == 0) return
       if (.not. (context%sections_sound .and. context%sets_sound)) return
-      do e = 1, size(model%mesh%element_section)
-         if (model%mesh%element_section(e) == 0) exit
-      end do
+      e = findloc(model%mesh%element_section, 0, dim=1)
       call report%error(context%element_place(e), 'no *SOLID SECTION for element '// &
          to_text(model%mesh%element_number(e))//'; elements without one: '//to_text(without))
    end subroutine check_sections
@@ -90,28 +88,18 @@ contains
             if (heat .and. .not. material%has_conductivity) call report%missing( &
                context%material_place(m), 'material '//material%name// &
                ' has no *CONDUCTIVITY, which a step with heat needs', '*CONDUCTIVITY')
-            if (mechanics .and. material%has_elasticity) call check_locking(context, model, m, &
-               report)
+            if (.not. (mechanics .and. material%has_elasticity)) cycle
+            if (maxval(abs(material%elasticity)) <= 0.0_dp) cycle
+            if (equivalent_poisson(material%elasticity) <= most_compressible) cycle
+            ! Elements with too many integration points lock; six-node triangles do not, but their
+            ! mean stress scatters and does not converge.
+            call warn_of_kinds(context, model, m, [quad8, triangle3], 'elements such as ', &
+               ' are too stiff', report)
+            call warn_of_kinds(context, model, m, [triangle6], 'the stresses of elements such '// &
+               'as ', ' scatter', report)
          end associate
       end do
    end subroutine check_materials
-
-   !> Warns of a nearly incompressible material in elements that cannot follow it: those with too
-   !> many integration points lock; six-node triangles do not, but their mean stress scatters and
-   !> does not converge.
-   subroutine check_locking(context, model, m, report)
-      type(deck_context_type), intent(in) :: context
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: m
-      type(deck_report_type), intent(inout) :: report
-
-      if (maxval(abs(model%materials(m)%elasticity)) <= 0.0_dp) return
-      if (equivalent_poisson(model%materials(m)%elasticity) <= most_compressible) return
-      call warn_of_kinds(context, model, m, [quad8, triangle3], 'elements such as ', &
-         ' are too stiff', report)
-      call warn_of_kinds(context, model, m, [triangle6], 'the stresses of elements such as ', &
-         ' scatter', report)
-   end subroutine check_locking
 
    !> Warns of the first element of some kinds that has the material and is not in plane stress.
    subroutine warn_of_kinds(context, model, m, kinds, subject, trouble, report)

@@ -7,6 +7,7 @@ module load_checks
    use element_kinds, only: axisymmetric
    use kinds, only: dp
    use load_requests, only: request_type
+   use mesh, only: set_type
    use model, only: model_type
    use order_reduction, only: side_corners
    use steps, only: analysis_static, centrifugal_round, dof_temperature, load_body_heat, &
@@ -40,7 +41,10 @@ contains
             card = request%card
             select case (request%kind)
             case (load_force, load_nodal_heat)
-               call check_nodes(request, model, used, report)
+               if (.not. (all(used(items_of(request, model%mesh%node_sets))) .or. &
+                  report%has_lost('equation') .or. report%has_lost('element'))) &
+                  call report%error(request%place, trim(merge('a force', 'heat   ', &
+                  request%kind == load_force))//' on a node that no element has')
             case (load_gravity)
                call check_density(request, model, 'GRAV', report)
             case (load_centrifugal)
@@ -110,22 +114,6 @@ contains
          load_film_coefficient])
    end function is_heat
 
-   !> Loads on nodes are on nodes of elements.
-   subroutine check_nodes(request, model, used, report)
-      type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-      logical, intent(in) :: used(0:)
-      type(deck_report_type), intent(inout) :: report
-
-      if (report%has_lost('equation') .or. report%has_lost('element')) return
-      if (all(used(nodes_of(request, model)))) return
-      if (request%kind == load_force) then
-         call report%error(request%place, 'a force on a node that no element has')
-      else
-         call report%error(request%place, 'heat on a node that no element has')
-      end if
-   end subroutine check_nodes
-
    !> Every material of the loaded elements has a density.
    subroutine check_density(request, model, label, report)
       type(request_type), intent(in) :: request
@@ -135,7 +123,7 @@ contains
       integer, allocatable :: elements(:)
       integer :: i, section, m
 
-      elements = elements_of(request, model)
+      elements = items_of(request, model%mesh%element_sets)
       do i = 1, size(elements)
          section = model%mesh%element_section(elements(i))
          if (section == 0) cycle
@@ -155,7 +143,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, allocatable :: planes(:)
 
-      planes = model%mesh%element_plane(elements_of(request, model))
+      planes = model%mesh%element_plane(items_of(request, model%mesh%element_sets))
       if (request%component == centrifugal_round) then
          if (any(planes /= axisymmetric)) call report%error(request%place, &
             'plane elements turn round an axis along z: point x, y, 0, direction 0, 0, 1')
@@ -164,15 +152,6 @@ contains
             'point 0, 0, 0, direction 0, 1, 0')
       end if
    end subroutine check_axis
-
-   pure function elements_of(request, model) result(elements)
-      type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-      integer, allocatable :: elements(:)
-
-      elements = [request%item]
-      if (request%set > 0) elements = model%mesh%element_sets(request%set)%members
-   end function elements_of
 
    !> Warns of what comes after the last step that solves for what it loads.
    subroutine check_effect(request, model, report)
@@ -199,7 +178,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, allocatable :: elements(:)
 
-      elements = elements_of(request, model)
+      elements = items_of(request, model%mesh%element_sets)
       elements = pack(elements, uses(request%component, elements) > 1)
       if (size(elements) == 0) return
       call report%warning(request%place, 'side '//to_text(request%component)//' of element '// &
@@ -226,7 +205,7 @@ contains
             if (request%card == card) cycle
             card = request%card
             ! As CalculiX does.
-            nodes = nodes_of(request, model)
+            nodes = items_of(request, model%mesh%node_sets)
             nodes = pack(nodes, .not. used(nodes))
             if (size(nodes) > 0 .and. .not. unknown) call report%warning(request%place, 'node '// &
                to_text(model%mesh%node_number(nodes(1)))//' belongs to no element: what is '// &
@@ -273,13 +252,14 @@ contains
       first = huge(first)
       do i = context%boundaries%count, 1, -1
          associate (request => context%boundaries%items(i))
-            first(min(request%component, 3), nodes_of(request, model)) = max(1, request%step)
+            first(min(request%component, 3), items_of(request, model%mesh%node_sets)) = &
+               max(1, request%step)
          end associate
       end do
       card = 0
       do i = 1, context%boundaries%count
          associate (request => context%boundaries%items(i))
-            nodes = nodes_of(request, model)
+            nodes = items_of(request, model%mesh%node_sets)
             if (.not. all(context%dropped(nodes)) .or. request%card == card) cycle
             do j = 1, size(nodes)
                if (all(first(min(request%component, 3), corners(:, nodes(j))) <= &
@@ -311,14 +291,17 @@ contains
          associate (request => context%boundaries%items(i))
             if (request%step /= step) cycle
             dof = min(request%component, 3)
-            nodes = nodes_of(request, model)
+            nodes = items_of(request, model%mesh%node_sets)
             n = 0
             do j = 1, size(nodes)
                if (given(dof, nodes(j)) > 0) then
-                  if (differs(request, context%boundaries%items(given(dof, nodes(j))))) then
-                     n = n + 1
-                     if (n == 1) node = nodes(j)
-                  end if
+                  associate (other => context%boundaries%items(given(dof, nodes(j))))
+                     if (abs(request%value - other%value) > 0.0_dp .or. (request%amplitude /= &
+                        other%amplitude .and. abs(request%value) > 0.0_dp)) then
+                        n = n + 1
+                        if (n == 1) node = nodes(j)
+                     end if
+                  end associate
                end if
                given(dof, nodes(j)) = i
             end do
@@ -330,21 +313,14 @@ contains
       end do
    end subroutine check_conflicts
 
-   !> Whether two cards prescribe different time histories.
-   pure logical function differs(one, other)
-      type(request_type), intent(in) :: one, other
-
-      differs = abs(one%value - other%value) > 0.0_dp .or. &
-         (one%amplitude /= other%amplitude .and. abs(one%value) > 0.0_dp)
-   end function differs
-
-   pure function nodes_of(request, model) result(nodes)
+   !> Nodes or elements that a request names.
+   pure function items_of(request, sets) result(items)
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-      integer, allocatable :: nodes(:)
+      type(set_type), intent(in) :: sets(:)     ! of nodes or of elements
+      integer, allocatable :: items(:)
 
-      nodes = [request%item]
-      if (request%set > 0) nodes = model%mesh%node_sets(request%set)%members
-   end function nodes_of
+      items = [request%item]
+      if (request%set > 0) items = sets(request%set)%members
+   end function items_of
 
 end module load_checks
