@@ -81,7 +81,7 @@ contains
       integer, allocatable :: free(:), nodes(:), others(:)
       logical :: is_free(0:size(mesh%node_number))
       real(dp) :: box(4)
-      integer :: i, k, n, s
+      integer :: i, k, n, partner, s
 
       free = pack([(s, s=1, sides%count)], sides%elements(2, :sides%count) == 0)
       is_free = .false.
@@ -90,7 +90,9 @@ contains
       allocate (touches(0))
       do i = 1, size(free)
          associate (ends => sides%ends(:, free(i)))
-            box = box_of(mesh, ends)
+            box = [minval(mesh%coordinates(:, pack(ends, ends > 0)), dim=2), &
+               maxval(mesh%coordinates(:, pack(ends, ends > 0)), dim=2)] + &
+               margin*length_of(mesh, ends)*[-1, -1, 1, 1]
             do n = 1, size(nodes)
                associate (x => mesh%coordinates(:, nodes(n)))
                   if (x(1) < box(1) .or. x(1) > box(3)) cycle
@@ -100,8 +102,13 @@ contains
                   others = pack(free, any(sides%ends(:, free) == nodes(n), dim=1))
                   others = pack(others, [(lie_on_each_other(mesh, sides, free(i), others(k)), &
                      k=1, size(others))])
-                  more = [(touch_type(nodes(n), free(i), others(k), partner_of(mesh, ends, x)), &
-                     k=1, size(others))]
+                  partner = 0
+                  do k = 3, 1, -1
+                     if (ends(k) == 0) cycle
+                     if (norm2(mesh%coordinates(:, ends(k)) - x) <= close_by*length_of(mesh, &
+                        ends)) partner = ends(k)
+                  end do
+                  more = [(touch_type(nodes(n), free(i), others(k), partner), k=1, size(others))]
                end associate
                touches = [touches, more]
             end do
@@ -270,53 +277,11 @@ contains
       end associate
    end function side_words
 
-   !> Least x and y, largest x and y of a side.
-   pure function box_of(mesh, ends) result(box)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: ends(3)     ! as element_sides_type
-      real(dp) :: box(4)
-      real(dp) :: wider
-
-      associate (a => mesh%coordinates(:, ends(1)), b => mesh%coordinates(:, ends(3)))
-         box = [min(a, b), max(a, b)]
-      end associate
-      if (ends(2) > 0) then
-         box(:2) = min(box(:2), mesh%coordinates(:, ends(2)))
-         box(3:) = max(box(3:), mesh%coordinates(:, ends(2)))
-      end if
-      wider = margin*length_of(mesh, ends)
-      box(:2) = box(:2) - wider
-      box(3:) = box(3:) + wider
-   end function box_of
-
-   !> The node of a side at a place, or 0.
-   pure integer function partner_of(mesh, ends, x) result(partner)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: ends(3)
-      real(dp), intent(in) :: x(2)
-      integer :: k
-
-      do k = 1, 3
-         partner = ends(k)
-         if (partner == 0) cycle
-         if (norm2(mesh%coordinates(:, partner) - x) <= close_by*length_of(mesh, ends)) return
-      end do
-      partner = 0
-   end function partner_of
-
-   pure function chord(mesh, ends)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: ends(3)
-      real(dp) :: chord(2)
-
-      chord = mesh%coordinates(:, ends(3)) - mesh%coordinates(:, ends(1))
-   end function chord
-
    pure real(dp) function length_of(mesh, ends) result(length)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: ends(3)
 
-      length = norm2(chord(mesh, ends))
+      length = norm2(mesh%coordinates(:, ends(3)) - mesh%coordinates(:, ends(1)))
    end function length_of
 
    !> Whether two sides of different elements lie on each other along a part of their length, the
@@ -333,7 +298,8 @@ contains
       associate (mine => sides%ends(:, one), its => sides%ends(:, other))
          shorter = min(length_of(mesh, mine), length_of(mesh, its))
          if (shorter <= 0.0_dp) return
-         if (dot_product(chord(mesh, mine), chord(mesh, its)) >= 0.0_dp) return
+         if (dot_product(mesh%coordinates(:, mine(3)) - mesh%coordinates(:, mine(1)), &
+            mesh%coordinates(:, its(3)) - mesh%coordinates(:, its(1))) >= 0.0_dp) return
          first = 1.0_dp
          last = 0.0_dp
          do k = 1, 3
