@@ -5,7 +5,7 @@
 module divided_mesh
    use connections, only: connections_type
    use companion_steps, only: implicit_state, implicit_step
-   use contact_states, only: contact_open
+   use contact_system, only: contact_open
    use controls, only: method_anderson
    use element_kinds, only: element_node_count
    use equations, only: equation_nodes

@@ -3,7 +3,7 @@ module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use contact_states, only: contact_open
+   use contact_system, only: contact_open
    use increment_records, only: measure_contact
    use friction_laws, only: friction_law_type
    use kinds, only: dp

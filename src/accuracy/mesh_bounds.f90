@@ -13,7 +13,7 @@ module mesh_bounds
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
-   use contact_states, only: contact_open, contact_slip, contact_stick
+   use contact_system, only: contact_open, contact_slip, contact_stick
    use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner, point_before
    use kinds, only: dp
    use quantity_types, only: find_quantity

@@ -12,7 +12,7 @@ module round_indicators
    use accuracy_rounds, only: accuracy_rounds_type, finding_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
-   use contact_states, only: contact_open
+   use contact_system, only: contact_open
    use element_kinds, only: element_corner_count
    use error_marking, only: largest_part, squared_errors
    use interface_quantities, only: closed_length, point_before

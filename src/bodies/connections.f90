@@ -1,23 +1,26 @@
 !> The contact points of all interfaces in one row, as the solution works on them, and beside them
 !> the points of all ties, the nodes that hang and the equations of the deck.
+!> The laws of all contact points in a step, made when it begins.
 module connections
-   use conductance_laws, only: is_constant, varies_with_temperature
-   use contact_definitions, only: pairing_nodes, tie_definition_type
+   use conductance_laws, only: conductance_law_type, is_constant, varies_with_temperature
+   use contact_definitions, only: is_removed, latest_friction, pairing_nodes, tie_definition_type
    use contact_pairs, only: make_contact_points, make_tie_points
    use contact_points, only: contact_points_type
    use element_kinds, only: side_node_count
    use equations, only: equation_type
    use errors, only: error_type
+   use friction_laws, only: friction_law_type, unlimited
    use hanging_nodes, only: hanging_rows
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
    use sum_lists, only: sum_list_type
-   use temperature_laws, only: law_jumps
+   use temperature_laws, only: face_temperatures_type, law_at, law_jumps
    use transforms, only: partner_type
    implicit none
    private
-   public :: connections_type, tie_points_type, match_surfaces, match_tie, joined_points
+   public :: connections_type, tie_points_type, match_surfaces, match_tie, joined_points, &
+      contact_laws_type, laws_of_step
 
    real(dp), parameter :: opposite = 1.0e-3_dp   !! offset of nodes face to face, of the side
 
@@ -46,6 +49,20 @@ module connections
       procedure :: vary_with_temperature
       procedure :: means
    end type connections_type
+
+   !> The laws of the contact points of all interfaces.
+   type :: contact_laws_type
+      type(conductance_law_type), allocatable :: conductance(:)    !! (m) as the deck has them
+      type(friction_law_type), allocatable :: friction(:)          !! (m) of tractions
+      !> (m) the same of nodal forces, with the largest one for a shear; unlimited at contact points
+      !> of weight 0, over which no traction acts
+      type(friction_law_type), allocatable :: nodal_friction(:)
+      !> (m) whether the interface is removed: its contact points are open whatever their gaps, and
+      !> have neither friction nor conductance
+      logical, allocatable :: removed(:)
+   contains
+      procedure :: conductance_at
+   end type contact_laws_type
 
 contains
 
@@ -220,5 +237,46 @@ contains
       means = 0.0_dp
       if (self%vary_with_temperature()) call self%mean%add_totals(field, means)
    end function means
+
+   !> The laws of a step.
+   pure function laws_of_step(model, interface_start, weight, step) result(laws)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: interface_start(:)    !! (interfaces + 1) first contact point of each
+      real(dp), intent(in) :: weight(:)            !! (m) tributary areas [length^2]
+      integer, intent(in) :: step                  !! index of the step
+      type(contact_laws_type) :: laws
+      integer :: i
+
+      allocate (laws%conductance(size(weight)), laws%friction(size(weight)))
+      allocate (laws%removed(size(weight)), source=.false.)
+      do i = 1, size(model%contacts)
+         associate (first => interface_start(i), last => interface_start(i + 1) - 1, &
+            interaction => model%interactions(model%contacts(i)%interaction))
+            laws%removed(first:last) = is_removed(model%steps(:step)%changes, i)
+            if (any(laws%removed(first:last))) cycle
+            laws%conductance(first:last) = interaction%law
+            laws%friction(first:last) = latest_friction(model%steps(:step)%changes, &
+               model%contacts(i)%interaction, interaction%friction)
+         end associate
+      end do
+      laws%nodal_friction = laws%friction
+      laws%nodal_friction%largest_shear = unlimited
+      where (laws%friction%largest_shear < unlimited .and. weight > 0.0_dp) &
+         laws%nodal_friction%largest_shear = laws%friction%largest_shear*weight
+   end function laws_of_step
+
+   !> The conductance laws with the values that they have at temperatures of the faces.
+   pure function conductance_at(self, mean, jump) result(laws)
+      class(contact_laws_type), intent(in) :: self
+      real(dp), intent(in) :: mean(:)                           !! (m) (T_xi + T_eta)/2
+      real(dp), intent(in) :: jump(:)                           !! (m) T_xi - T_eta
+      type(conductance_law_type), allocatable :: laws(:)        !! (m)
+      integer :: k
+
+      allocate (laws(size(jump)))
+      do k = 1, size(jump)
+         laws(k) = law_at(self%conductance(k), face_temperatures_type(mean(k), jump(k)))
+      end do
+   end function conductance_at
 
 end module connections

@@ -3,7 +3,8 @@
 !> (heat_reduction).
 module reduced_bodies
    use field_constraints, only: constrain_displacements, constrain_temperatures
-   use contact_laws, only: contact_laws_type, laws_of_step
+   use connections, only: connections_type, contact_laws_type, joined_points, laws_of_step, &
+      match_surfaces, match_tie
    use conductance_laws, only: is_constant
    use contact_points, only: contact_points_type
    use element_kinds, only: element_node_count
@@ -13,7 +14,6 @@ module reduced_bodies
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
-   use connections, only: connections_type, joined_points, match_surfaces, match_tie
    use held_points, only: held_directions
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
    use sparse_matrix, only: sparse_matrix_type

@@ -3,12 +3,11 @@
 module unconstrained_bodies
    use mesh_bodies, only: body_name
    use conductance_laws, only: law_none
-   use contact_laws, only: contact_laws_type
-   use contact_states, only: contact_open, contact_slip, contact_stick
+   use connections, only: connections_type, contact_laws_type
+   use contact_system, only: contact_open, contact_slip, contact_stick
    use dense, only: null_space
    use kinds, only: dp
    use model, only: model_type
-   use connections, only: connections_type
    use rigid_motions, only: find_free_motions, free_motion_type, joint_type, joints_of
    use steps, only: load_film_coefficient
    use text, only: append, string_type, to_text

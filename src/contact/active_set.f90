@@ -14,9 +14,8 @@
 !> rounding does not decide by itself, because a light load may leave no more than that beside the
 !> thermal forces. The load is judged instead: its resultants along the rigid motions are exact.
 module active_set
-   use contact_states, only: contact_open, contact_state_type, next_contact_state, response_type, &
-      rounding_type, state_code
-   use contact_system, only: contact_system_type
+   use contact_system, only: contact_open, contact_state_type, contact_system_type, &
+      next_contact_state, response_type, rounding_type, state_code
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp

@@ -32,8 +32,8 @@
 !> with b the derivative of r by lambda through f(lambda) and a(lambda).
 module closing_instant
    use active_set, only: solve_contact
-   use contact_states, only: closing_law_type, contact_state_type, contact_open, contact_stick
-   use contact_system, only: contact_system_type
+   use contact_system, only: closing_law_type, contact_open, contact_state_type, contact_stick, &
+      contact_system_type
    use contact_workspace, only: contact_workspace_type
    use dense, only: product_of
    use errors, only: error_type

@@ -3,7 +3,7 @@
 !> face with its hat function (mortar_points).
 module contact_points
    use contact_definitions, only: pairing_nodes
-   use edge_segments, only: edge_segment_type, hat_type
+   use mortar_segments, only: edge_segment_type, hat_type
    use kinds, only: dp
    use sum_lists, only: sum_list_type
    implicit none

@@ -3,10 +3,9 @@
 !> moment. A second trial takes a workspace of its own.
 module contact_workspace
    use contact_factors, only: contact_factors_type
-   use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
-      contact_stick, is_capped, slip_force, state_code
-   use contact_system, only: contact_rows_type, contact_system_type, free_motions, is_driven, &
-      rows_of
+   use contact_system, only: closing_law_type, contact_open, contact_rows_type, contact_slip, &
+      contact_state_type, contact_stick, contact_system_type, free_motions, is_capped, is_driven, &
+      rows_of, slip_force, state_code
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite
    use friction_laws, only: friction_law_type

@@ -7,9 +7,8 @@
 !> whatever the friction is, so that the path, which cannot return to where it began, arrives at
 !> t = 0 (Lemke's method with its geometric covering vector).
 module lemke_path
-   use contact_states, only: contact_open, contact_slip, contact_state_type, contact_stick, &
-      is_capped, with_cap
-   use contact_system, only: contact_system_type
+   use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick, &
+      contact_system_type, is_capped, with_cap
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use friction_laws, only: unlimited

@@ -5,10 +5,9 @@ module mortar_points
    use chain_geometry, only: arc_lengths, edge_lengths, side_positions
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type, small_offset
-   use edge_segments, only: edge_segments_of, hats_of
+   use mortar_segments, only: edge_segments_of, hats_of, integrate_segments, mortar_integrals_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use mortar_segments, only: integrate_segments, mortar_integrals_type
    use mortar_sides, only: beside_line, face_line_type, hats, opposite_coordinate, side_opposite, &
       slave_side_type, sides_of
    use sparse_matrix, only: sparse_matrix_type

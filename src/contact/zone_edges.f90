@@ -21,7 +21,7 @@ module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
-   use contact_states, only: contact_open, contact_slip, contact_stick
+   use contact_system, only: contact_open, contact_slip, contact_stick
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    implicit none

@@ -11,7 +11,7 @@ module contact_operator
    use conductance_laws, only: conductance, conductance_derivative, conductance_law_type
    use contact_heat, only: jump_derivatives_type, settle_conductance, take_temperatures, &
       temperature_jumps
-   use contact_states, only: contact_open, contact_slip, contact_state_type
+   use contact_system, only: contact_open, contact_slip, contact_state_type
    use contact_tractions, only: pressures
    use contact_workspace, only: contact_workspace_type
    use dense, only: product_of

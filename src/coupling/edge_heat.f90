@@ -13,8 +13,8 @@
 module edge_heat
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
-   use contact_states, only: contact_open, contact_slip
-   use edge_segments, only: edge_profile_type, edge_segment_type, support
+   use contact_system, only: contact_open, contact_slip
+   use mortar_segments, only: edge_profile_type, edge_segment_type, support
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type

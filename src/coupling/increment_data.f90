@@ -1,6 +1,6 @@
 !> What an increment is solved from, and what its trial solutions work with.
 module increment_data
-   use contact_states, only: contact_state_type
+   use contact_system, only: contact_state_type
    use contact_workspace, only: contact_workspace_type
    use controls, only: fixed_point_type, start_type
    use edge_heat, only: edge_integral_type, edge_heat_type

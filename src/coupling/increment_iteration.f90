@@ -6,7 +6,7 @@ module increment_iteration
    use contact_heat, only: at_own_temperatures, derivative_by_temperature, jump_derivatives, &
       jump_derivatives_type
    use contact_operator, only: contact_operator_pass, opening_derivative, openings, residual_floor
-   use contact_states, only: closing_law_type, contact_open, contact_slip, contact_state_type
+   use contact_system, only: closing_law_type, contact_open, contact_slip, contact_state_type
    use controls, only: fixed_point_type, method_anderson, method_newton, method_picard, &
       method_zaitsev
    use edge_heat, only: edge_heat_at, edge_heat_type, find_edge_integrals

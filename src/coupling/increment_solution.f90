@@ -6,8 +6,8 @@ module increment_solution
    use contact_heat, only: settle_conductance, temperature_jumps
    use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, law_pressure, &
       unstrained_forces
-   use contact_states, only: contact_open, contact_slip, contact_state_type
-   use contact_system, only: contact_system_type
+   use contact_system, only: balanced_load, contact_open, contact_slip, contact_state_type, &
+      contact_system_type, least_drive
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
    use edge_heat, only: joined_conductance
@@ -26,7 +26,6 @@ module increment_solution
    use temperature_laws, only: is_below_zero, law_jumps
    use text, only: to_text
    use thermal_matrix, only: heat_equation_type
-   use contact_system, only: balanced_load, least_drive
    implicit none
    private
    public :: begin_increment, solve_points, recover_fields

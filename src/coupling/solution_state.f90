@@ -2,7 +2,7 @@
 !> what a run needs to go on from it, and nothing that can be made from the deck. A restart keeps
 !> the table.
 module solution_state
-   use contact_states, only: contact_state_type
+   use contact_system, only: contact_state_type
    use edge_heat, only: edge_heat_type
    use kinds, only: dp
    use thermal_matrix, only: heat_sources_type

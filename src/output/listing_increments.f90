@@ -4,7 +4,7 @@ module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use contact_states, only: contact_open, contact_stick
+   use contact_system, only: contact_open, contact_stick
    use increment_quantities, only: error_values, history_value
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp

@@ -2,7 +2,7 @@
 !> strains and rotations, and the warnings of its increments by kinds.
 module run_judgement
    use contact_points, only: contact_points_type, past_end
-   use contact_states, only: contact_open
+   use contact_system, only: contact_open
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type

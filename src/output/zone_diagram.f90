@@ -2,7 +2,7 @@
 !> (slip), III (stick).
 module zone_diagram
    use contact_points, only: contact_points_type
-   use contact_states, only: contact_open, contact_stick
+   use contact_system, only: contact_open, contact_stick
    use kinds, only: dp
    use records, only: increment_record_type
    use text, only: to_text

@@ -2,7 +2,7 @@
 module contact_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
-   use contact_states, only: contact_open, contact_stick
+   use contact_system, only: contact_open, contact_stick
    use kinds, only: dp
    use quantity_types, only: needs_heat, of_interface, of_contact_points, quantity_type
    use records, only: contact_record_type

@@ -5,7 +5,7 @@ module deck_preparation
    use cards, only: cards_type
    use command_line, only: command_type
    use contact_definitions, only: pairing_surfaces
-   use contact_laws, only: contact_laws_type, laws_of_step
+   use connections, only: connections_type, contact_laws_type, laws_of_step
    use contact_quantities, only: estimated
    use deck_builder, only: build_model
    use deck_builder_interactions, only: frictionless
@@ -20,7 +20,6 @@ module deck_preparation
    use messages, only: print_error, print_line
    use model, only: model_type
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
-   use connections, only: connections_type
    use held_points, only: first_redundant, normal_supports, over_constrained
    use progress, only: progress_type
    use reported_quantities, only: verifiable

@@ -4,7 +4,7 @@
 module balances
    use connections, only: connections_type
    use contact_operator, only: unstrained_forces
-   use contact_states, only: contact_open, contact_slip, contact_state_type, contact_stick
+   use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick
    use edge_heat, only: edge_heat_type, joined_conductance, supplied_heat
    use element_kinds, only: axisymmetric
    use friction_laws, only: friction_bound, friction_law_type

@@ -1,6 +1,6 @@
 !> What a solved increment must satisfy before it is accepted.
 module increment_checks
-   use contact_states, only: contact_open
+   use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
    use finite_values, only: check_finite

@@ -5,7 +5,7 @@ module increment_records
    use conductance_laws, only: conductance, conductance_law_type
    use contact_operator, only: kept_contact
    use contact_points, only: contact_points_type
-   use contact_states, only: contact_open, contact_slip, contact_state_type, contact_stick
+   use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick
    use contact_tractions, only: in_contact, pressures, shears
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery, table_is_due

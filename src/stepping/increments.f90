@@ -3,7 +3,7 @@
 module increments
    use clock, only: wall_seconds
    use contact_operator, only: kept_contact, law_conductance
-   use contact_states, only: contact_open
+   use contact_system, only: contact_open
    use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: solved_loads_type

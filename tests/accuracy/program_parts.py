@@ -3,7 +3,7 @@ that all decks need, which exist for that part only."""
 
 CONTACT_FOLDER = {
     "active_set", "contact_tractions", "chain_geometry", "closing_instant", "lemke_path",
-    "contact_factors", "contact_pairs", "contact_states", "contact_system", "contact_workspace",
+    "contact_factors", "contact_pairs", "contact_system", "contact_workspace",
     "interface_checks", "interface_warnings", "surface_chains", "zone_edges",
 }
 COUPLING = {
@@ -45,17 +45,17 @@ PARTS = {
         "increment_records:contact_record",
         "increment_solution:remember_slip", "increment_solution:conduct",
         "listing_increments:print_interface", "listing_tables:print_contact_table",
-        "interface_reports", "connections", "contact_laws", "contact_points",
+        "interface_reports", "connections", "contact_points",
         "result_fields:face_values",
         "result_fields:find_faces", "zone_diagram",
     },
     "friction": {
-        "contact_states:next_contact_state", "contact_system:combine", "zone_edges:stick_edges",
+        "contact_system:next_contact_state", "contact_system:combine", "zone_edges:stick_edges",
     },
     "coupling": COUPLING,
     "cycles of contact points": {"field_constraints:stiffness_alone", "linear_constraints:links"},
     "paths to a contact zone": {"lemke_path"},
-    "bodies that contact holds": {"active_set:hold_softly", "active_set:take_forward",
+    "bodies that contact holds": {"active_set:hold_softly",
                                   "contact_system:free_motions", "contact_system:is_driven",
                                   "contact_system:balanced_load", "contact_system:least_drive"},
     "films": {"loads:film_matrix", "unit_loads:film_matrix"},
