@@ -1,6 +1,6 @@
 !> The contact points of all interfaces in one row, as the solution works on them, and beside them
 !> the points of all ties, the nodes that hang and the equations of the deck.
-!> The laws of all contact points in a step, made when it begins.
+!> Also the laws of all contact points in a step, made when it begins.
 module connections
    use conductance_laws, only: conductance_law_type, is_constant, varies_with_temperature
    use contact_definitions, only: is_removed, latest_friction, pairing_nodes, tie_definition_type
@@ -140,7 +140,15 @@ contains
          end do
       end if
       if (any(varies_with_temperature(model%interactions(model%contacts%interaction)%law))) then
-         row%mean = means_of_faces(interfaces)
+         call row%mean%reserve(0, 0)
+         do i = 1, size(interfaces)
+            associate (slave => interfaces(i)%slave_mean, master => interfaces(i)%master_mean)
+               do k = 1, slave%count
+                  call row%mean%add([slave%values_of(k), master%values_of(k)], &
+                     0.5_dp*[slave%coefficients_of(k), master%coefficients_of(k)])
+               end do
+            end associate
+         end do
       end if
       row%ties = joined_ties(model%mesh, model%ties, of_ties)
       row%hanging = hanging_rows(model%mesh)
@@ -176,23 +184,6 @@ contains
          end associate
       end do
    end function joined_ties
-
-   !> The mean of slave's and master's value at all contact points.
-   pure function means_of_faces(interfaces) result(means)
-      type(contact_points_type), intent(in) :: interfaces(:)
-      type(sum_list_type) :: means
-      integer :: i, k
-
-      call means%reserve(0, 0)
-      do i = 1, size(interfaces)
-         associate (slave => interfaces(i)%slave_mean, master => interfaces(i)%master_mean)
-            do k = 1, slave%count
-               call means%add([slave%values_of(k), master%values_of(k)], &
-                  0.5_dp*[slave%coefficients_of(k), master%coefficients_of(k)])
-            end do
-         end associate
-      end do
-   end function means_of_faces
 
    !> Heat is integrated to the edge of mortar points whose conductance varies without a jump, where
    !> it follows from gap and pressure alone: the means of the faces (contact_heat) go by jumps of

@@ -131,7 +131,7 @@ contains
       integer, intent(in) :: from, to
       type(elimination_type), intent(inout) :: found
       logical :: done(from:to)
-      integer :: first, last, pass
+      integer :: first, i, last, pass, written
 
       done = .false.
       do pass = 1, 2
@@ -143,7 +143,16 @@ contains
             associate (choice => rows%choice(first:last))
                done(first) = pass == 2 .or. all(found%writer(pack(choice, choice > 0)) == 0)
             end associate
-            if (done(first)) call write_constraint(rows, first, last, found)
+            if (.not. done(first)) cycle
+            written = found%sums%count
+            do i = first, last
+               call write_one(rows, i, found)
+            end do
+            if (found%tie(first) .or. found%sums%count - written == last - first + 1) cycle
+            ! Unless every row writes a degree of freedom, all of them are links.
+            found%linked(first:last) = .true.
+            where (found%writer > written) found%writer = 0
+            found%sums%count = written
          end do
       end do
    end subroutine write_section
@@ -157,23 +166,6 @@ contains
          if (.not. rows%origin(last + 1) == rows%origin(first)) return
       end do
    end function last_of
-
-   !> Writes a degree of freedom by every row of a constraint, or makes all of them links.
-   pure subroutine write_constraint(rows, first, last, found)
-      type(constraint_rows_type), intent(in) :: rows
-      integer, intent(in) :: first, last
-      type(elimination_type), intent(inout) :: found
-      integer :: i, written
-
-      written = found%sums%count
-      do i = first, last
-         call write_one(rows, i, found)
-      end do
-      if (found%tie(first) .or. found%sums%count - written == last - first + 1) return
-      found%linked(first:last) = .true.
-      where (found%writer > written) found%writer = 0
-      found%sums%count = written
-   end subroutine write_constraint
 
    !> Writes a degree of freedom by one row, if it has any left.
    pure subroutine write_one(rows, row, found)

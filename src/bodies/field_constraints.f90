@@ -164,7 +164,7 @@ contains
       integer, intent(in) :: components
       type(connections_type), intent(in) :: points
       type(constraint_rows_type), intent(out) :: rows
-      integer :: dof, introduced, most
+      integer :: c, dof, i, introduced, most
 
       rows%components = components
       rows%dofs = size(held)
@@ -181,28 +181,18 @@ contains
          rows%origin(rows%count) = row_origin_type(of_support, dof)
          rows%choice(rows%count) = dof
       end do
-      call hang(points%hanging, held, rows)
-   end subroutine begin_rows
-
-   !> Adds the rows of hanging nodes. Where one is prescribed, so are those of its side: they are in
-   !> one set.
-   pure subroutine hang(hanging, held, rows)
-      type(sum_list_type), intent(in) :: hanging
-      logical, intent(in) :: held(:)
-      type(constraint_rows_type), intent(inout) :: rows
-      integer :: c, i
-
-      do i = 1, hanging%count
-         do c = 1, rows%components
-            associate (dofs => rows%components*(hanging%values_of(i) - 1) + c)
+      ! Where a hanging node is prescribed, so are those of its side: they are in one set.
+      do i = 1, points%hanging%count
+         do c = 1, components
+            associate (dofs => components*(points%hanging%values_of(i) - 1) + c)
                if (held(dofs(1))) cycle
-               call rows%add(dofs, hanging%coefficients_of(i))
+               call rows%add(dofs, points%hanging%coefficients_of(i))
                rows%origin(rows%count) = row_origin_type(of_hanging, dofs(1))
                rows%choice(rows%count) = dofs(1)
             end associate
          end do
       end do
-   end subroutine hang
+   end subroutine begin_rows
 
    !> Adds a row of a contact point, introduced values less direction.(slave - master) = 0. A
    !> component of the slave's own node is to be written by the others, or of the master's; on faces

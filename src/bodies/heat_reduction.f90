@@ -92,14 +92,22 @@ contains
       type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: of_loads
+      logical :: warm(size(model%mesh%node_body))
+      character(:), allocatable :: words
+      integer :: k
 
       if (self%serves(bodies, film)) return
       call self%eliminate(model, bodies, film, of_loads)
       if (.not. self%is_of(bodies%thermal, film)) then
          call self%factor(bodies%thermal, film, model%solver, self%node_rank, error)
          if (allocated(error)) then
-            ! Factors say better than an elimination what makes both fail.
-            call name_cold_bodies(model, bodies, film, error)
+            ! Factors say better than an elimination what makes both fail: no prescribed temperature
+            ! and no film is on these bodies or on a body that contact points join to them.
+            warm = bodies%thermal%map%is_given([(k, k=1, size(warm))])
+            if (allocated(film%value)) warm(pack(film%column, film%value > 0.0_dp)) = .true.
+            words = undetermined_beside(model, bodies%points, warm)
+            if (len(words) > 0) error%message = words//': no *BOUNDARY on dof 11 and no *FILM '// &
+               'with a coefficient above 0 at this time fixes it'
             return
          end if
          if (allocated(self%jump_mean)) deallocate (self%jump_mean)
@@ -110,7 +118,11 @@ contains
       if (.not. has_loads(self, bodies)) call loads_by_solves(bodies%thermal, self, &
          bodies%mechanical, bodies%equilibrium, bodies%thermal_load, self%jump_load)
       self%equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
-      if (.not. self%is_balanced) call balance_jump_load(self, bodies)
+      if (self%is_balanced) return
+      do k = 1, size(self%jump_load, 2)
+         self%jump_load(:, k) = balanced_jump(self%jump_load(:, k), bodies)
+      end do
+      self%is_balanced = .true.
    end subroutine reduce
 
    !> Forms the loads of the jumps by one elimination of both fields, where the solver is better at
@@ -178,41 +190,6 @@ contains
       self%ranked_displacements = bodies%mechanical%numbering
    end subroutine set_node_rank
 
-   !> Names the bodies that leave the heat problem singular: no prescribed temperature and no film
-   !> is on them or on a body that contact points join to them.
-   subroutine name_cold_bodies(model, bodies, film, error)
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(sparse_matrix_type), intent(in) :: film
-      type(error_type), intent(inout) :: error
-      logical :: warm(size(model%mesh%node_body))
-      character(:), allocatable :: words
-      integer :: i
-
-      warm = bodies%thermal%map%is_given([(i, i=1, size(warm))])
-      if (allocated(film%value)) warm(pack(film%column, film%value > 0.0_dp)) = .true.
-      words = undetermined_beside(model, bodies%points, warm)
-      if (len(words) > 0) error%message = words//': no *BOUNDARY on dof 11 and no *FILM with a '// &
-         'coefficient above 0 at this time fixes it'
-   end subroutine name_cold_bodies
-
-   !> Balances the condensed loads of the jumps, which have no resultant.
-   subroutine balance_jump_load(self, bodies)
-      class(heat_reduction_type), intent(inout) :: self
-      type(reduced_bodies_type), intent(in) :: bodies
-      real(dp) :: none(size(bodies%rigid, 2))
-      integer :: k
-
-      none = 0.0_dp
-      associate (contact => bodies%equilibrium%contact)
-         do k = 1, size(self%jump_load, 2)
-            self%jump_load(:, k) = balanced_load(self%jump_load(:, k), contact%rigid, &
-               contact%motion, none)
-         end do
-      end associate
-      self%is_balanced = .true.
-   end subroutine balance_jump_load
-
    !> Condensed mechanical load of given jumps, by a solution of each field.
    function load_of_jumps(self, bodies, on_tail) result(load)
       class(heat_reduction_type), intent(in) :: self
@@ -220,16 +197,24 @@ contains
       real(dp), intent(in) :: on_tail(:)                  !! (thermal tail) [temperature]
       real(dp) :: load(bodies%mechanical%map%tail)        !! (mechanical tail) [force]
       real(dp) :: condensed(size(load), 1), forces(bodies%thermal_load%row_count, 1)
-      real(dp) :: none(size(bodies%rigid, 2))
 
       call bodies%thermal_load%multiply_columns(self%extended(bodies%thermal, reshape(on_tail, &
          [size(on_tail), 1])), forces)
       call bodies%equilibrium%condense_forces(bodies%mechanical, forces, condensed)
-      none = 0.0_dp
-      associate (contact => bodies%equilibrium%contact)
-         load = balanced_load(condensed(:, 1), contact%rigid, contact%motion, none)
-      end associate
+      load = balanced_jump(condensed(:, 1), bodies)
    end function load_of_jumps
+
+   !> The condensed load of jumps balanced: it has no resultant.
+   function balanced_jump(load, bodies) result(balanced)
+      real(dp), intent(in) :: load(:)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp) :: balanced(size(load))
+
+      associate (contact => bodies%equilibrium%contact)
+         balanced = balanced_load(load, contact%rigid, contact%motion, &
+            spread(0.0_dp, 1, size(bodies%rigid, 2)))
+      end associate
+   end function balanced_jump
 
    !> Mean temperature of the faces at all contact points, of a unit jump at each.
    subroutine form_jump_mean(self, bodies)

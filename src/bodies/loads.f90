@@ -5,7 +5,6 @@ module loads
    use kinds, only: dp
    use load_histories, only: load_history_type, step_clock_type
    use connections, only: connections_type
-   use mesh, only: mesh_type
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: analysis_static, dof_temperature, load_film_sink, load_temperature, load_type, &
@@ -49,11 +48,21 @@ contains
       class(loads_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       real(dp), allocatable :: zero(:)
-      integer :: s
+      integer :: e, q, s
 
       allocate (zero(2*size(model%mesh%node_number)), source=0.0_dp)
       call self%displacement%prepare(zero, model%amplitudes)
-      call hold_axis(model%mesh, self%displacement)
+      ! Nodes on the axis of an axisymmetric body stay there.
+      associate (mesh => model%mesh, permanent => self%displacement%permanent)
+         do e = 1, size(mesh%element_number)
+            if (mesh%element_plane(e) /= axisymmetric) cycle
+            do q = 1, element_node_count(mesh%element_kind(e))
+               if (mesh%coordinates(1, mesh%element_nodes(q, e)) <= 0.0_dp) &
+                  permanent(2*mesh%element_nodes(q, e) - 1) = .true.
+            end do
+         end do
+         self%displacement%active = permanent
+      end associate
       call self%interference%prepare(spread(0.0_dp, 1, size(model%contacts)), model%amplitudes)
       allocate (self%shrinks(size(model%contacts)), source=.false.)
       call self%temperature%prepare(model%initial_temperature, model%amplitudes)
@@ -68,22 +77,6 @@ contains
       end do
       self%unit = integrated(model, self%locations)
    end subroutine prepare
-
-   !> Nodes on the axis of an axisymmetric body stay there.
-   pure subroutine hold_axis(mesh, displacement)
-      type(mesh_type), intent(in) :: mesh
-      type(load_history_type), intent(inout) :: displacement
-      integer :: e, node, q
-
-      do e = 1, size(mesh%element_number)
-         if (mesh%element_plane(e) /= axisymmetric) cycle
-         do q = 1, element_node_count(mesh%element_kind(e))
-            node = mesh%element_nodes(q, e)
-            if (mesh%coordinates(1, node) <= 0.0_dp) displacement%permanent(2*node - 1) = .true.
-         end do
-      end do
-      displacement%active = displacement%permanent
-   end subroutine hold_axis
 
    !> Values of loads that are not given: the nodes' temperatures for *TEMPERATURE, else zero.
    pure function values_at(locations, temperature) result(values)

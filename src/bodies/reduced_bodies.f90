@@ -198,26 +198,21 @@ contains
    subroutine assemble_steps(self, model)
       class(reduced_bodies_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model
+      logical :: changes         ! whether temperatures ever differ from the initial ones
+      integer :: i
 
       if (allocated(self%mechanical%matrix%value)) return
       if (allocated(self%thermal%matrix%value)) return
-      call self%assemble(model, any(solves_mechanics(model%steps%analysis)), &
-         any(solves_heat(model%steps%analysis)), temperatures_strain(model))
+      associate (mechanics => any(solves_mechanics(model%steps%analysis)), &
+         heat => any(solves_heat(model%steps%analysis)))
+         changes = heat
+         do i = 1, size(model%steps)
+            if (.not. allocated(model%steps(i)%loads)) cycle
+            changes = changes .or. any(model%steps(i)%loads%kind == load_temperature)
+         end do
+         call self%assemble(model, mechanics, heat, mechanics .and. changes)
+      end associate
    end subroutine assemble_steps
-
-   !> Whether temperatures that differ from the initial ones ever meet mechanics.
-   pure function temperatures_strain(model) result(strain)
-      type(model_type), intent(in) :: model
-      logical :: strain
-      integer :: i
-
-      strain = any(solves_heat(model%steps%analysis))
-      do i = 1, size(model%steps)
-         if (.not. allocated(model%steps(i)%loads)) cycle
-         strain = strain .or. any(model%steps(i)%loads%kind == load_temperature)
-      end do
-      strain = strain .and. any(solves_mechanics(model%steps%analysis))
-   end function temperatures_strain
 
    !> Assembles the matrices of the bodies alone, once.
    subroutine assemble(self, model, with_mechanics, with_heat, with_strain)

@@ -194,9 +194,20 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(joint_type), intent(in) :: joints(:)
       type(rigid_bodies_type) :: bodies
-      integer :: nodes(mesh%body_count), node
+      integer :: nodes(mesh%body_count), c, i, k, node
 
-      bodies%lone = lone_dofs(mesh, joints)
+      allocate (bodies%lone(0))
+      do i = 1, size(joints)
+         do k = 1, size(joints(i)%nodes)
+            if (mesh%node_body(joints(i)%nodes(k)) > 0) cycle
+            do c = 1, 2
+               if (abs(joints(i)%share(c, k)) <= 0.0_dp) cycle
+               associate (dof => 2*(joints(i)%nodes(k) - 1) + c)
+                  if (all(bodies%lone /= dof)) bodies%lone = [bodies%lone, dof]
+               end associate
+            end do
+         end do
+      end do
       allocate (bodies%middle(2, size(nodes)), bodies%extent(size(nodes)), source=0.0_dp)
       nodes = 0
       do node = 1, size(mesh%node_body)
@@ -215,27 +226,6 @@ contains
          end associate
       end do
    end function measure
-
-   !> Degrees of freedom of no body that joints take, each once.
-   pure function lone_dofs(mesh, joints) result(dofs)
-      type(mesh_type), intent(in) :: mesh
-      type(joint_type), intent(in) :: joints(:)
-      integer, allocatable :: dofs(:)
-      integer :: c, i, k
-
-      allocate (dofs(0))
-      do i = 1, size(joints)
-         do k = 1, size(joints(i)%nodes)
-            associate (node => joints(i)%nodes(k))
-               if (mesh%node_body(node) > 0) cycle
-               do c = 1, 2
-                  if (abs(joints(i)%share(c, k)) <= 0.0_dp) cycle
-                  if (all(dofs /= 2*(node - 1) + c)) dofs = [dofs, 2*(node - 1) + c]
-               end do
-            end associate
-         end do
-      end do
-   end function lone_dofs
 
    !> A motion in words.
    pure function motion_of(bodies, vector, lone) result(motion)

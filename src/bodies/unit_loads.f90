@@ -55,7 +55,13 @@ contains
          if (.not. allocated(steps(s)%loads)) cycle
          loads = steps(s)%loads(location_order(steps(s)%loads))
          all = [all, loads]
-         ranks = [ranks, entry_ranks(loads)]
+         do i = 1, size(loads)
+            ! How manieth load of its location it is.
+            ranks = [ranks, 1]
+            if (i == 1) cycle
+            if (same_location(loads(i), loads(i - 1))) ranks(size(ranks)) = &
+               ranks(size(ranks) - 1) + 1
+         end do
       end do
       order = sort_order(ranks)
       order = order(location_order(all(order)))
@@ -85,18 +91,6 @@ contains
       same_location = one%kind == other%kind .and. one%item == other%item .and. &
          one%component == other%component
    end function same_location
-
-   !> How manieth load of its location each one is.
-   pure function entry_ranks(loads) result(ranks)
-      type(load_type), intent(in) :: loads(:)   ! in the order of their locations
-      integer :: ranks(size(loads))
-      integer :: i
-
-      ranks = 1
-      do i = 2, size(loads)
-         if (same_location(loads(i), loads(i - 1))) ranks(i) = ranks(i - 1) + 1
-      end do
-   end function entry_ranks
 
    !> Entry that each load of a step takes.
    pure function entries_of(locations, loads) result(entries)

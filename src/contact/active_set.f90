@@ -50,7 +50,14 @@ contains
 
       call find_state(system, load, work, state, error)
       if (allocated(error)) return
-      call find_idle_points(system, load, force_rounding(system, work, state), work, state)
+      work%idle = state%contact_state /= contact_open .and. &
+         state%force <= force_rounding(system, work, state)
+      if (any(work%idle)) call keep_unloaded(system, load, work, state, work%idle)
+      ! No force is left of idle contact points, and none of any closed one is negative.
+      where (state%force <= 0.0_dp .or. work%idle)
+         state%force = 0.0_dp
+         state%shear_force = 0.0_dp
+      end where
    end subroutine solve_contact
 
    !> A state that satisfies all contact conditions.
@@ -61,7 +68,8 @@ contains
       type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      type(contact_state_type) :: guess
+      type(contact_state_type) :: forward, guess
+      type(error_type), allocatable :: failure
 
       guess = state
       work%anchor = positions(system, work, state)
@@ -69,7 +77,12 @@ contains
       call search(system, load, work, state, error)
       if (.not. allocated(error)) then
          work%several = work%turns_back(system)
-         if (work%several) call take_forward(system, load, work, state)
+         if (.not. work%several) return
+         ! The path of states turns back here; one at which it goes on is better, where it is found.
+         forward = state
+         call follow_lemke_path(system, load, work, forward, failure)
+         if (.not. allocated(failure)) call work%solve_set(system, load, forward, failure)
+         if (.not. allocated(failure)) state = forward
          return
       end if
       state = guess
@@ -80,23 +93,6 @@ contains
          if (.not. allocated(error)) call work%solve_set(system, load, state, error)
       end if
    end subroutine find_state
-
-   !> Takes, in place of a state at which the path of states turns back, one at which it goes on,
-   !> where it can be found.
-   subroutine take_forward(system, load, work, state)
-      type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: load(:)
-      type(contact_workspace_type), intent(inout) :: work
-      type(contact_state_type), intent(inout) :: state
-      type(contact_state_type) :: forward
-      type(error_type), allocatable :: error
-
-      forward = state
-      call follow_lemke_path(system, load, work, forward, error)
-      if (allocated(error)) return
-      call work%solve_set(system, load, forward, error)
-      if (.not. allocated(error)) state = forward
-   end subroutine take_forward
 
    !> Corrects the active set until nothing violates its condition.
    !> Errors: as solve_set; the sets do not settle.
@@ -248,23 +244,6 @@ contains
       force_rounding = max(1.0e-12_dp*maxval(abs(state%force)), 1.0e-13_dp*work%largest_term, &
          work%least_force(system)) + tiny(1.0_dp)
    end function force_rounding
-
-   !> Sets work%idle for a state that satisfies all conditions. No force is left of idle contact
-   !> points, and none of any closed contact point is negative.
-   subroutine find_idle_points(system, load, rounding, work, state)
-      type(contact_system_type), intent(in) :: system     ! the reduced system
-      real(dp), intent(in) :: load(:)                     ! (tail) c [force]
-      real(dp), intent(in) :: rounding                    ! of the contact forces [force]
-      type(contact_workspace_type), intent(inout) :: work ! as it was solved last
-      type(contact_state_type), intent(inout) :: state    ! solution
-
-      work%idle = state%contact_state /= contact_open .and. state%force <= rounding
-      if (any(work%idle)) call keep_unloaded(system, load, work, state, work%idle)
-      where (state%force <= 0.0_dp .or. work%idle)
-         state%force = 0.0_dp
-         state%shear_force = 0.0_dp
-      end where
-   end subroutine find_idle_points
 
    !> Of the contact points given, keeps those that hinder a motion which no load drives once they
    !> are open.

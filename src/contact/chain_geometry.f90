@@ -156,31 +156,23 @@ contains
       slope = matmul(x, side_slope(size(x, 2), 2*(node - 1.0_dp)/(size(x, 2) - 1) - 1))
    end function slope_at
 
-   !> Direction of a side at one of its nodes. At a tip it is the limit, that of the way to the
-   !> quarter point.
-   pure function direction_at(x, node) result(along)
-      real(dp), intent(in) :: x(:, :)
-      integer, intent(in) :: node
-      real(dp) :: along(2)
-
-      along = slope_at(x, node)
-      if (is_tip(x, node)) along = (x(:, 2) - x(:, node))*(2 - node)
-      along = along/norm2(along)
-   end function direction_at
-
    !> Unit tangents at the nodes along the line; at a shared corner the direction midway.
    pure function chain_tangents(x, side_nodes, closed) result(tangent)
       real(dp), intent(in) :: x(:, :)      !! (2, nodes) the line [length]
       integer, intent(in) :: side_nodes    !! nodes of a side, 2 or 3
       logical, intent(in) :: closed        !! whether it is a closed face
       real(dp) :: tangent(2, size(x, 2))   !! (2, nodes)
+      real(dp) :: along(2)
       integer :: position(side_nodes), node, q, side
 
       tangent = 0.0_dp
       do side = 1, side_total(size(x, 2), side_nodes, closed)
          position = side_positions(side, side_nodes, size(x, 2))
          do q = 1, side_nodes
-            tangent(:, position(q)) = tangent(:, position(q)) + direction_at(x(:, position), q)
+            along = slope_at(x(:, position), q)
+            ! At a tip the limit of the direction counts, that of the way to the quarter point.
+            if (is_tip(x(:, position), q)) along = (x(:, position(2)) - x(:, position(q)))*(2 - q)
+            tangent(:, position(q)) = tangent(:, position(q)) + along/norm2(along)
          end do
       end do
       do node = 1, size(x, 2)

@@ -52,7 +52,15 @@ contains
       call set_geometry(mesh, slave, master, points)
       call check_sides(mesh, definition, slave, master, [first, last], error)
       if (allocated(error)) return
-      points%at_corner = one_goes_on(mesh, slave, master)
+      if (.not. (slave%closed .or. master%closed)) then
+         ! One face may end at a corner of its body where the other goes on, as a punch on a wider
+         ! body: judged by the outlines beyond the lines.
+         associate (s => slave%nodes([1, size(slave%nodes)]), &
+            m => master%nodes([1, size(slave%nodes)]))
+            points%at_corner = [(body_angle(mesh, s(k)) > going_on .neqv. &
+               body_angle(mesh, m(k)) > going_on, k=1, 2)]
+         end associate
+      end if
       points%side_nodes = slave%side_nodes
       points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       call keep_points([(k, k=first, last)], points)
@@ -142,6 +150,7 @@ contains
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
       type(surface_chain_type) :: slave, master
+      logical :: in_set(size(mesh%node_number))
 
       associate (slave_surface => mesh%surfaces(definition%slave), &
          master_surface => mesh%surfaces(definition%master))
@@ -157,26 +166,15 @@ contains
       if (allocated(error)) return
       call find_points(mesh, definition, slave, master, thickness, points, error)
       if (allocated(error)) return
-      if (definition%adjusts) call close_gaps(mesh, definition, points)
-      if (definition%has_clearance) points%initial_gap = definition%clearance
-   end subroutine make_contact_points
-
-   !> Contact points that start without a gap: those up to a distance, overlaps among them, or those
-   !> whose slave nodes are in a set.
-   pure subroutine close_gaps(mesh, definition, points)
-      type(mesh_type), intent(in) :: mesh
-      type(contact_definition_type), intent(in) :: definition
-      type(contact_points_type), intent(inout) :: points
-      logical :: in_set(size(mesh%node_number))
-
-      if (definition%adjusted_set == 0) then
+      if (definition%adjusts .and. definition%adjusted_set == 0) then
          where (points%initial_gap <= definition%adjusted) points%initial_gap = 0.0_dp
-      else
+      else if (definition%adjusts) then
          in_set = .false.
          in_set(mesh%node_sets(definition%adjusted_set)%members) = .true.
          where (in_set(points%slave)) points%initial_gap = 0.0_dp
       end if
-   end subroutine close_gaps
+      if (definition%has_clearance) points%initial_gap = definition%clearance
+   end subroutine make_contact_points
 
    !> The contact points of two lines that run the same way.
    subroutine find_points(mesh, definition, slave, master, thickness, points, error)
@@ -222,23 +220,6 @@ contains
       call set_mortar_points(mesh, slave, master, thickness, points)
       call check_covered(mesh, definition, slave, master, size(points%slave), error)
    end subroutine find_points
-
-   !> Whether one face ends at a corner of its body and the other goes on, as a punch on a wider
-   !> body, at the first and at the last nodes of two lines: judged by the outlines beyond them.
-   pure function one_goes_on(mesh, slave, master) result(at_corner)
-      type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(in) :: slave, master   ! of equally many nodes
-      logical :: at_corner(2)
-      integer :: ends(2), i
-
-      at_corner = .false.
-      if (slave%closed .or. master%closed) return
-      ends = [1, size(slave%nodes)]
-      do i = 1, 2
-         at_corner(i) = body_angle(mesh, slave%nodes(ends(i))) > going_on .neqv. &
-            body_angle(mesh, master%nodes(ends(i))) > going_on
-      end do
-   end function one_goes_on
 
    !> Angle that the elements at a corner fill.
    pure real(dp) function body_angle(mesh, node)

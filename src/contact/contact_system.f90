@@ -34,7 +34,7 @@
 !>
 !> What is solved with it, and what of it changes, is in contact_workspace.
 !>
-!> What a single contact point does is here too: its contact states, Coulomb's law, eq. (1.6), with a
+!> What a single contact point does is here too: contact states, Coulomb's law, eq. (1.6), with a
 !> largest friction, in increments, and the law of one that closes within an increment.
 module contact_system
    use dense, only: least_squares, null_space, product_of

@@ -139,14 +139,21 @@ contains
       call self%factor_set(system, state, error)
       if (allocated(error)) return
       d = 0.0_dp
+      residual = 0.0_dp
       do k = 1, size(state%contact_state)
          if (state%contact_state(k) == contact_open) cycle
          d(system%normal(k)) = self%initial_gap(k)
-         if (system%tangent(k) == 0 .or. state%contact_state(k) /= contact_stick) cycle
-         d(system%tangent(k)) = start_of_slip(self, state, k)
+         if (system%tangent(k) == 0) cycle
+         if (state%contact_state(k) == contact_stick) then
+            d(system%tangent(k)) = start_of_slip(self, state, k)
+         else if (is_capped(state%direction(k))) then
+            ! The friction is the largest whatever the pressure.
+            residual(system%tangent(k), 1) = slip_force(state%direction(k), self%friction(k), &
+               0.0_dp)
+         end if
       end do
       call find_forces(self, system, d, lambda)
-      residual(:, 1) = load + capped_forces(self, system, state) - lambda
+      residual(:, 1) = load + residual(:, 1) - lambda
       call self%solve_free(residual, unbalanced)
       d(self%rows%free) = d(self%rows%free) + residual(self%rows%free, 1)
       if (size(self%unconstrained, 2) > 0) then
@@ -205,22 +212,6 @@ contains
 
       start_of_slip = merge(self%closing(k)%start, state%reference(k), self%closing(k)%acts)
    end function start_of_slip
-
-   !> Friction that is the largest whatever the pressure.
-   pure function capped_forces(self, system, state) result(lambda)
-      type(contact_workspace_type), intent(in) :: self
-      type(contact_system_type), intent(in) :: system
-      type(contact_state_type), intent(in) :: state
-      real(dp) :: lambda(size(system%schur, 1))
-      integer :: k
-
-      lambda = 0.0_dp
-      do k = 1, size(state%contact_state)
-         if (state%contact_state(k) /= contact_slip .or. .not. is_capped(state%direction(k))) cycle
-         if (system%tangent(k) > 0) lambda(system%tangent(k)) = slip_force(state%direction(k), &
-            self%friction(k), state%force(k))
-      end do
-   end function capped_forces
 
    !> S d, with the soft hold.
    pure subroutine find_forces(self, system, d, lambda, terms)

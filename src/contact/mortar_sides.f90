@@ -191,18 +191,6 @@ contains
       is_plain = norm2(2*x(:, 2) - x(:, 1) - x(:, 3)) <= beside*norm2(x(:, 3) - x(:, 1))
    end function is_plain
 
-   !> How far a point lies beside the normal at a point of a side.
-   pure real(dp) function beside_normal(side, xi, x)
-      type(slave_side_type), intent(in) :: side
-      real(dp), intent(in) :: xi              !! coordinate of the side
-      real(dp), intent(in) :: x(2)            !! the point [length]
-      real(dp) :: psi(size(side%nodes))
-
-      psi = side_shape(size(psi), xi)
-      beside_normal = sum(beside_line(matmul(side%normal, psi), matmul(side%x, psi), &
-         reshape(x, [2, 1])))
-   end function beside_normal
-
    !> How far points lie beside a line through a point.
    pure function beside_line(direction, point, x) result(beside)
       real(dp), intent(in) :: direction(2)    !! of the line
@@ -218,9 +206,10 @@ contains
    pure function opposite_coordinate(side, x, at_ends) result(xi)
       type(slave_side_type), intent(in) :: side
       real(dp), intent(in) :: x(2)            !! the point [length]
-      real(dp), intent(in) :: at_ends(2)      !! beside_normal at the side's ends, of opposite signs
+      !> how far it lies beside the normals at the side's ends, of opposite signs
+      real(dp), intent(in) :: at_ends(2)
       real(dp) :: xi
-      real(dp) :: before, ends(2), value, values(2)
+      real(dp) :: before, ends(2), psi(size(side%nodes)), value, values(2)
       integer :: step
 
       ends = [-1.0_dp, 1.0_dp]
@@ -229,7 +218,8 @@ contains
       do step = 1, most_steps
          before = xi
          xi = (ends(1)*values(2) - ends(2)*values(1))/(values(2) - values(1))
-         value = beside_normal(side, xi, x)
+         psi = side_shape(size(psi), xi)
+         value = sum(beside_line(matmul(side%normal, psi), matmul(side%x, psi), reshape(x, [2, 1])))
          if (abs(value) <= 0.0_dp .or. abs(xi - before) <= epsilon(xi)) exit
          if (value*values(2) < 0.0_dp) then
             ends(1) = ends(2)
