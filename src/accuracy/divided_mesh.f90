@@ -298,7 +298,7 @@ contains
       integer :: i
 
       if (.not. allocated(bodies%equilibrium%rank)) return
-      nodes = bodies%mechanical%leading_nodes()
+      nodes = bodies%mechanical%map%leading_nodes()
       if (size(nodes) /= size(bodies%equilibrium%rank)) return
       node_rank = huge(1)
       node_rank(nodes) = bodies%equilibrium%rank

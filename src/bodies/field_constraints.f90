@@ -282,11 +282,19 @@ contains
       type(tie_points_type), intent(in) :: ties
       logical, intent(in) :: held(:)                !! (dofs) prescribed values
       type(constraint_rows_type), intent(inout) :: rows
-      logical :: determined(ties%difference%count), shared(size(held)/rows%components)
+      logical :: determined(ties%difference%count)
+      logical :: shared(size(held)/rows%components) ! whether several ties act on a node
       integer :: owner(ties%difference%count)
-      integer :: c, k, slave_dof, master_dof
+      integer :: c, first(size(shared)), k, slave_dof, master_dof
 
-      shared = in_several(ties, size(shared))
+      shared = .false.
+      first = 0
+      do k = 1, size(determined)
+         associate (own => ties%difference%values_of(k))
+            shared(own) = shared(own) .or. (first(own) > 0 .and. first(own) /= ties%tie(k))
+            first(own) = ties%tie(k)
+         end associate
+      end do
       do c = 1, rows%components
          associate (of_component => held(c::rows%components))
             do k = 1, size(determined)
@@ -307,23 +315,6 @@ contains
          end do
       end do
    end subroutine add_ties
-
-   !> Nodes that several ties act on.
-   pure function in_several(ties, nodes) result(several)
-      type(tie_points_type), intent(in) :: ties
-      integer, intent(in) :: nodes
-      logical :: several(nodes)
-      integer :: first(nodes), k
-
-      several = .false.
-      first = 0
-      do k = 1, ties%difference%count
-         associate (own => ties%difference%values_of(k))
-            several(own) = several(own) .or. (first(own) > 0 .and. first(own) /= ties%tie(k))
-            first(own) = ties%tie(k)
-         end associate
-      end do
-   end function in_several
 
    !> The point whose row takes each point's hat function: its own, or the nearest one of the same
    !> tie along the face that is not determined.

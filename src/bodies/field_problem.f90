@@ -45,7 +45,6 @@ module field_problem
       integer :: numbering = 0                                !! which numbering, counted
    contains
       procedure :: matrix_of_unknowns
-      procedure :: leading_nodes
    end type field_problem_type
 
    !> Factors of a problem, its unknowns condensed on the tail.
@@ -159,7 +158,7 @@ contains
             allocate (skyline_solver_type :: self%solver)
          end if
          if (allocated(node_rank) .and. .not. allocated(self%rank)) then
-            self%rank = node_rank(problem%leading_nodes())
+            self%rank = node_rank(problem%map%leading_nodes())
          end if
          call self%solver%analyse(lower, problem%map%tail, self%rank, error)
       end if
@@ -195,15 +194,6 @@ contains
          end if
       end associate
    end function matrix_of_unknowns
-
-   !> Nodes of the leading unknowns.
-   pure function leading_nodes(self) result(node)
-      class(field_problem_type), intent(in) :: self
-      integer, allocatable :: node(:)                     !! (leading)
-
-      node = self%map%nodes_of_unknowns()
-      node = node(:self%map%equations - self%map%tail)
-   end function leading_nodes
 
    !> The load of an increment.
    pure function load_of(self, problem, forces, given) result(load)

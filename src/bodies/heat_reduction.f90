@@ -327,7 +327,7 @@ contains
       motion = mechanical%matrix_of_unknowns(nothing)
       associate (h => thermal%map%equations, m => mechanical%map%equations)
          associate (h_leads => h - thermal%map%tail, m_leads => m - mechanical%map%tail)
-            node = [thermal%leading_nodes(), mechanical%leading_nodes()]
+            node = [thermal%map%leading_nodes(), mechanical%map%leading_nodes()]
             graph = linear_combination(1.0_dp, adjacency(heat, node(:h_leads)), &
                1.0_dp, adjacency(motion, node(h_leads + 1:)))
             of_heat = [(i, i=1, h_leads), (m_leads + i, i=h_leads + 1, h)]

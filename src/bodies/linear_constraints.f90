@@ -50,7 +50,7 @@ module linear_constraints
       procedure :: link_stiffness
       procedure :: transform
       procedure :: between
-      procedure :: nodes_of_unknowns
+      procedure :: leading_nodes
       procedure :: tail_index
       procedure :: is_linked
       procedure :: is_given
@@ -199,20 +199,21 @@ contains
       coupling = between_spaces(terms(self), matrix, terms(other))
    end function between
 
-   !> The first node that each unknown moves, or whose temperature it changes; the first of all
-   !> where there is none, as for forces of links.
-   pure function nodes_of_unknowns(self) result(node)
+   !> The first node that each leading unknown moves, or whose temperature it changes; the first of
+   !> all where there is none.
+   pure function leading_nodes(self) result(node)
       class(linear_constraints_type), intent(in) :: self
-      integer :: node(self%equations)
+      integer, allocatable :: node(:)               !! (leading)
       integer :: dof
 
-      node = 1
+      allocate (node(self%equations), source=1)
       associate (by => self%by_unknowns)
          do dof = by%count, 1, -1
             node(by%value(by%start(dof):by%start(dof + 1) - 1)) = (dof - 1)/self%components + 1
          end do
       end associate
-   end function nodes_of_unknowns
+      node = node(:self%equations - self%tail)
+   end function leading_nodes
 
    !> The links in the lower triangle of the matrix on the unknowns.
    pure function links(self, stiffness) result(lower)

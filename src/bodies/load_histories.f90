@@ -109,10 +109,10 @@ contains
       self%target(i) = self%rest(i)
    end subroutine fade
 
-   !> Ends a load at once: what it prescribed is free.
+   !> Ends loads at once: what they prescribed is free.
    pure subroutine remove(self, i)
       class(load_history_type), intent(inout) :: self
-      integer, intent(in) :: i                       !! number of the load
+      integer, intent(in) :: i(:)                    !! numbers of the loads
 
       self%active(i) = self%permanent(i)
       self%amplitude(i) = 0

@@ -104,12 +104,8 @@ contains
       call self%temperature%begin_step(temperature)
       call self%applied%begin_step(values_at(self%locations, temperature))
       if (step%ends_boundaries) then
-         do i = 1, size(displacement)
-            call self%displacement%remove(i)
-         end do
-         do i = 1, size(temperature)
-            call self%temperature%remove(i)
-         end do
+         call self%displacement%remove([(i, i=1, size(displacement))])
+         call self%temperature%remove([(i, i=1, size(temperature))])
       end if
       do i = 1, size(step%boundaries)
          associate (card => step%boundaries(i))
@@ -133,11 +129,8 @@ contains
       integer :: i
 
       call self%interference%begin_step(0.0_dp*self%interference%value)
-      if (step%changes%ends_interferences) then
-         do i = 1, size(self%shrinks)
-            call self%interference%remove(i)
-         end do
-      end if
+      if (step%changes%ends_interferences) call self%interference%remove([(i, i=1, &
+         size(self%shrinks))])
       if (.not. allocated(step%changes%interferences)) return
       do i = 1, size(step%changes%interferences)
          associate (given => step%changes%interferences(i))
@@ -169,7 +162,7 @@ contains
          if (given(i)) cycle
          associate (kind => self%locations(i)%kind)
             if (kind == load_temperature .and. step%analysis /= analysis_static) then
-               call self%applied%remove(i)
+               call self%applied%remove([i])
             else if (self%applied%active(i) .and. (ends .or. step%ends_loads(kind)) .and. &
                kind /= load_film_sink) then
                call self%applied%fade(i)

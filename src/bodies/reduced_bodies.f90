@@ -54,7 +54,6 @@ module reduced_bodies
       procedure :: assemble_steps
       procedure :: assemble
       procedure :: reduce
-      procedure :: release
    end type reduced_bodies_type
 
 contains
@@ -231,12 +230,5 @@ contains
       if (with_heat) call self%thermal%set_matrix(assemble_conduction(model%mesh, model%sections, &
          model%materials, model%orientations))
    end subroutine assemble
-
-   !> Frees the factors.
-   subroutine release(self)
-      class(reduced_bodies_type), intent(inout) :: self
-
-      call self%equilibrium%release()
-   end subroutine release
 
 end module reduced_bodies

@@ -141,15 +141,10 @@ contains
       logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
       integer, intent(in) :: step                   !! the step, for its films
       type(string_type), allocatable, intent(out) :: messages(:)
-      integer :: i
 
       call find_undetermined(model, points, with_source(model, held, step), held, &
          laws%conductance%open_kind /= law_none .or. laws%conductance%closed_kind /= law_none, &
-         messages)
-      do i = 1, size(messages)
-         messages(i)%value = messages(i)%value//': no *BOUNDARY on dof 11, no *FILM and no '// &
-            'contact that conducts heat fixes it'
-      end do
+         ': no *BOUNDARY on dof 11, no *FILM and no contact that conducts heat fixes it', messages)
    end subroutine undetermined_in_step
 
    !> Bodies whose temperature the conductances of an instant leave undetermined, in one message;
@@ -164,8 +159,8 @@ contains
       type(string_type), allocatable :: messages(:)
 
       call find_undetermined(model, points, with_source(model, held, step), held, conducts, &
-         messages)
-      words = joined(messages, ': all its contact points have conductance 0')
+         ': all its contact points have conductance 0', messages)
+      words = joined(messages)
    end function undetermined_now
 
    !> Bodies whose temperature nothing determines beside some nodes, even if all contact points
@@ -181,32 +176,32 @@ contains
       has_source = .false.
       has_source(pack(model%mesh%node_body, determined .and. model%mesh%node_body > 0)) = .true.
       call find_undetermined(model, points, has_source, determined, &
-         spread(.true., 1, size(points%slave)), messages)
-      words = joined(messages, '')
+         spread(.true., 1, size(points%slave)), '', messages)
+      words = joined(messages)
    end function undetermined_beside
 
-   !> Messages in one, each with an ending.
-   pure function joined(messages, ending) result(words)
+   !> Messages in one.
+   pure function joined(messages) result(words)
       type(string_type), intent(in) :: messages(:)
-      character(*), intent(in) :: ending
       character(:), allocatable :: words
       integer :: i
 
       words = ''
       do i = 1, size(messages)
          if (i > 1) words = words//'; '
-         words = words//messages(i)%value//ending
+         words = words//messages(i)%value
       end do
    end function joined
 
    !> Bodies whose temperature, uniform in each, is left free by the sources of heat, by conducting
    !> contact points and ties, which make that of two bodies equal, and by the equations.
-   subroutine find_undetermined(model, points, has_source, held, conducts, messages)
+   subroutine find_undetermined(model, points, has_source, held, conducts, ending, messages)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points
       logical, intent(in) :: has_source(:)          ! (bodies)
       logical, intent(in) :: held(:)                ! (nodes) prescribed temperatures
       logical, intent(in) :: conducts(:)
+      character(*), intent(in) :: ending            ! of each message
       type(string_type), allocatable, intent(out) :: messages(:)
       logical :: joined(0:size(has_source), 0:size(has_source))
       real(dp), allocatable :: rows(:, :), free(:, :)
@@ -232,7 +227,7 @@ contains
       allocate (messages(0))
       do body = 1, size(has_source)
          if (any(abs(free(body, :)) > negligible)) call append(messages, 'the temperature of '// &
-            body_name(model, body)//' is undetermined')
+            body_name(model, body)//' is undetermined'//ending)
       end do
 
    contains

@@ -9,7 +9,7 @@ module contact_pairs
    use element_kinds, only: axisymmetric, element_corner_count
    use errors, only: error_type, set_error, status_deck
    use interface_checks, only: blame_corner, check_corner, check_covered, check_folds, &
-      check_opposite, check_shared, check_sides, check_weights, compare_lines
+      check_opposite, check_shared, check_sides, compare_lines
    use interface_warnings, only: mismatch_of_pairs
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
@@ -64,8 +64,13 @@ contains
       points%side_nodes = slave%side_nodes
       points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       call keep_points([(k, k=first, last)], points)
-      call check_weights(mesh, definition%title(), points%slave, points%weight, error)
-      if (allocated(error)) return
+      ! 0 is the weight of a corner on the axis or at the tip of quarter points.
+      if (.not. all(points%weight >= 0.0_dp)) then
+         call set_error(error, status_deck, definition%title()//': no length of the face '// &
+            'belongs to slave node '//to_text(mesh%node_number(points%slave(minloc( &
+            points%weight, dim=1))))//'; its midside nodes are too far from the middle')
+         return
+      end if
       points%difference = differences(points%slave, points%master)
       points%slave_mean = single_values(points%slave)
       points%master_mean = single_values(points%master)

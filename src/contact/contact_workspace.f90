@@ -14,7 +14,6 @@ module contact_workspace
    private
    public :: contact_workspace_type, relief_type
 
-   real(dp), parameter :: rounding = 1.0e-12_dp !! of the forces that a load is condensed of
    !> Part of the rounding of coordinates: a load that moves a contact point no farther is a
    !> remainder of loads that were taken off.
    real(dp), parameter :: unresolved = 1.0e-3_dp
@@ -59,7 +58,6 @@ module contact_workspace
       procedure :: solve_free
       procedure :: stiffness
       procedure :: turns_back
-      procedure :: least_force
       procedure :: slip
       procedure :: factor_set
       procedure :: factor_rows
@@ -365,16 +363,6 @@ contains
       stiffness = system%schur(tail_rows, tail_rows) + &
          matmul(system%schur(tail_rows, self%rows%free), response(self%rows%free, :))
    end function stiffness
-
-   !> Force that rounding leaves of what the load is made of, and of coordinates.
-   pure real(dp) function least_force(self, system)
-      class(contact_workspace_type), intent(in) :: self  !! scale of the load
-      type(contact_system_type), intent(in) :: system    !! the reduced system
-      integer :: i
-
-      least_force = rounding*self%load_scale + system%least_length* &
-         maxval([0.0_dp, (system%schur(i, i), i=1, size(system%schur, 1))])
-   end function least_force
 
    !> Whether the set factored last turns the path of contact states back: its determinant is
    !> negative, which needs friction. The signs at all states under one load add up to one, so that

@@ -10,7 +10,7 @@ module interface_checks
    use text, only: to_text
    implicit none
    private
-   public :: check_folds, check_shared, compare_lines, check_sides, check_weights, check_opposite
+   public :: check_folds, check_shared, compare_lines, check_sides, check_opposite
    public :: check_corner, check_covered, blame_corner
 
    !> Cosine between outward normals from which on faces look the same way: curved faces that part
@@ -242,22 +242,6 @@ contains
          return
       end do
    end function sharp_corner
-
-   !> No node has a negative weight; 0 is that of a corner on the axis or at the tip of quarter
-   !> points.
-   subroutine check_weights(mesh, title, slave, weight, error)
-      type(mesh_type), intent(in) :: mesh
-      character(*), intent(in) :: title                   !! what the interface is called
-      integer, intent(in) :: slave(:)                     !! (m) slave nodes
-      real(dp), intent(in) :: weight(:)                   !! (m) [length^2]
-      type(error_type), allocatable, intent(out) :: error !! the node with the smallest weight
-
-      if (all(weight >= 0.0_dp)) return
-      call set_error(error, status_deck, title// &
-         ': no length of the face belongs to slave node '// &
-         to_text(mesh%node_number(slave(minloc(weight, dim=1))))// &
-         '; its midside nodes are too far from the middle')
-   end subroutine check_weights
 
    !> Refuses a contact point whose tangential offset exceeds half of its element's edge or of its
    !> gap.

@@ -25,46 +25,26 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points    !! node pairs of one interface
       character(:), allocatable :: reason                !! empty where all lie opposite
-      real(dp) :: offset(size(points%edge)), part(size(points%edge))
+      real(dp) :: part(size(points%edge))
       integer :: k
 
+      call find_offsets(mesh, points, part, reason)
+      if (any(part > small_offset)) return
       reason = ''
-      call find_offsets(mesh, points, offset, part)
-      if (any(part > small_offset)) then
-         k = farthest(part)
-         reason = offset_words(mesh, points, offset(k), part(k), k)
-      else if (any(norm2(points%tangent, dim=1) <= 0.5_dp)) then
+      if (any(norm2(points%tangent, dim=1) <= 0.5_dp)) then
          k = minloc(norm2(points%tangent, dim=1), dim=1)
          reason = nodes_of(mesh, points, k)//' have no common normal'
       end if
    end function mismatch_of_pairs
 
-   !> The first of those that are largest but for rounding.
-   pure integer function farthest(part)
-      real(dp), intent(in) :: part(:)
-
-      farthest = findloc(part >= (1.0_dp - rounding)*maxval(part), .true., dim=1)
-   end function farthest
-
-   pure function offset_words(mesh, points, offset, part, k) result(words)
-      type(mesh_type), intent(in) :: mesh
-      type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: offset, part
-      integer, intent(in) :: k
-      character(:), allocatable :: words
-
-      words = nodes_of(mesh, points, k)//' are offset by '//to_text(offset)//', '// &
-         percent(part)//' of the node spacing'
-   end function offset_words
-
    !> How far the nodes lie beside each other. Offsets up to half the gap, as of curved faces that
    !> part far from the contact, count as none in the node spacing.
-   pure subroutine find_offsets(mesh, points, offset, part)
+   pure subroutine find_offsets(mesh, points, part, words)
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points
-      real(dp), intent(out) :: offset(:)                 ! (m) [length]
       real(dp), intent(out) :: part(:)                   ! (m) of the node spacing
-      real(dp) :: apart(2)
+      character(:), allocatable, intent(out) :: words    ! says where they lie farthest
+      real(dp) :: apart(2), offset(size(part))           ! [length]
       integer :: k
 
       do k = 1, size(offset)
@@ -74,6 +54,11 @@ contains
          part(k) = offset(k)/(points%edge(k)/(points%side_nodes - 1))
          if (offset(k) <= 0.5_dp*abs(normal_distance(mesh, points, k))) part(k) = 0.0_dp
       end do
+      words = ''
+      ! The first of those that are largest but for rounding.
+      k = findloc(part >= (1.0_dp - rounding)*maxval(part), .true., dim=1)
+      if (k > 0) words = nodes_of(mesh, points, k)//' are offset by '//to_text(offset(k))// &
+         ', '//percent(part(k))//' of the node spacing'
    end subroutine find_offsets
 
    !> Names the node pair whose nodes lie farthest beside each other, as a part of the node spacing.
@@ -81,16 +66,15 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points    !! contact points of one interface
       character(:), allocatable :: warning               !! empty where all lie opposite
-      real(dp) :: offset(size(points%edge)), part(size(points%edge))
-      integer :: k
+      character(:), allocatable :: words
+      real(dp) :: part(size(points%edge))
 
       warning = ''
       if (points%pairing /= pairing_nodes) return
-      call find_offsets(mesh, points, offset, part)
+      call find_offsets(mesh, points, part, words)
       if (count(part > small_offset) == 0) return
-      k = farthest(part)
-      warning = 'contact pair '//points%name//': '//offset_words(mesh, points, offset(k), &
-         part(k), k)//' (contact points with more than '//percent(small_offset)//': '// &
+      warning = 'contact pair '//points%name//': '//words// &
+         ' (contact points with more than '//percent(small_offset)//': '// &
          to_text(count(part > small_offset))//'); their contact forces are not in one line, '// &
          'and a moment of force times offset is lost; put the nodes opposite each other '// &
          'or take PAIRING=SURFACES'

@@ -337,7 +337,7 @@ contains
    subroutine release(self)
       class(simulation_type), intent(inout) :: self   !! the run
 
-      call self%bodies%release()
+      call self%bodies%equilibrium%release()
       call self%heat%release()
    end subroutine release
 
