@@ -48,7 +48,7 @@ contains
       class(loads_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       real(dp), allocatable :: zero(:)
-      integer :: e, q, s
+      integer :: e, node, q, s
 
       allocate (zero(2*size(model%mesh%node_number)), source=0.0_dp)
       call self%displacement%prepare(zero, model%amplitudes)
@@ -57,8 +57,8 @@ contains
          do e = 1, size(mesh%element_number)
             if (mesh%element_plane(e) /= axisymmetric) cycle
             do q = 1, element_node_count(mesh%element_kind(e))
-               if (mesh%coordinates(1, mesh%element_nodes(q, e)) <= 0.0_dp) &
-                  permanent(2*mesh%element_nodes(q, e) - 1) = .true.
+               node = mesh%element_nodes(q, e)
+               if (mesh%coordinates(1, node) <= 0.0_dp) permanent(2*node - 1) = .true.
             end do
          end do
          self%displacement%active = permanent
