@@ -4,9 +4,9 @@
 !> that the run reads is written.
 module divided_mesh
    use connections, only: connections_type
-   use companion_steps, only: implicit_state, implicit_step
    use contact_system, only: contact_open
    use controls, only: method_anderson
+   use doubled_increments, only: implicit_state, implicit_step
    use element_kinds, only: element_node_count
    use equations, only: equation_nodes
    use errors, only: error_type

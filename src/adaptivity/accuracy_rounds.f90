@@ -1,7 +1,7 @@
 !> The rounds of a requested accuracy: what each found at the ends of its steps.
 !>
 !> The bounds are those of the error estimator. Where it knows nothing of the mesh, every round
-!> divides both faces (`round_indicators`), and the larger one of the last two changes from round to
+!> divides both faces (`adaptive_rounds`), and the larger one of the last two changes from round to
 !> round is the bound: one change can be small by chance. A pressure that has no limit has no bound
 !> whatever the changes are, and where it is at a corner, no round is spent on it.
 module accuracy_rounds

@@ -1,19 +1,34 @@
 !> The rounds of a requested accuracy: each solves a variation of the deck and bounds its errors;
 !> the next one divides elements and shortens increments where these are too large. A run without a
 !> request is one round, and so is a row of a trade-off study.
+!>
+!> Elements are divided where the energy norm of the error that recovery finds in stress and heat
+!> flux (Zienkiewicz & Zhu) is largest, each body and field counted by its relative error (the
+!> marking of Doerfler, SIAM J. Numer. Anal. 33 (1996) 1106), and near the edges of zones, where the
+!> fields of the interface have roots: each time those that are left there, so that their size falls
+!> with the distance. For the peak pressure errors count by their influence on it: the field of a
+!> point force falls as 1/r, what an element cannot represent of it as 1/r^4.
 module adaptive_rounds
-   use accuracy_rounds, only: accuracy_rounds_type
-   use error_estimator, only: error_estimator_type
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use accuracy_rounds, only: accuracy_rounds_type, finding_type
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: estimated
+   use contact_system, only: contact_open
+   use element_kinds, only: element_corner_count
+   use error_estimator, only: error_estimator_type, largest_part, squared_errors
    use errors, only: error_type
    use increments, only: simulation_type
+   use interface_quantities, only: closed_length, point_before
    use kinds, only: dp
+   use local_refinement, only: elements_at_surfaces
+   use mesh, only: mesh_type
    use model, only: model_type
-   use records, only: increment_record_type
-   use round_indicators, only: round_indicators_type
-   use variations, only: variation_type
+   use quantity_types, only: quantity_type
+   use records, only: contact_record_type, increment_record_type
+   use variations, only: marked_elements_type, variation_type
    implicit none
    private
-   public :: adaptive_rounds_type, increment_taker_type, round_solver_type
+   public :: adaptive_rounds_type, increment_taker_type, round_solver_type, round_indicators_type
 
    !> The rounds so far, and the variation of the present one.
    type :: adaptive_rounds_type
@@ -55,6 +70,24 @@ module adaptive_rounds
          type(adaptive_rounds_type), intent(inout) :: rounds
       end subroutine solve_round
    end interface
+
+   real(dp), parameter :: marked = 0.8_dp       !! part of the squared error that is marked
+   real(dp), parameter :: far = 16.0_dp         !! bound over target that takes two divisions
+   real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
+   real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
+   integer, parameter :: most_levels = 2        !! divisions at an edge in one round
+   integer, parameter :: most_halvings = 2      !! of the increments in one round
+
+   !> What the ends of the steps of a round ask for.
+   type :: round_indicators_type
+      private
+      type(marked_elements_type) :: division           !! of the elements
+      integer :: halvings = 0                   !! of the increments
+   contains
+      procedure :: start
+      procedure :: take
+      procedure :: add_to
+   end type round_indicators_type
 
 contains
 
@@ -123,10 +156,170 @@ contains
          round%elements = size(model%mesh%element_kind)
          round%cpu_seconds = now - self%cpu_start
       end associate
-      call self%accuracy%conclude(model%accuracy%rounds, indicators%asks_for_nothing())
+      ! Whether no other mesh and no other increments would help, is the last argument.
+      call self%accuracy%conclude(model%accuracy%rounds, indicators%halvings == 0 .and. &
+         size(indicators%division%point_levels) == 0 .and. &
+         .not. any(indicators%division%levels > 0))
       if (.not. self%accuracy%goes_on) return
       if (.not. allocated(self%variation)) allocate (self%variation)
       call indicators%add_to(self%variation)
    end subroutine end_round
+
+   !> Starts a round.
+   subroutine start(self, model)
+      class(round_indicators_type), intent(out) :: self
+      type(model_type), intent(in) :: model
+
+      allocate (self%division%levels(size(model%mesh%element_kind)), source=0)
+      allocate (self%division%points(2, 0), self%division%point_levels(0))
+   end subroutine start
+
+   !> Takes the end of a step, whose findings the last round has.
+   subroutine take(self, model, interfaces, rounds, record)
+      class(round_indicators_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(accuracy_rounds_type), intent(in) :: rounds
+      type(increment_record_type), intent(in) :: record
+      type(finding_type) :: finding
+      real(dp) :: weight(size(self%division%levels))
+      integer :: d, levels
+
+      do d = 1, size(rounds%demands)
+         finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
+         if (finding%is_met() .or. finding%is_at_corner) cycle
+         self%halvings = max(self%halvings, halvings_for(finding))
+         levels = 1
+         if (.not. ieee_is_nan(finding%mesh)) then
+            ! Not where the mesh leaves the increments half of the target.
+            if (finding%mesh <= 0.5_dp*finding%allowed) cycle
+            if (finding%mesh > far*finding%allowed) levels = 2
+         end if
+         associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity, &
+            of_elements => self%division%levels)
+            ! Where no error of the mesh is known, the change by sides of half the size tells it.
+            if (ieee_is_nan(record%errors(i)%mesh(q))) where (elements_at_surfaces(model%mesh, &
+               [model%contacts(i)%slave, model%contacts(i)%master])) of_elements = &
+               max(of_elements, 1)
+            call mark_edges(self, interfaces(i), edges_for(q, interfaces(i), record%contacts(i)), &
+               max(levels, levels_of_edges(interfaces(i), record, i, q, finding%allowed)))
+            weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
+            where (largest_part(weight*squared_errors(model%mesh, record), marked)) &
+               of_elements = max(of_elements, levels)
+         end associate
+      end do
+   end subroutine take
+
+   !> How often the increments are halved: where their part of the bound is the larger one, or
+   !> leaves the mesh less than half of the target.
+   pure integer function halvings_for(finding) result(halvings)
+      type(finding_type), intent(in) :: finding
+
+      halvings = 0
+      if (ieee_is_nan(finding%increment)) then
+         halvings = 1
+      else if (finding%increment > 0.5_dp*finding%allowed) then
+         halvings = min(most_halvings, ceiling(log(2.0_dp*finding%increment/finding%allowed)/ &
+            log(2.0_dp)))
+      end if
+   end function halvings_for
+
+   !> How often the sides at an edge must be divided for its resolution.
+   function levels_of_edges(points, record, i, q, allowed) result(levels)
+      type(contact_points_type), intent(in) :: points
+      type(increment_record_type), intent(in) :: record
+      integer, intent(in) :: i, q
+      real(dp), intent(in) :: allowed
+      type(quantity_type) :: quantity
+      integer :: k, levels, m
+
+      levels = 0
+      quantity = estimated(q)
+      associate (s => points%arc_length, edge => record%errors(i)%value(q))
+         m = size(s)
+         if (.not. quantity%resolution > 0.0_dp .or. m < 2) return
+         k = point_before(s, edge)
+         levels = min(most_levels, max(0, ceiling(log(quantity%resolution*(s(k + 1) - s(k))/ &
+            (part*allowed))/log(2.0_dp))))
+      end associate
+   end function levels_of_edges
+
+   !> The edges near which a quantity errs: those of stick only for what friction decides, and where
+   !> the whole face is closed its ends.
+   pure function edges_for(q, points, contact) result(edges)
+      integer, intent(in) :: q
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+      real(dp), allocatable :: edges(:)
+
+      edges = contact%edges_contact
+      if (all(contact%contact_state /= contact_open)) edges = points%arc_length([1, &
+         size(points%arc_length)])
+      if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
+         [edges, contact%edges_stick]
+   end function edges_for
+
+   !> How much the squared error of each element counts for a quantity.
+   pure function influence(q, mesh, points, contact) result(weight)
+      integer, intent(in) :: q
+      type(mesh_type), intent(in) :: mesh
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+      real(dp) :: weight(size(mesh%element_kind)), length, middle(2)
+      integer :: e, n, peak
+
+      weight = 1.0_dp
+      if (estimated(q)%name /= 'peak_pressure') return
+      peak = maxloc(contact%pressure, dim=1)
+      length = reach*closed_length(contact, points%arc_length)
+      if (length <= 0.0_dp) return
+      do e = 1, size(weight)
+         n = element_corner_count(mesh%element_kind(e))
+         middle = sum(mesh%coordinates(:, mesh%element_nodes(:n, e)), dim=2)/n
+         weight(e) = (1.0_dp + norm2(middle - points%position(:, peak))/length)**(-8)
+      end do
+   end function influence
+
+   !> Marks the edges of zones on both faces, where elements are divided so often.
+   subroutine mark_edges(self, points, edges, levels)
+      class(round_indicators_type), intent(inout) :: self
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: edges(:)
+      integer, intent(in) :: levels
+      real(dp) :: master(2), part_of_side, slave(2)
+      integer :: i, k
+
+      associate (s => points%arc_length, x => points%position, h => points%initial_gap, &
+         n => points%normal)
+         do i = 1, size(edges)
+            if (ieee_is_nan(edges(i)) .or. size(s) < 2) cycle
+            k = point_before(s, edges(i))
+            part_of_side = min(max((edges(i) - s(k))/(s(k + 1) - s(k)), 0.0_dp), 1.0_dp)
+            slave = between(x(:, k), x(:, k + 1), part_of_side)
+            master = slave + between(h(k)*n(:, k), h(k + 1)*n(:, k + 1), part_of_side)
+            self%division%points = reshape([self%division%points, slave, master], &
+               [2, size(self%division%point_levels) + 2])
+            self%division%point_levels = [self%division%point_levels, levels, levels]
+         end do
+      end associate
+   end subroutine mark_edges
+
+   !> The vector that lies between two.
+   pure function between(first, second, part_of_way) result(vector)
+      real(dp), intent(in) :: first(2), second(2), part_of_way
+      real(dp) :: vector(2)
+
+      vector = (1.0_dp - part_of_way)*first + part_of_way*second
+   end function between
+
+   !> Adds the divisions and the increments of the next round to those of the present one.
+   subroutine add_to(self, variation)
+      class(round_indicators_type), intent(in) :: self
+      type(variation_type), intent(inout) :: variation
+
+      variation%increments = variation%increments*0.5_dp**self%halvings
+      if (.not. allocated(variation%divisions)) allocate (variation%divisions(0))
+      variation%divisions = [variation%divisions, self%division]
+   end subroutine add_to
 
 end module adaptive_rounds

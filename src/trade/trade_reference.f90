@@ -2,8 +2,7 @@
 module trade_reference
    use kinds, only: dp
    use reported_quantities, only: traded
-   use trade_study, only: closed_length, is_there, quantity_count, trade_row_type, &
-      trade_type
+   use trade_study, only: closed_length, is_there, quantity_count, trade_row_type, trade_type
    implicit none
    private
    public :: limit_type, extrapolate, state_errors
@@ -72,9 +71,7 @@ contains
                maxval(distance(pack(trade%rows(i)%values, is_of), pack(limits%value, is_of), &
                pack(scales, is_of)))
          end do
-      end do
-      do i = 1, size(trade%rows)
-         trade%rows(i)%worst = maxval(trade%rows(i)%errors)
+         trade%rows%worst = max(trade%rows%worst, trade%rows%errors(q))
       end do
    end subroutine state_errors
 

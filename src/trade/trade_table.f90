@@ -26,6 +26,9 @@ contains
       character(*), intent(in) :: name          !! the deck
       type(trade_type), intent(in) :: trade
       character(68 + 9*(quantity_count + 1)) :: head
+      character(12) :: mesh
+      character(14) :: varied
+      character(68) :: line
       character(:), allocatable :: times
       integer :: i
 
@@ -35,7 +38,16 @@ contains
          '      MB', (trim(traded(i)%head), i=1, quantity_count), 'worst'
       call say(trim(head))
       do i = 1, size(trade%rows)
-         call print_row(i, trade%rows(i))
+         associate (row => trade%rows(i))
+            mesh = mesh_of(row)
+            varied = row%varied
+            write (line, '(i4, 2a, 2x, a, 2x, a6, i7, 2x, a, f9.3, f8.1)') i, &
+               merge('*', ' ', row%is_optimal), merge('=', ' ', row%is_default), mesh, &
+               factor_of(row), row%increments, varied, row%cpu_seconds, row%peak_bytes/megabyte
+            if (row%status == 0) call say(line//columns([row%errors, row%worst]))
+            if (row%status /= 0) call say(line//'  failed ('//to_text(row%status)//'): '// &
+               row%reason)
+         end associate
       end do
       call say('      reference uncertain by'//repeat(' ', 37)//columns(trade%uncertainty))
       call say('')
@@ -64,25 +76,6 @@ contains
 
       call print_line(output_unit, line)
    end subroutine say
-
-   subroutine print_row(number, row)
-      integer, intent(in) :: number
-      type(trade_row_type), intent(in) :: row
-      character(12) :: mesh
-      character(14) :: varied
-      character(68) :: line
-
-      mesh = mesh_of(row)
-      varied = row%varied
-      write (line, '(i4, 2a, 2x, a, 2x, a6, i7, 2x, a, f9.3, f8.1)') number, &
-         merge('*', ' ', row%is_optimal), merge('=', ' ', row%is_default), mesh, factor_of(row), &
-         row%increments, varied, row%cpu_seconds, row%peak_bytes/megabyte
-      if (row%status == 0) then
-         call say(line//columns([row%errors, row%worst]))
-      else
-         call say(line//'  failed ('//to_text(row%status)//'): '//row%reason)
-      end if
-   end subroutine print_row
 
    subroutine print_target(trade, k)
       type(trade_type), intent(in) :: trade

@@ -60,7 +60,7 @@ PARTS = {
                                   "contact_system:balanced_load", "contact_system:least_drive"},
     "films": {"loads:film_matrix", "unit_loads:film_matrix"},
     "estimated errors": {
-        "companion_steps", "divided_mesh", "doubled_increments", "error_estimator",
+        "divided_mesh", "doubled_increments", "error_estimator",
         "interface_quantities", "mesh_bounds", "quantity_histories",
     },
     "refinement": {"hanging_nodes", "local_refinement", "mesh_division", "refinement"},
