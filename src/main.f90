@@ -5,7 +5,6 @@ program thercon
    use command_line, only: command_check, command_help, command_trade, command_type, &
       command_version, read_command, usage
    use batch, only: run_batch
-   use deck_check, only: check_deck
    use deck_files, only: results_of
    use deck_outcomes, only: deck_outcome_type
    use deck_run, only: run_deck
@@ -15,6 +14,7 @@ program thercon
    use interruption, only: catch_signals
    use memory_calls, only: allow_stack
    use messages, only: print_error, print_line
+   use run_description, only: check_deck
    use version_report, only: print_versions
    implicit none
    type(command_type) :: command

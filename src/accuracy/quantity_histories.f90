@@ -123,7 +123,7 @@ contains
       real(dp), intent(in) :: time(:), values(:), corners(:)
       real(dp) :: difference(size(values) - 4), t(5), weight(5)
       logical :: counts(size(values) - 4)
-      integer :: k
+      integer :: i, j, k
 
       deviation = ieee_value(1.0_dp, ieee_quiet_nan)
       if (any(ieee_is_nan(values))) return
@@ -131,24 +131,16 @@ contains
          t = time(k:k + 4)
          counts(k) = .not. any(corners > t(1) + same_time*(t(2) - t(1)) .and. &
             corners < t(5) - same_time*(t(5) - t(4)))
-         weight = difference_weights(t)
+         ! Weights of the values in their divided difference, but for a factor.
+         do i = 1, 5
+            weight(i) = product([(t(5) - t(1), j=1, i - 1), (t(5) - t(1), j=i + 1, 5)]/ &
+               [(t(i) - t(j), j=1, i - 1), (t(i) - t(j), j=i + 1, 5)])
+         end do
          ! Of independent values the difference has norm2(weight) times their standard deviation.
          difference(k) = dot_product(weight, values(k:k + 4) - values(k + 4))/norm2(weight)
       end do
       if (.not. any(counts)) counts = .true.
       deviation = sqrt(sum(difference**2, mask=counts)/count(counts))
    end function deviation
-
-   !> Weights of the values in their divided difference, but for a factor.
-   pure function difference_weights(time) result(weight)
-      real(dp), intent(in) :: time(5)
-      real(dp) :: weight(5)
-      integer :: i, j
-
-      do i = 1, 5
-         weight(i) = product([(time(5) - time(1), j=1, i - 1), (time(5) - time(1), j=i + 1, 5)]/ &
-            [(time(i) - time(j), j=1, i - 1), (time(i) - time(j), j=i + 1, 5)])
-      end do
-   end function difference_weights
 
 end module quantity_histories

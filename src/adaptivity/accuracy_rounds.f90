@@ -78,7 +78,6 @@ module accuracy_rounds
       type(quantity_histories_type), allocatable :: histories(:)
    contains
       procedure :: begin_round
-      procedure :: drop_round
       procedure :: follow
       procedure :: is_reached
       procedure :: conclude
@@ -118,13 +117,6 @@ contains
       allocate (rounds(n + 1)%findings(size(self%demands), steps))
       call move_alloc(rounds, self%rounds)
    end subroutine begin_round
-
-   !> Drops the present round, which did not come to its end.
-   subroutine drop_round(self)
-      class(accuracy_rounds_type), intent(inout) :: self
-
-      self%rounds = self%rounds(:size(self%rounds) - 1)
-   end subroutine drop_round
 
    !> Follows an accepted increment; the end of a step is judged.
    subroutine follow(self, interfaces, record)

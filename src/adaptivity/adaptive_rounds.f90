@@ -134,7 +134,8 @@ contains
       call estimator%release()
       if (.not. self%accuracy%is_on) return
       if (allocated(error)) then
-         call self%accuracy%drop_round()
+         ! It did not come to its end.
+         self%accuracy%rounds = self%accuracy%rounds(:size(self%accuracy%rounds) - 1)
       else
          call end_round(self, model, simulation, indicators)
       end if
@@ -188,7 +189,14 @@ contains
       do d = 1, size(rounds%demands)
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
          if (finding%is_met() .or. finding%is_at_corner) cycle
-         self%halvings = max(self%halvings, halvings_for(finding))
+         ! Increments are halved where their part of the bound is the larger one, or leaves the
+         ! mesh less than half of the target.
+         if (ieee_is_nan(finding%increment)) then
+            self%halvings = max(self%halvings, 1)
+         else if (finding%increment > 0.5_dp*finding%allowed) then
+            self%halvings = max(self%halvings, min(most_halvings, &
+               ceiling(log(2.0_dp*finding%increment/finding%allowed)/log(2.0_dp))))
+         end if
          levels = 1
          if (.not. ieee_is_nan(finding%mesh)) then
             ! Not where the mesh leaves the increments half of the target.
@@ -209,20 +217,6 @@ contains
          end associate
       end do
    end subroutine take
-
-   !> How often the increments are halved: where their part of the bound is the larger one, or
-   !> leaves the mesh less than half of the target.
-   pure integer function halvings_for(finding) result(halvings)
-      type(finding_type), intent(in) :: finding
-
-      halvings = 0
-      if (ieee_is_nan(finding%increment)) then
-         halvings = 1
-      else if (finding%increment > 0.5_dp*finding%allowed) then
-         halvings = min(most_halvings, ceiling(log(2.0_dp*finding%increment/finding%allowed)/ &
-            log(2.0_dp)))
-      end if
-   end function halvings_for
 
    !> How often the sides at an edge must be divided for its resolution.
    function levels_of_edges(points, record, i, q, allowed) result(levels)

@@ -100,7 +100,13 @@ contains
          if (.not. has_collected) call pause_briefly()
       end do
       call self%progress%clear()
-      call leave_out_the_rest(self)
+      do i = self%started + 1, size(self%outcomes)
+         associate (outcome => self%outcomes(i))
+            outcome%status = status_interrupted
+            outcome%reason = 'not started because of '//caught_signal()
+            call print_error(outcome%path, outcome%reason)
+         end associate
+      end do
       status = maxval(self%outcomes%status)
       call write_batch(command%folder, self%outcomes, error)
       call unlock_file(lock_path(command), lock)
@@ -330,20 +336,6 @@ contains
       self%written = wall_seconds()
       self%has_news = .false.
    end subroutine renew_table
-
-   !> Says which decks were not started because of a signal.
-   subroutine leave_out_the_rest(self)
-      type(batch_type), intent(inout) :: self
-      integer :: i
-
-      do i = self%started + 1, size(self%outcomes)
-         associate (outcome => self%outcomes(i))
-            outcome%status = status_interrupted
-            outcome%reason = 'not started because of '//caught_signal()
-            call print_error(outcome%path, outcome%reason)
-         end associate
-      end do
-   end subroutine leave_out_the_rest
 
    !> Solves the deck.
    subroutine execute(self, report)

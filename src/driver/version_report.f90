@@ -25,6 +25,8 @@ contains
    !> Prints one line each.
    subroutine print_versions(unit)
       integer, intent(in) :: unit   !! open for formatted output
+      integer, parameter :: most = 64
+      character(most, kind=c_char) :: buffer
       character(:), allocatable :: mumps, processor
       integer :: lapack(3), hdf5(3), status
 
@@ -38,20 +40,12 @@ contains
       call print_line(unit, 'MUMPS '//mumps)
       call print_line(unit, 'METIS '//metis_version)
       call print_line(unit, 'HDF5 '//dotted(hdf5))
-      processor = blas_processor()
+      ! The processor for which OpenBLAS computes, in its own words; empty with another BLAS.
+      call c_processor(buffer, int(most, c_int))
+      processor = buffer(:index(buffer, c_null_char) - 1)
       if (len(processor) > 0) processor = ', OpenBLAS for '//processor
       call print_line(unit, 'LAPACK '//dotted(lapack)//processor)
    end subroutine print_versions
-
-   !> The processor for which OpenBLAS computes, in its own words; empty with another BLAS.
-   function blas_processor() result(name)
-      character(:), allocatable :: name
-      integer, parameter :: most = 64
-      character(most, kind=c_char) :: buffer
-
-      call c_processor(buffer, int(most, c_int))
-      name = buffer(:index(buffer, c_null_char) - 1)
-   end function blas_processor
 
    pure function dotted(numbers) result(string)
       integer, intent(in) :: numbers(3)
