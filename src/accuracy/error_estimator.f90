@@ -19,7 +19,7 @@ module error_estimator
    use quantity_histories, only: quantity_histories_type
    use quantity_types, only: find_quantity
    use records, only: increment_record_type, interface_errors_type
-   use recovered_error, only: error_record_type
+   use field_recovery, only: error_record_type
    use solution_state, only: solution_state_type
    use text, only: append
    implicit none

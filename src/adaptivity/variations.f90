@@ -14,8 +14,7 @@ module variations
       thermal_scheme_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp, long
-   use load_application, only: apply_requests
-   use local_axes, only: apply_transforms
+   use load_application, only: apply_requests, apply_transforms
    use local_refinement, only: choose_neighbours, elements_at_points, elements_in_region
    use memory_calls, only: check_memory
    use memory_needs, only: memory_needed

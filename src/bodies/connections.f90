@@ -10,7 +10,7 @@ module connections
    use equations, only: equation_type
    use errors, only: error_type
    use friction_laws, only: friction_law_type, unlimited
-   use hanging_nodes, only: hanging_rows
+   use local_refinement, only: hanging_rows
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type

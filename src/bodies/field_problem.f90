@@ -7,8 +7,7 @@
 !> solution of its own.
 module field_problem
    use controls, only: solver_mumps
-   use errors, only: error_type, status_deck
-   use finite_values, only: check_finite
+   use errors, only: check_finite, error_type, status_deck
    use kinds, only: dp
    use linear_constraints, only: linear_constraints_type
    use linear_solver, only: linear_solver_type

@@ -6,8 +6,7 @@ module contact_workspace
    use contact_system, only: closing_law_type, contact_open, contact_rows_type, contact_slip, &
       contact_state_type, contact_stick, contact_system_type, free_motions, is_capped, is_driven, &
       rows_of, slip_force, state_code
-   use errors, only: error_type, set_error, status_no_convergence
-   use finite_values, only: check_finite
+   use errors, only: check_finite, error_type, set_error, status_no_convergence
    use friction_laws, only: friction_law_type
    use kinds, only: dp
    implicit none

@@ -1,12 +1,13 @@
 !> The one error type of the program. A procedure that can fail has
 !> `type(error_type), allocatable, intent(out) :: error` as its last argument; its caller checks it
-!> on the next line.
+!> on the next line. Numbers that overflowed are an error, too.
 module errors
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use kinds, only: dp
    implicit none
    private
-   public :: error_type, set_error
-   public :: status_ok, status_deck, status_no_convergence, status_internal
-   public :: status_verify, status_interrupted
+   public :: error_type, set_error, status_ok, status_deck, status_no_convergence, &
+      status_internal, status_verify, status_interrupted, check_finite
 
    integer, parameter :: status_ok = 0              !! solved
    integer, parameter :: status_deck = 1            !! the deck is wrong
@@ -38,5 +39,18 @@ contains
       error%message = message
       if (present(card)) error%card = card
    end subroutine set_error
+
+   !> Raises an error where values overflowed.
+   !> Error: the status given; some value is infinite or no number.
+   subroutine check_finite(values, what, status, error)
+      real(dp), intent(in) :: values(:)                   !! any values
+      character(*), intent(in) :: what                    !! what they are, in the plural
+      integer, intent(in) :: status                       !! one of the status_* constants
+      type(error_type), allocatable, intent(out) :: error
+
+      if (all(ieee_is_finite(values))) return
+      call set_error(error, status, what//' overflow: values of the deck are too large, or too '// &
+         'far apart')
+   end subroutine check_finite
 
 end module errors

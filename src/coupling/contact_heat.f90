@@ -13,8 +13,7 @@ module contact_heat
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance
    use dense, only: lu_type, product_of, tail_flops
-   use errors, only: error_type, set_error, status_no_convergence
-   use finite_values, only: check_finite
+   use errors, only: check_finite, error_type, set_error, status_no_convergence
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp

@@ -15,8 +15,7 @@ module contact_operator
    use contact_tractions, only: pressures
    use contact_workspace, only: contact_workspace_type
    use dense, only: product_of
-   use errors, only: error_type, status_no_convergence
-   use finite_values, only: check_finite
+   use errors, only: check_finite, error_type, status_no_convergence
    use fixed_point, only: pass_type
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type

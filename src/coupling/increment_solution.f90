@@ -11,8 +11,7 @@ module increment_solution
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
    use edge_heat, only: joined_conductance
-   use errors, only: error_type, set_error, status_no_convergence
-   use finite_values, only: check_finite
+   use errors, only: check_finite, error_type, set_error, status_no_convergence
    use fixed_point, only: pass_type
    use heat_reduction, only: heat_reduction_type
    use held_points, only: tangential_positions

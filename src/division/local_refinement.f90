@@ -1,21 +1,26 @@
 !> Which elements a local refinement divides: those at a surface, of a set or at points, and with
 !> them those that must be divided so that elements side by side differ by one level, and so that
 !> faces whose nodes match still do.
+!>
+!> Nodes that hang: on a side of an element beside which lie two elements of half its size, nodes of
+!> these that the large element does not have. The fields along the side are those of the large
+!> element, and so the values at these nodes follow from the side's nodes by its shape functions.
 module local_refinement
    use contact_definitions, only: contact_definition_type, pairing_surfaces
    use element_kinds, only: element_corner_count
    use element_sides, only: element_sides_type, find_sides, side_ends
    use errors, only: error_type
-   use hanging_nodes, only: coarse_side, fine_sides, hanging_count
    use kinds, only: dp
    use line_distances, only: distance_of_lines
    use mesh, only: mesh_type
    use model, only: model_type
    use refined_regions, only: refined_region_type
+   use sum_lists, only: sum_list_type
    use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
    implicit none
    private
-   public :: elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours
+   public :: elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours, &
+      hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, place_hanging
 
    !> Part of DISTANCE= by which an element must come nearer: what only touches stays out.
    real(dp), parameter :: rounding = 1.0e-9_dp
@@ -266,5 +271,97 @@ contains
          end associate
       end do
    end subroutine choose_coarse
+
+   !> Number of sides where nodes hang.
+   pure integer function hanging_count(mesh)
+      type(mesh_type), intent(in) :: mesh
+
+      hanging_count = 0
+      if (allocated(mesh%hanging_sides)) hanging_count = size(mesh%hanging_sides, 2)
+   end function hanging_count
+
+   !> The side of the large element: corner, midside node or 0, corner.
+   pure function coarse_side(mesh, h) result(ends)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: h                      !! 1..hanging_count
+      integer :: ends(3)
+
+      ends = mesh%hanging_sides(:3, h)
+      if (mesh%hanging_sides(4, h) == 0) ends(2) = 0
+   end function coarse_side
+
+   !> The sides of the small elements there.
+   pure function fine_sides(mesh, h) result(ends)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: h                      !! 1..hanging_count
+      integer :: ends(3, 2)
+
+      associate (nodes => mesh%hanging_sides(:, h))
+         ends(:, 1) = nodes([1, 4, 2])
+         ends(:, 2) = nodes([2, 5, 3])
+      end associate
+   end function fine_sides
+
+   !> The nodes that hang there, the one next to an end of the side first, or 0 for the second.
+   pure function nodes_between(mesh, h, first) result(nodes)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: h                      !! 1..hanging_count
+      integer, intent(in) :: first                  !! the end
+      integer :: nodes(2)
+
+      associate (side => mesh%hanging_sides(:, h))
+         if (side(4) == 0) then
+            nodes = [side(2), 0]
+         else if (side(1) == first) then
+            nodes = side(4:5)
+         else
+            nodes = side([5, 4])
+         end if
+      end associate
+   end function nodes_between
+
+   !> What hanging nodes say of a field: a sum for each of them, itself first, that is 0.
+   pure function hanging_rows(mesh) result(rows)
+      type(mesh_type), intent(in) :: mesh
+      type(sum_list_type) :: rows                   !! (hanging nodes, nodes)
+      integer :: h
+
+      call rows%reserve(2*hanging_count(mesh), 8*hanging_count(mesh))
+      do h = 1, hanging_count(mesh)
+         associate (side => mesh%hanging_sides(:, h))
+            if (side(4) == 0) then
+               call rows%add(side([2, 1, 3]), [1.0_dp, -0.5_dp, -0.5_dp])
+            else
+               ! Shape functions of a three-node side half way between its middle and an end.
+               call rows%add(side([4, 1, 2, 3]), [1.0_dp, -0.375_dp, -0.75_dp, 0.125_dp])
+               call rows%add(side([5, 3, 2, 1]), [1.0_dp, -0.375_dp, -0.75_dp, 0.125_dp])
+            end if
+         end associate
+      end do
+   end function hanging_rows
+
+   !> Moves hanging nodes onto their sides, which were curved before they lost their midside nodes.
+   !> Ends that hang themselves go first.
+   pure subroutine place_hanging(mesh)
+      type(mesh_type), intent(inout) :: mesh
+      logical :: waits(size(mesh%node_number)), left(hanging_count(mesh))
+      integer :: h
+
+      left = .true.
+      do while (any(left))
+         waits = .false.
+         do h = 1, size(left)
+            if (left(h)) waits(mesh%hanging_sides(2, h)) = .true.
+         end do
+         do h = 1, size(left)
+            associate (side => mesh%hanging_sides(:3, h))
+               if (.not. left(h) .or. any(waits(side([1, 3])))) cycle
+               mesh%coordinates(:, side(2)) = 0.5_dp*(mesh%coordinates(:, side(1)) + &
+                  mesh%coordinates(:, side(3)))
+               left(h) = .false.
+            end associate
+         end do
+      end do
+   end subroutine place_hanging
 
 end module local_refinement

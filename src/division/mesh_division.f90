@@ -5,7 +5,7 @@ module mesh_division
    use element_kinds, only: element_node_count, kind_count, quad4, &
       quad8, quad8_reduced, triangle6
    use element_sides, only: element_sides_type, find_sides
-   use hanging_nodes, only: coarse_side, fine_sides, hanging_count, nodes_between
+   use local_refinement, only: coarse_side, fine_sides, hanging_count, nodes_between
    use kinds, only: dp
    use mesh, only: mesh_type
    use sparse_matrix, only: sparse_matrix_type

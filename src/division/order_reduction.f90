@@ -3,7 +3,7 @@
 !> the corners of its side, as the shape functions of the side without it have it.
 module order_reduction
    use element_kinds, only: element_corner_count, linear_kind, side_node_count, side_nodes
-   use hanging_nodes, only: hanging_count, place_hanging
+   use local_refinement, only: hanging_count, place_hanging
    use kinds, only: dp
    use load_application, only: make_explicit
    use load_requests, only: request_list_type, request_type

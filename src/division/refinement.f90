@@ -5,8 +5,7 @@ module refinement
    use mesh_bodies, only: find_bodies
    use element_kinds, only: element_corner_count, quad4, quad8, quad8_reduced, triangle6
    use kinds, only: dp, long
-   use load_application, only: apply_requests
-   use local_axes, only: apply_transforms
+   use load_application, only: apply_requests, apply_transforms
    use mesh, only: mesh_type
    use mesh_division, only: child_element, divide, division_type, hanging_after, inner_node, &
       refined_members, side_node

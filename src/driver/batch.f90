@@ -10,8 +10,7 @@ module batch
    use deck_reader, only: files_of_deck
    use deck_run, only: run_deck
    use errors, only: error_type, status_deck, status_internal, status_interrupted
-   use file_calls, only: is_stream, make_folder
-   use file_identities, only: file_identity_type, identity_of
+   use file_calls, only: file_identity_type, identity_of, is_stream, make_folder
    use interruption, only: catch_signals, caught_signal, caught_times
    use kinds, only: dp
    use messages, only: pass_on, print_error, print_line

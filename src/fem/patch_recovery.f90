@@ -11,12 +11,12 @@
 module patch_recovery
    use element_kinds, only: element_corner_count, quad8, quad8_reduced
    use element_patches, only: add_weights, centres_for, corners_of, fit_round_corner, fit_type, &
-      is_linear, is_surrounded, layout_type, make_fit, midsides_at, quadratic_terms, sites_of
+      is_linear, is_surrounded, layout_type, make_fit, midsides_at, quadratic_terms, row_type, &
+      sample_sums_type, sites_of
    use field_recovery, only: point_map_type
    use kinds, only: dp
    use mesh, only: mesh_type
    use quadrature, only: recovery_count, recovery_weights
-   use sample_sums, only: row_type, sample_sums_type
    use shape_functions, only: node_position
    use sorting, only: invert_lists
    implicit none

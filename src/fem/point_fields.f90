@@ -8,9 +8,8 @@ module point_fields
    use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain, &
       plane_stress, quad4
    use kinds, only: dp
-   use materials, only: material_type, section_type
+   use materials, only: material_axes, material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
-   use orientations, only: material_axes, orientation_type
    use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
    use quadrature, only: integration_rule, point_count
    use shape_functions, only: element_gradients, element_shape, node_position

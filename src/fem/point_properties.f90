@@ -3,8 +3,7 @@
 module point_properties
    use element_kinds, only: plane_stress
    use kinds, only: dp
-   use materials, only: material_type
-   use orientations, only: material_axes, orientation_type, strain_rotation
+   use materials, only: material_axes, material_type, orientation_type, strain_rotation
    use quadrature, only: integration_rule, point_count
    use shape_functions, only: element_shape
    implicit none

@@ -5,9 +5,8 @@ module stiffness_matrix
    use element_elasticity, only: element_stiffness, element_stress_force, element_thermal_load
    use element_kinds, only: element_node_count
    use kinds, only: dp
-   use materials, only: material_type, section_type
+   use materials, only: material_type, orientation_type, section_type
    use mesh, only: mesh_type
-   use orientations, only: orientation_type
    use point_properties, only: axes_at_points, elasticity_in, thermal_modulus_in
    use quadrature, only: most_points
    use sparse_matrix, only: sparse_matrix_type

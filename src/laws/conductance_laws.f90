@@ -1,13 +1,13 @@
 !> Contact conductance as a function of the gap and the pressure, eq. (1.8), with its derivatives.
+!> Tables are straight lines between points, which hold their end values outside.
 module conductance_laws
    use kinds, only: dp
-   use piecewise_lines, only: line_abscissa, line_slope, line_value
    implicit none
    private
-   public :: conductance_law_type, law_by_temperature_type
-   public :: law_none, law_gas, law_power, law_clearance, law_pressure
-   public :: conductance, conductance_derivative, conductance_inverse, law_jump, table_jump, &
-      is_constant, varies_with_temperature
+   public :: conductance_law_type, law_by_temperature_type, law_none, law_gas, law_power, &
+      law_clearance, law_pressure, conductance, conductance_derivative, conductance_inverse, &
+      law_jump, table_jump, is_constant, varies_with_temperature, line_value, line_slope, &
+      line_abscissa
 
    integer, parameter :: law_none = 0        !! this side of the law was not given
    integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma) + radiation
@@ -211,5 +211,59 @@ contains
          if (law%open_ends .and. gap > law%table_gap(size(law%table_gap))) omega = 0.0_dp
       end if
    end function open_law
+
+   !> Ordinate of a curve.
+   pure function line_value(abscissas, ordinates, at) result(value)
+      real(dp), intent(in) :: abscissas(:)   !! (points) ascending, at least one
+      real(dp), intent(in) :: ordinates(:)   !! (points)
+      real(dp), intent(in) :: at             !! abscissa
+      real(dp) :: value                      !! [as the ordinates]
+      integer :: i, n
+
+      n = size(abscissas)
+      if (at <= abscissas(1)) then
+         value = ordinates(1)
+      else if (at >= abscissas(n)) then
+         value = ordinates(n)
+      else
+         i = count(abscissas <= at)
+         value = ordinates(i) + (ordinates(i + 1) - ordinates(i))*(at - abscissas(i))/ &
+            (abscissas(i + 1) - abscissas(i))
+      end if
+   end function line_value
+
+   !> Slope of a curve: at a point that of the line behind it, 0 where an end value is held.
+   pure function line_slope(abscissas, ordinates, at) result(slope)
+      real(dp), intent(in) :: abscissas(:)   !! (points) ascending, at least one
+      real(dp), intent(in) :: ordinates(:)   !! (points)
+      real(dp), intent(in) :: at             !! abscissa
+      real(dp) :: slope                      !! [ordinate/abscissa]
+      integer :: i
+
+      slope = 0.0_dp
+      i = count(abscissas <= at)
+      if (i == 0 .or. i == size(abscissas)) return
+      slope = (ordinates(i + 1) - ordinates(i))/(abscissas(i + 1) - abscissas(i))
+   end function line_slope
+
+   !> Abscissa at which a curve first has a value on a line that is not level; negative where it has
+   !> it nowhere, abscissas being positive.
+   pure function line_abscissa(abscissas, ordinates, value) result(at)
+      real(dp), intent(in) :: abscissas(:)   !! (points) ascending, >= 0, at least one
+      real(dp), intent(in) :: ordinates(:)   !! (points)
+      real(dp), intent(in) :: value          !! ordinate
+      real(dp) :: at                         !! [abscissa]
+      integer :: i
+
+      at = -1.0_dp
+      do i = 1, size(abscissas) - 1
+         associate (from => ordinates(i), to => ordinates(i + 1))
+            if (min(from, to) > value .or. max(from, to) < value) cycle
+            if (abs(to - from) <= 0.0_dp) cycle
+            at = abscissas(i) + (abscissas(i + 1) - abscissas(i))*(value - from)/(to - from)
+            return
+         end associate
+      end do
+   end function line_abscissa
 
 end module conductance_laws

@@ -8,9 +8,8 @@
 !> with the mean and the jump of the faces nothing of it is lost.
 module temperature_laws
    use conductance_laws, only: conductance, conductance_law_type, law_by_temperature_type, &
-      law_jump, law_none, law_pressure, varies_with_temperature
+      law_jump, law_none, law_pressure, line_slope, line_value, varies_with_temperature
    use kinds, only: dp
-   use piecewise_lines, only: line_slope, line_value
    implicit none
    private
    public :: face_temperatures_type, law_at, temperature_derivatives, law_jumps, largest_jump

@@ -2,7 +2,7 @@
 module amplitudes
    use kinds, only: dp
    use named_items, only: named_type
-   use piecewise_lines, only: line_value
+   use conductance_laws, only: line_value
    implicit none
    private
    public :: amplitude_type, amplitude_value

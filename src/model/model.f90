@@ -10,9 +10,8 @@ module model
    use equations, only: equation_type
    use kinds, only: dp
    use load_requests, only: nodal_field_type, requests_type
-   use materials, only: material_type, section_type
+   use materials, only: material_type, orientation_type, section_type
    use mesh, only: mesh_type
-   use orientations, only: orientation_type
    use refined_regions, only: refined_region_type
    use steps, only: step_type
    use text, only: string_type

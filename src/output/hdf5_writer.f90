@@ -312,10 +312,19 @@ contains
       character(*), intent(in) :: unit                    !! '-' for a pure number
       character(*), intent(in), optional :: components    !! their names; empty or absent: none
 
-      call self%set(path, 'description', trim(description))
-      call self%set(path, 'unit', trim(unit))
-      if (.not. present(components)) return
-      if (len_trim(components) > 0) call self%set(path, 'components', trim(components))
+      integer(hid_t) :: object
+      integer :: status(2)
+
+      if (self%has_failed()) return
+      call h5oopen_f(self%id, path, object, status(1))
+      call set_text(self, path, 'description', trim(description), object)
+      call set_text(self, path, 'unit', trim(unit), object)
+      if (present(components)) then
+         if (len_trim(components) > 0) call set_text(self, path, 'components', trim(components), &
+            object)
+      end if
+      call h5oclose_f(object, status(2))
+      call self%note(status, 'cannot describe '//path)
    end subroutine describe
 
    !> Writes an attribute of a group or dataset, over one of the same name: an integer of either
@@ -367,9 +376,10 @@ contains
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_fixed_text
 
-   subroutine set_text(self, path, name, value)
+   subroutine set_text(self, path, name, value, opened)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, name, value
+      integer(hid_t), intent(in), optional :: opened   ! the object at the path
       character(len(value) + 1, kind=c_char), target :: copy
       type(c_ptr), target :: start
       integer(hid_t) :: type
@@ -379,15 +389,16 @@ contains
       copy = value//c_null_char
       start = c_loc(copy)
       call make_text_type(type, status(1))
-      call set_value(self, path, name, stored_value_type(type, type, c_loc(start)))
+      call set_value(self, path, name, stored_value_type(type, type, c_loc(start)), opened)
       call h5tclose_f(type, status(2))
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_text
 
-   subroutine set_value(self, path, name, value)
+   subroutine set_value(self, path, name, value, opened)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, name
       type(stored_value_type), intent(in) :: value
+      integer(hid_t), intent(in), optional :: opened   ! the object at the path
       integer(hid_t) :: attribute, object, space
       integer :: status(8)
       logical :: exists
@@ -396,7 +407,8 @@ contains
       status = 0
       exists = .false.
       ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
-      call h5oopen_f(self%id, path, object, status(1))
+      if (present(opened)) object = opened
+      if (.not. present(opened)) call h5oopen_f(self%id, path, object, status(1))
       call h5aexists_f(object, name, exists, status(2))
       if (exists) then
          call h5aopen_f(object, name, attribute, status(3))
@@ -411,7 +423,7 @@ contains
       end if
       call h5awrite_f(attribute, value%memory_type, value%address, status(6))
       call h5aclose_f(attribute, status(7))
-      call h5oclose_f(object, status(8))
+      if (.not. present(opened)) call h5oclose_f(object, status(8))
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_value
 

@@ -7,8 +7,7 @@ module listing
    use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
    use errors, only: error_type
-   use file_calls, only: copy_file
-   use file_identities, only: check_in_place
+   use file_calls, only: check_in_place, copy_file
    use listing_head, only: checks, ending, print_model, summary_block
    use listing_increments, only: print_attempts, print_balances, print_body_errors, &
       print_increment, print_interface, print_interface_errors

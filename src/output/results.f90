@@ -11,7 +11,8 @@ module results
    use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
-   use growing_datasets, only: bytes_in, flush_sets
+   use result_tables, only: bounded_quantities, bytes_in, flush_sets, result_table_type, &
+      write_geometry
    use hdf5_writer, only: end_hdf5, start_hdf5
    use kinds, only: dp, long
    use model, only: model_type
@@ -20,10 +21,9 @@ module results
       quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
-   use result_accuracy, only: write_accuracy
+   use accuracy_lines, only: write_accuracy
    use result_fields, only: cell_sets, contact_grid_type, field_results_type, interface_sets, &
       node_sets
-   use result_tables, only: bounded_quantities, result_table_type, write_geometry
    use run_summaries, only: or_blank, run_summary_type, write_run
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type

@@ -9,7 +9,7 @@ module run_judgement
    use records, only: contact_record_type, increment_record_type
    use solution_report, only: warning_type
    use steps, only: solves_heat, solves_mechanics
-   use strains, only: largest_deformation, of_strain
+   use element_elasticity, only: largest_deformation, of_strain
    use text, only: append, percent, string_type, to_text
    implicit none
    private

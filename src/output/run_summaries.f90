@@ -1,7 +1,7 @@
 !> A run as a whole: what it models, its sizes, its times, in one table. The listing,
 !> `thercon check` and the attributes of `/run` in the result file read this table.
 module run_summaries
-   use hanging_nodes, only: hanging_count
+   use local_refinement, only: hanging_count
    use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp, long
    use model, only: model_type

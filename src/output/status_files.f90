@@ -2,8 +2,7 @@
 !> here until the result file that holds their increments is in place.
 module status_files
    use errors, only: error_type
-   use file_calls, only: try_file
-   use file_identities, only: check_in_place
+   use file_calls, only: check_in_place, try_file
    use increment_quantities, only: history_value, pass_value
    use listing_text, only: column, printed_text_type, table_cell, table_head
    use open_files, only: append_to_file, close_descriptor, open_new_file

@@ -4,7 +4,7 @@ module increment_quantities
    use kinds, only: dp
    use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, of_bodies, of_elements, &
       of_history, of_passes, quantity_type
-   use recovered_error, only: error_record_type
+   use field_recovery, only: error_record_type
    use records, only: increment_record_type
    use solution_report, only: iteration_record_type
    implicit none

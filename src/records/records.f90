@@ -2,7 +2,7 @@
 !> verification see.
 module records
    use kinds, only: dp
-   use recovered_error, only: error_record_type
+   use field_recovery, only: error_record_type
    use solution_report, only: solution_report_type, work_record_type
    use text, only: string_type
    use zone_edges, only: edges_kept

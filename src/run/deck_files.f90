@@ -4,7 +4,7 @@ module deck_files
    use batch_table, only: table_name
    use command_line, only: command_type
    use errors, only: error_type, set_error, status_deck
-   use file_identities, only: file_identity_type, identity_of, is_working_file, real_path_of
+   use file_calls, only: file_identity_type, identity_of, is_working_file, real_path_of
    use run_output, only: paths_written
    use text, only: append, string_type
    implicit none

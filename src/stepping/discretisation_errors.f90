@@ -2,15 +2,14 @@
 !> geometry and materials give is formed once a run.
 module discretisation_errors
    use element_kinds, only: element_node_count
-   use field_recovery, only: average_samples, heat_flux_samples, make_points, point_map_type, &
+   use field_recovery, only: average_samples, element_error_type, error_record_type, error_rules, &
+      heat_flux_samples, make_points, measure_heat_flux, measure_stress, point_map_type, &
       prepare_samples, stress_samples
    use kinds, only: dp
    use mesh, only: mesh_type, nodes_per_element
    use model, only: model_type
    use patch_recovery, only: patch_recovery_type
    use point_fields, only: most => most_field_points, point_fields_type
-   use recovered_error, only: element_error_type, error_rules, error_record_type, &
-      measure_heat_flux, measure_stress
    implicit none
    private
    public :: recovery_type

@@ -2,8 +2,7 @@
 module increment_checks
    use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type
-   use errors, only: error_type, set_error, status_no_convergence
-   use finite_values, only: check_finite
+   use errors, only: check_finite, error_type, set_error, status_no_convergence
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type

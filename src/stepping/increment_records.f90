@@ -14,7 +14,7 @@ module increment_records
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
-   use orientations, only: material_axes
+   use materials, only: material_axes
    use point_fields, only: integration_rules, most => most_field_points, point_fields_type
    use point_properties, only: along_axes
    use print_requests, only: print_request_type

@@ -22,9 +22,8 @@ module deck_builder
    use deck_structure, only: card_count, check_structure
    use heat_checks, only: check_constants, check_heat_paths, check_starts
    use mesh_checks, only: check_folds
-   use load_application, only: apply_requests, collect_fields
+   use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
-   use local_axes, only: turn_equations
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use quantity_types, only: quantity_type
@@ -97,7 +96,7 @@ contains
       call build_nodes(cards, context, mesh, report)
       call build_lines(cards, context, report)
       call build_elements(cards, context, mesh, report)
-      ! ORDER=1 drops nodes between corners. Refined elements have those of the deck at their corners.
+      ! ORDER=1 drops nodes between corners; refined elements have those of the deck at corners.
       allocate (corners(2, size(mesh%node_number)), source=0)
       if (context%order == 1 .and. context%levels == 0) corners = side_corners(mesh)
       context%dropped = corners(1, :) > 0

@@ -1,5 +1,5 @@
-!> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME, *START; *NODE PRINT and *EL PRINT,
-!> tables of the listing.
+!> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
+!> *EL PRINT, tables of the listing.
 module deck_builder_controls
    use card_parameters, only: choose, need_choice, parameter_place, parameter_text, take_from, &
       take_parameter, take_positive

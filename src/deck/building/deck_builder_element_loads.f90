@@ -1,5 +1,5 @@
-!> Data cards of loads on elements: *DLOAD, *DFLUX and *FILM with an element or a set, *DSLOAD, *DSFLUX
-!> and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
+!> Data cards of loads on elements: *DLOAD, *DFLUX and *FILM with an element or a set, *DSLOAD,
+!> *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
 module deck_builder_element_loads
    use card_values, only: check_extra, need_field, need_plane_vector, need_vector
    use cards, only: data_card_type, field_place, field_text

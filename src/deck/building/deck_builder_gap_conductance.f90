@@ -5,11 +5,11 @@ module deck_builder_gap_conductance
    use card_values, only: check_extra, check_unneeded_temperature, decimal_comma, need_field, &
       report_decimal_comma, take_field
    use cards, only: cards_type, field_place, has_field, keyword_card_type
-   use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure
+   use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
+      line_value
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use piecewise_lines, only: line_value
    use text, only: to_text
    implicit none
    private

@@ -1,5 +1,5 @@
-!> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *ORIENTATION and *SOLID SECTION, which
-!> give elements their material, its axes and their thickness.
+!> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *ORIENTATION and
+!> *SOLID SECTION, which give elements their material, its axes and their thickness.
 module deck_builder_materials
    use card_parameters, only: choose, parameter_place
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
@@ -12,11 +12,10 @@ module deck_builder_materials
       is_positive_definite, isotropic_elasticity, orthotropic_elasticity
    use element_kinds, only: axisymmetric
    use kinds, only: dp
-   use materials, only: material_type, set_constants
+   use materials, only: material_type, orientation_type, set_constants
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use named_items, only: find_named
-   use orientations, only: orientation_type
    use text, only: to_text
    implicit none
    private
