@@ -93,17 +93,15 @@ contains
       before = self%state
       next%increment_size = record%time - self%time
       equation = heat_equation_type(step%scheme)
-      associate (accepted => run%state)
-         next%contact = accepted%contact
-         next%contact%tangential = self%state%contact%tangential
-         if (equation%is_steady()) then
-            ! The run's solution is nearly right as a guess; nothing else is taken of omega.
-            before%omega = accepted%omega
-            before%omega_before = accepted%omega
-         end if
-         next%sources = accepted%sources
-         next%force_load = accepted%force_load
-      end associate
+      next%contact = run%state%contact
+      next%contact%tangential = self%state%contact%tangential
+      if (equation%is_steady()) then
+         ! The run's solution is nearly right as a guess; nothing else is taken of omega.
+         before%omega = run%state%omega
+         before%omega_before = run%state%omega
+      end if
+      next%sources = run%state%sources
+      next%force_load = run%state%force_load
       call begin_increment(run%bodies, step, before, next, data)
       film = data%equation%left_film()
       if (run%heat%serves(run%bodies, film) .or. .not. solves_heat(step%analysis)) then
@@ -126,9 +124,8 @@ contains
          call solve_points(run%bodies, heat, run%loads, data, workspace, next, error)
          call move_alloc(workspace%known, self%known)
          if (allocated(error)) return
-         if (.not. equation%is_steady() .or. .not. solves_mechanics(step%analysis)) then
-            call recover_fields(run%bodies, heat, run%loads, data, workspace, next)
-         end if
+         if (.not. (equation%is_steady() .and. solves_mechanics(step%analysis))) call &
+            recover_fields(run%bodies, heat, run%loads, data, workspace, next)
       end subroutine solve_with
    end subroutine follow
 

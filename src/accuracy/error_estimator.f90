@@ -38,7 +38,7 @@ module error_estimator
    !> Relative error of a body below which its fields are smooth but for rounding.
    real(dp), parameter :: rounding = 1.0e-8_dp
 
-   !> What the bounds are made with.
+   !> Data of the bounds.
    type :: error_estimator_type
       private
       type(divided_mesh_type) :: divided           !! the model with divided elements

@@ -135,8 +135,8 @@ contains
       end associate
    end subroutine bound_edges
 
-   !> What the pressure on the axis, which few elements tell, exceeds the even parabola through the
-   !> two contact points beside by, where it is the largest; 0 elsewhere.
+   !> Excess of the pressure on the axis, which few elements tell, over the even parabola through
+   !> the two contact points beside it, where it is the largest; 0 elsewhere.
    pure real(dp) function rise_on_axis(points, pressure) result(rise)
       type(contact_points_type), intent(in) :: points
       real(dp), intent(in) :: pressure(:)

@@ -68,7 +68,7 @@ contains
       end do
    end function scatter
 
-   !> What the quantities of an interface differ by at the end from those on another mesh; 0 where
+   !> Differences of an interface's quantities at the end from those on another mesh; 0 where
    !> one of them has no value.
    pure function change_since(self, interface, other) result(change)
       class(quantity_histories_type), intent(in) :: self

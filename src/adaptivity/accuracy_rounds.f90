@@ -34,7 +34,7 @@ module accuracy_rounds
       character(:), allocatable :: idle    !! what there is if nothing to judge; empty otherwise
    end type demand_type
 
-   !> What one demand found at the end of one step.
+   !> Finding of one demand at the end of one step.
    type :: finding_type
       logical :: is_there = .false.        !! whether the quantity has a value and an error
       logical :: is_at_end = .false.       !! whether it is a pressure at an end of the interface
@@ -182,7 +182,7 @@ contains
       end associate
    end function found
 
-   !> What there is where a quantity has no value to judge.
+   !> Words where a quantity has no value to judge.
    pure function instead_of(quantity, contact) result(words)
       type(quantity_type), intent(in) :: quantity
       type(contact_record_type), intent(in) :: contact

@@ -78,7 +78,7 @@ module adaptive_rounds
    integer, parameter :: most_levels = 2        !! divisions at an edge in one round
    integer, parameter :: most_halvings = 2      !! of the increments in one round
 
-   !> What the ends of the steps of a round ask for.
+   !> Demands at the ends of the steps of a round.
    type :: round_indicators_type
       private
       type(marked_elements_type) :: division           !! of the elements

@@ -39,7 +39,7 @@ module variations
       integer, allocatable :: point_levels(:)   !! (n) divisions at them
    end type marked_elements_type
 
-   !> What is other than in the deck.
+   !> Differences from the deck.
    type :: variation_type
       integer :: order = as_written             !! order of the elements, 1 or 2
       integer :: levels = as_written            !! *REFINE, LEVELS=

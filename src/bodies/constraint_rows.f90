@@ -32,7 +32,7 @@ module constraint_rows
    integer, parameter :: of_support = 1, of_hanging = 2, of_equation = 3, of_tie = 4
    integer, parameter :: of_contact = 5
 
-   !> What a row comes from. Rows of one origin are one constraint.
+   !> Origin of a row. Rows of one origin are one constraint.
    type :: row_origin_type
       integer :: kind = 0     !! of_support ... of_contact
       !> degree of freedom that is supported or hangs, equation, point of a tie, contact point

@@ -22,7 +22,7 @@ module field_problem
    real(dp), parameter :: rounding = 64*epsilon(1.0_dp)
    integer, parameter :: most_kept = 4   !! loads that were solved for
 
-   !> What acts on a field at the end of an increment.
+   !> Loads and prescribed values of a field at the end of an increment.
    type :: field_load_type
       real(dp), allocatable :: given(:)                       !! (dofs) prescribed values
       real(dp), allocatable :: rhs(:, :)                      !! (equations, 1) right-hand side

@@ -69,7 +69,7 @@ contains
       call self%by_unknowns%add_totals(unknowns, values)
    end function expand
 
-   !> What prescribed values alone make of the degrees of freedom, B g.
+   !> Degrees of freedom by prescribed values alone, B g.
    pure function supported(self, given) result(values)
       class(linear_constraints_type), intent(in) :: self
       real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
@@ -375,7 +375,7 @@ contains
       end associate
    end subroutine set_matrices
 
-   !> What ties write, and the conditions of those that write nothing. Prescribed values count as
+   !> Rows of ties, and the conditions of those without rows. Prescribed values count as
    !> the degrees of freedom that have them.
    pure subroutine set_ties(rows, found, last, constraints)
       type(constraint_rows_type), intent(in) :: rows

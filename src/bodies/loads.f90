@@ -250,7 +250,7 @@ contains
       heat = self%unit%heat%multiply(self%unit%with_films(present_values(self)))
    end function heat_load
 
-   !> What the films add to the conduction matrix, with both triangles; without values where no heat
+   !> Contribution of films to the conduction matrix, both triangles; without values where no heat
    !> crosses a film.
    pure function film_matrix(self) result(matrix)
       class(loads_type), intent(in) :: self

@@ -43,7 +43,7 @@ module reduced_bodies
       real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
-      ! What is numbered: supports, contact points with friction, prescribed temperatures.
+      ! Key of the numbering: supports, contact points with friction, prescribed temperatures.
       logical, allocatable, private :: held(:)               !! (2 nodes)
       logical, allocatable, private :: has_friction(:)       !! (m)
       logical, allocatable, private :: held_temperature(:)   !! (nodes)

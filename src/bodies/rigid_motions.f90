@@ -22,7 +22,7 @@ module rigid_motions
    real(dp), parameter :: nothing = 1.0e-6_dp        !! component of a motion that counts as none
    real(dp), parameter :: unit(2, 2) = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
 
-   !> What a contact point or a tie holds: a sum of displacements of nodes is zero.
+   !> Condition of a contact point or a tie: a sum of displacements of nodes is zero.
    type :: joint_type
       integer, allocatable :: nodes(:)          !! (n) node indexes
       real(dp), allocatable :: share(:, :)      !! (2, n) coefficients of their components
@@ -44,7 +44,7 @@ module rigid_motions
       integer, allocatable :: lone(:) !! degrees of freedom, of no body, that joints take
    end type rigid_bodies_type
 
-   !> What ties and equations hold.
+   !> Conditions of ties and equations.
    interface joints_of
       module procedure :: joints_of_ties, joints_of_equations
    end interface joints_of
@@ -295,7 +295,7 @@ contains
       end associate
    end function point
 
-   !> What ties hold, along x and y.
+   !> Conditions of ties, along x and y.
    pure function joints_of_ties(ties) result(joints)
       type(tie_points_type), intent(in) :: ties
       type(joint_type), allocatable :: joints(:)    !! (2 n)
@@ -313,7 +313,7 @@ contains
       end do
    end function joints_of_ties
 
-   !> What equations of displacements hold.
+   !> Conditions of equations of displacements.
    pure function joints_of_equations(equations) result(joints)
       type(equation_type), intent(in) :: equations(:)
       type(joint_type), allocatable :: joints(:)

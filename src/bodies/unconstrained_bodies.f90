@@ -119,7 +119,7 @@ contains
       call find_free_motions(model%mesh, held, [joints(:n), of_ties, of_equations], motions)
    end subroutine free_motions
 
-   !> What a contact point holds along a direction.
+   !> Condition of a contact point along a direction.
    pure function joint_of(points, k, direction) result(joint)
       type(connections_type), intent(in) :: points
       integer, intent(in) :: k
@@ -249,7 +249,7 @@ contains
       end subroutine add_row
    end subroutine find_undetermined
 
-   !> What the equations say of the temperatures of the bodies and, behind them, of the nodes of no
+   !> Conditions of equations on the temperatures of the bodies and, behind them, of the nodes of no
    !> body that they name, a column each.
    pure function equation_rows(model, points, held) result(rows)
       type(model_type), intent(in) :: model
@@ -309,7 +309,7 @@ contains
       source(pack(model%mesh%node_body, held .and. model%mesh%node_body > 0)) = .true.
    end function with_source
 
-   !> What moves, in words.
+   !> The moving part, in words.
    function mover(model, motion) result(name)
       type(model_type), intent(in) :: model
       type(free_motion_type), intent(in) :: motion

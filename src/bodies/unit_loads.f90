@@ -271,7 +271,7 @@ contains
       end associate
    end function with_films
 
-   !> What the films add to the conduction matrix, with both triangles; without values where no heat
+   !> Contribution of films to the conduction matrix, both triangles; without values where no heat
    !> crosses a film.
    pure function film_matrix(self, value, nodes) result(matrix)
       class(unit_loads_type), intent(in) :: self

@@ -167,7 +167,7 @@ contains
       nodes = self%difference%values_of(k)
    end function nodes_of
 
-   !> What a contact point takes of its nodes' displacements: slave's less master's along an axis
+   !> Coefficients of nodal displacements in a contact point: slave's less master's along an axis
    !> are along.u of that axis, and across.u of the other one, added for x and subtracted for y.
    pure subroutine means_of(self, k, nodes, along, across)
       class(contact_points_type), intent(in) :: self

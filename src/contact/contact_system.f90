@@ -32,7 +32,7 @@
 !> without a share the largest friction for 0; that of a contact point which closes and sticks,
 !> times a stiffness, own lambda_t + arm.lambda + spring d_t = 0.
 !>
-!> What is solved with it, and what of it changes, is in contact_workspace.
+!> Its solutions, and all of it that changes, are in contact_workspace.
 !>
 !> What a single contact point does is here too: contact states, Coulomb's law, eq. (1.6), with a
 !> largest friction, in increments, and the law of one that closes within an increment.
@@ -120,7 +120,7 @@ module contact_system
       real(dp), allocatable :: rate(:, :)
    end type closing_law_type
 
-   !> What a contact point does under its present condition.
+   !> Answer of a contact point under its present condition.
    type :: response_type
       real(dp) :: gap = 0.0_dp           !! gamma [length]
       real(dp) :: force = 0.0_dp         !! normal force, positive in compression [force]
@@ -128,7 +128,7 @@ module contact_system
       real(dp) :: slip = 0.0_dp          !! tangential motion since the increment began [length]
    end type response_type
 
-   !> What counts as zero.
+   !> Thresholds of zero.
    type :: rounding_type
       real(dp) :: gap = 0.0_dp           !! of gap and slip [length]
       real(dp) :: force = 0.0_dp         !! of both forces [force]

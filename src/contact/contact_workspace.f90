@@ -1,4 +1,4 @@
-!> What one trial solution of the contact system works with: what the increment applies to it, the
+!> Workspace of one trial solution of the contact system: what the increment applies to it, the
 !> laws of contact points that close in the increment, and the factors of the active set of the
 !> moment. A second trial takes a workspace of its own.
 module contact_workspace
@@ -17,7 +17,7 @@ module contact_workspace
    !> remainder of loads that were taken off.
    real(dp), parameter :: unresolved = 1.0e-3_dp
 
-   !> What forces on one contact point move.
+   !> Compliance of one contact point to forces on it.
    type :: relief_type
       !> (tail, 2) motion by forces along d_n and d_t, unallocated until it is sought [length/force]
       real(dp), allocatable :: response(:, :)

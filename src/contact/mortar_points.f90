@@ -84,7 +84,6 @@ contains
          points%master(c) = master%nodes(minloc(norm2(mesh%coordinates(:, master%nodes) - &
             spread(points%position(:, c), 2, size(master%nodes)), dim=1), dim=1))
       end do
-
    contains
       function line_of(chain) result(line)
          type(surface_chain_type), intent(in) :: chain

@@ -61,7 +61,7 @@ module mortar_segments
       type(sparse_matrix_type) :: slave_normal(2), master_normal(2)
    end type mortar_integrals_type
 
-   !> What has been summed.
+   !> Sums so far.
    type :: segment_sums_type
       real(dp), allocatable :: weight(:), whole(:)
       real(dp), allocatable :: apart(:)       !! (corners) from the covered part, as a coordinate

@@ -34,7 +34,7 @@ module zone_edges
    integer, parameter :: fitted_spacings = 4   !! node spacings of two three-node sides
    integer, parameter :: halvings = 60         !! of the interval with the edge
 
-   !> What the contact points of an interface do, along it.
+   !> States of the contact points of an interface, along it.
    type :: contact_profile_type
       real(dp), allocatable :: s(:)          !! (m) arc length [length]
       real(dp), allocatable :: weight(:)     !! (m) tributary areas [length^2]
@@ -49,7 +49,7 @@ module zone_edges
 
 contains
 
-   !> What the contact points of an interface do, along it.
+   !> States of the contact points of an interface, along it.
    pure function contact_profile(points, contact_state, pressure, shear, gap) result(profile)
       type(contact_points_type), intent(in) :: points
       integer, intent(in) :: contact_state(:)   !! (m)

@@ -132,7 +132,7 @@ contains
       if (allocated(bodies%initial_force)) forces = forces + bodies%initial_force
    end function unstrained_forces
 
-   !> What a few units in the last place of the displacements change in omega, relative, and at
+   !> Relative change of omega by a few units in the last place of the displacements, and at
    !> least the unit in its own last place: no residual can be smaller.
    pure function residual_floor(bodies, data, pass, state) result(floor_value)
       type(reduced_bodies_type), intent(in) :: bodies

@@ -39,7 +39,7 @@ module fixed_point
       procedure :: coordinates
    end type pass_type
 
-   !> What turns omega* and its image U(omega*) into the next omega*.
+   !> Method that turns omega* and its image U(omega*) into the next omega*.
    type, abstract :: accelerator_type
       real(dp), allocatable :: g(:)   !! (m) part of the way that each contact point goes
       integer :: kept = 0 !! contact points whose g was kept in the last pass, eq. (4.2) giving none

@@ -1,4 +1,4 @@
-!> What an increment is solved from, and what its trial solutions work with.
+!> Data of an increment, and the workspace of its trial solutions.
 module increment_data
    use contact_system, only: contact_state_type
    use contact_workspace, only: contact_workspace_type
@@ -22,7 +22,7 @@ module increment_data
       real(dp) :: force = 0.0_dp    !! nodal force at its start [force]
    end type contact_scales_type
 
-   !> What stays fixed while the increment is solved.
+   !> Data that stay fixed while the increment is solved.
    type :: increment_data_type
       integer :: analysis = 0                        !! one of the analysis_* constants of steps
       type(start_type) :: start                      !! where its fixed point starts
@@ -43,7 +43,7 @@ module increment_data
       type(contact_scales_type) :: scales            !! set where heat and mechanics are coupled
    end type increment_data_type
 
-   !> What a trial solution needs, and nobody but its own increment changes.
+   !> Workspace of a trial solution; only its own increment changes it.
    type :: increment_workspace_type
       type(field_load_type) :: heat                  !! load of (3.4)
       type(field_load_type) :: force                 !! load of (2.4)

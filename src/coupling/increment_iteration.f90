@@ -241,7 +241,7 @@ contains
          openings(bodies, workspace%pass%graph, data%previous), workspace%edge_integrals)
    end subroutine begin_passes
 
-   !> What a pass found: solution so far, openings, points at rest, residual and its floor.
+   !> Findings of a pass: solution so far, openings, points at rest, residual and its floor.
    subroutine measure_pass(bodies, data, workspace, next, residual)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data

@@ -1,4 +1,4 @@
-!> What is told of the way to the solution of an increment.
+!> Report of the way to the solution of an increment.
 module solution_report
    use kinds, only: dp, long
    use text, only: string_type, to_text

@@ -5,8 +5,7 @@
 !> parts, one on a side on the parts along it. What is given for a single node stays on it, and so
 !> do forces and heat of the nodes of a set.
 module load_application
-   use couplings, only: coupling_equations
-   use equations, only: equation_type
+   use equations, only: coupling_equations, equation_type
    use kinds, only: dp
    use load_requests, only: nodal_field_type, request_type
    use local_refinement, only: hanging_rows

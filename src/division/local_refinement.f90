@@ -5,13 +5,13 @@
 !> Nodes that hang: on a side of an element beside which lie two elements of half its size, nodes of
 !> these that the large element does not have. The fields along the side are those of the large
 !> element, and so the values at these nodes follow from the side's nodes by its shape functions.
+!> Distance between lines of straight pieces.
 module local_refinement
    use contact_definitions, only: contact_definition_type, pairing_surfaces
    use element_kinds, only: element_corner_count
    use element_sides, only: element_sides_type, find_sides, side_ends
    use errors, only: error_type
    use kinds, only: dp
-   use line_distances, only: distance_of_lines
    use mesh, only: mesh_type
    use model, only: model_type
    use refined_regions, only: refined_region_type
@@ -20,7 +20,8 @@ module local_refinement
    implicit none
    private
    public :: elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours, &
-      hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, place_hanging
+      hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, place_hanging, &
+      distance_of_lines
 
    !> Part of DISTANCE= by which an element must come nearer: what only touches stays out.
    real(dp), parameter :: rounding = 1.0e-9_dp
@@ -320,7 +321,7 @@ contains
       end associate
    end function nodes_between
 
-   !> What hanging nodes say of a field: a sum for each of them, itself first, that is 0.
+   !> Conditions of hanging nodes on a field: a sum for each of them, itself first, that is 0.
    pure function hanging_rows(mesh) result(rows)
       type(mesh_type), intent(in) :: mesh
       type(sum_list_type) :: rows                   !! (hanging nodes, nodes)
@@ -363,5 +364,49 @@ contains
          end do
       end do
    end subroutine place_hanging
+
+   !> Least distance between points of two lines; 0 where they cross.
+   pure real(dp) function distance_of_lines(one, other) result(distance)
+      real(dp), intent(in) :: one(:, :)         !! (2, n) points [length]
+      real(dp), intent(in) :: other(:, :)       !! (2, m) points [length]
+      integer :: i, j
+
+      distance = huge(1.0_dp)
+      do i = 1, size(one, 2) - 1
+         do j = 1, size(other, 2) - 1
+            distance = min(distance, of_pieces(one(:, i:i + 1), other(:, j:j + 1)))
+         end do
+      end do
+   end function distance_of_lines
+
+   pure real(dp) function of_pieces(one, other)
+      real(dp), intent(in) :: one(2, 2), other(2, 2)
+
+      of_pieces = 0.0_dp
+      if (side_of(one, other(:, 1))*side_of(one, other(:, 2)) < 0.0_dp .and. &
+         side_of(other, one(:, 1))*side_of(other, one(:, 2)) < 0.0_dp) return
+      of_pieces = min(to_point(one, other(:, 1)), to_point(one, other(:, 2)), &
+         to_point(other, one(:, 1)), to_point(other, one(:, 2)))
+   end function of_pieces
+
+   !> Positive where a point lies on the left of a piece.
+   pure real(dp) function side_of(piece, point)
+      real(dp), intent(in) :: piece(2, 2), point(2)
+
+      associate (along => piece(:, 2) - piece(:, 1), to => point - piece(:, 1))
+         side_of = along(1)*to(2) - along(2)*to(1)
+      end associate
+   end function side_of
+
+   pure real(dp) function to_point(piece, point)
+      real(dp), intent(in) :: piece(2, 2), point(2)
+      real(dp) :: part
+
+      associate (along => piece(:, 2) - piece(:, 1))
+         part = dot_product(point - piece(:, 1), along)/max(dot_product(along, along), &
+            tiny(1.0_dp))
+         to_point = norm2(point - piece(:, 1) - min(max(part, 0.0_dp), 1.0_dp)*along)
+      end associate
+   end function to_point
 
 end module local_refinement

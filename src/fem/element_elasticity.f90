@@ -1,6 +1,6 @@
-!> Thermoelasticity in one element, and the strains of a mesh. Strains and stresses are ordered xx, yy, zz, xy, the shear
-!> strain being an angle; degrees of freedom u_x, u_y of node 1, u_x, u_y of node 2, ... In an
-!> axisymmetric element x is the radius and zz the circumference: eps_zz = u_x/r.
+!> Thermoelasticity in one element, and the strains of a mesh. Strains and stresses are ordered xx,
+!> yy, zz, xy, the shear strain being an angle; degrees of freedom u_x, u_y of node 1, u_x, u_y of
+!> node 2, ... In an axisymmetric element x is the radius and zz the circumference: eps_zz = u_x/r.
 !>
 !> Four-node elements of plane strain and axisymmetric ones use the mean dilatation of the element
 !> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that

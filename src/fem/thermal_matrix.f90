@@ -1,4 +1,4 @@
-!> The thermal matrices of (3.3), of one element and of all, and the stepping scheme (3.4).
+!> The thermal matrices of (3.3) and the stepping scheme (3.4).
 !>
 !> The unknown of a contact point is its jump theta = T_xi - T_eta, not two temperatures whose
 !> difference a large omega would swallow. G(omega), lumped on the contact points, then is the
@@ -14,23 +14,22 @@
 module thermal_matrix
    use controls, only: implicit_scheme, thermal_scheme_type
    use element_assembly, only: element_assembly_type
-   use element_integrals, only: area_factor
-   use element_kinds, only: axisymmetric, element_node_count
+   use element_conduction, only: conduction_matrix
+   use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: material_type, orientation_type, section_type
    use mesh, only: mesh_type
    use point_properties, only: axes_at_points, conductivity_in
-   use quadrature, only: integration_rule, most_points, point_count
-   use shape_functions, only: element_gradients, element_shape
+   use quadrature, only: most_points
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    implicit none
    private
-   public :: assemble_conduction, heat_across, heat_equation_type, heat_rates_type, &
-      heat_sources_type, conduction_matrix
+   public :: assemble_conduction, heat_across
+   public :: heat_equation_type, heat_rates_type, heat_sources_type
 
    real(dp), parameter :: undamped = 1.0_dp - 1.0e-9_dp   !! amplification that damps nothing
 
-   !> What brings heat into the bodies at one instant.
+   !> Sources of heat at one instant.
    type :: heat_sources_type
       real(dp), allocatable :: load(:)              !! (nodes) Q of (3.3) [power]
       !> (nodes, nodes) F of films; without values where there is none [power/temperature]
@@ -318,35 +317,5 @@ contains
       has_entries = .false.
       if (allocated(film%value)) has_entries = size(film%value) > 0
    end function has_entries
-
-   !> Conductance matrix of an element, the first integral of (3.2):
-   !> K_pq = integral of grad psi^p . K grad psi^q dV.
-   pure function conduction_matrix(kind, plane, coordinates, conductivity, thickness) result(k)
-      integer, intent(in) :: kind                  !! kind of the element
-      integer, intent(in) :: plane                 !! plane_strain, ...
-      real(dp), intent(in) :: coordinates(:, :)    !! (2, nodes of the kind) [length]
-      !> (2, 2, points of integration_rule, or 1 for all) [power/(length temperature)]
-      real(dp), intent(in) :: conductivity(:, :, :)
-      real(dp), intent(in) :: thickness            !! thickness; not of axisymmetric ones [length]
-      real(dp) :: k(element_node_count(kind), element_node_count(kind)) !! [power/temperature]
-      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
-      real(dp) :: b(2, element_node_count(kind)), flux(2, element_node_count(kind))
-      real(dp) :: jacobian, radius, factor
-      integer :: g, q
-
-      call integration_rule(kind, points, weights)
-      k = 0.0_dp
-      do g = 1, size(weights)
-         call element_gradients(kind, coordinates, points(:, g), b, jacobian)
-         radius = 0.0_dp
-         if (plane == axisymmetric) radius = dot_product(element_shape(kind, points(:, g)), &
-            coordinates(1, :))
-         factor = weights(g)*jacobian*area_factor(radius, thickness, plane == axisymmetric)
-         flux = factor*matmul(conductivity(:, :, min(g, size(conductivity, 3))), b)
-         do q = 1, size(k, 2)
-            k(:, q) = k(:, q) + b(1, :)*flux(1, q) + b(2, :)*flux(2, q)
-         end do
-      end do
-   end function conduction_matrix
 
 end module thermal_matrix

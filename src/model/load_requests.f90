@@ -7,7 +7,7 @@ module load_requests
    private
    public :: request_type, request_list_type, requests_type, nodal_field_type
 
-   !> What one data card asks for, for one component.
+   !> A request of one data card, for one component.
    type :: request_type
       integer :: step = 0           !! index of the step; 0 before the first
       integer :: kind = 0           !! kind of the load; 0 for prescribed and initial values

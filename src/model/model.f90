@@ -6,8 +6,7 @@ module model
    use card_places, only: place_type
    use contact_definitions, only: contact_definition_type, interaction_type, tie_definition_type
    use controls, only: solver_skyline
-   use couplings, only: coupling_type
-   use equations, only: equation_type
+   use equations, only: coupling_type, equation_type
    use kinds, only: dp
    use load_requests, only: nodal_field_type, requests_type
    use materials, only: material_type, orientation_type, section_type

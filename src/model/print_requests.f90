@@ -2,7 +2,7 @@
 module print_requests
    implicit none
    private
-   public :: print_request_type, append_request
+   public :: print_request_type
    public :: print_displacement, print_temperature, print_force, print_heat
    public :: print_stress, print_heat_flux, print_position
 
@@ -26,22 +26,5 @@ module print_requests
       !> nodes, else along x and y.
       logical :: local_axes = .false.
    end type print_request_type
-
-contains
-
-   !> Appends a request to a list.
-   subroutine append_request(list, request)
-      type(print_request_type), allocatable, intent(inout) :: list(:)  !! the list, unallocated too
-      type(print_request_type), intent(in) :: request                  !! what is appended
-      type(print_request_type), allocatable :: longer(:)
-      integer :: n
-
-      n = 0
-      if (allocated(list)) n = size(list)
-      allocate(longer(n + 1))
-      if (n > 0) longer(:n) = list
-      longer(n + 1) = request
-      call move_alloc(longer, list)
-   end subroutine append_request
 
 end module print_requests

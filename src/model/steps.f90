@@ -6,7 +6,7 @@ module steps
    use print_requests, only: print_request_type
    implicit none
    private
-   public :: step_type, boundary_type
+   public :: step_type, step_controls_type, boundary_type
    public :: load_type, load_kind_count
    public :: load_force, load_pressure, load_traction, load_body_force, load_gravity
    public :: load_centrifugal, centrifugal_round, load_nodal_heat, load_face_heat, load_body_heat
@@ -66,8 +66,15 @@ module steps
       integer :: card = 0           !! running number of the *BOUNDARY data card, over all steps
    end type boundary_type
 
+   !> Controls of a step that last until a later one changes them.
+   type :: step_controls_type
+      type(fixed_point_type) :: fixed_point                  !! fixed point of this step
+      type(start_type) :: start                              !! where its fixed point starts
+      type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
+   end type step_controls_type
+
    !> One *STEP. Loads are those that its own cards give; what earlier steps gave stays (OP=MOD).
-   type :: step_type
+   type, extends(step_controls_type) :: step_type
       integer :: analysis = analysis_static          !! one of the analysis_* constants
       integer :: max_increments = 100                !! INC=
       logical :: ramped = .true.                     !! loads ramp over the step; else whole at once
@@ -84,9 +91,6 @@ module steps
       logical :: ends_loads(load_kind_count) = .false.
       logical :: ends_boundaries = .false.   !! *BOUNDARY, OP=NEW: former prescribed values end
       type(contact_changes_type) :: changes                  !! what it changes of contact
-      type(fixed_point_type) :: fixed_point                  !! fixed point of this step
-      type(start_type) :: start                              !! where its fixed point starts
-      type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
       integer :: field_frequency = 1                 !! fields at every n-th increment and the last
       integer :: contact_print_frequency = 0         !! *CONTACT PRINT likewise; 0 never
       type(print_request_type), allocatable :: node_prints(:)     !! *NODE PRINT; or unallocated

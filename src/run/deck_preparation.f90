@@ -109,7 +109,7 @@ contains
       if (is_skipped(command, deck)) return
       call build_model(deck%cards, verifiable, estimated, deck%model, deck%report)
       if (command%accuracy <= 0.0_dp .or. deck%report%has_errors()) return
-      ! What --accuracy asks for takes the place of the deck's targets.
+      ! Targets of --accuracy replace those of the deck.
       deck%model%estimates_errors = .true.
       deck%model%accuracy%targets = whole_request(command%accuracy)
       if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &

@@ -196,7 +196,7 @@ contains
          self%is_written = .true.
          call begin_increment(self, error)
          call rounds%solve_increments(model, self%simulation, self, record, error)
-         ! What is written now is no longer cut short.
+         ! From here on, output is not cut short.
          call self%end%hold(.true.)
          call prepare_end(self, end_by_increments)
          if (.not. self%is_written) then

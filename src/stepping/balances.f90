@@ -38,7 +38,7 @@ module balances
    !> Largest imbalance at the start of an increment that counts as none.
    real(dp), parameter :: equilibrium = 1.0e-6_dp
 
-   !> What displacements and forces are measured by.
+   !> Scales of displacements and forces.
    type :: scales_type
       real(dp) :: length = 1.0_dp   !! largest displacement [length]
       real(dp) :: force = 1.0_dp    !! largest force [force]

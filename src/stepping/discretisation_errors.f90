@@ -177,7 +177,7 @@ contains
       where (.not. is_there) error = 0.0_dp
    end subroutine drop_rounding
 
-   !> What values are divided by, so that squares neither overflow nor vanish.
+   !> Divisor of values whose squares must neither overflow nor vanish.
    pure real(dp) function scale_of(samples)
       real(dp), intent(in) :: samples(:, :)
       real(dp) :: largest

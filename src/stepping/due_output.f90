@@ -1,4 +1,4 @@
-!> What output is due at an increment: fields of the result file, tables of the listing, verdicts.
+!> Output due at an increment: fields of the result file, tables of the listing, verdicts.
 !> Stress, heat flux and their errors are recovered for these alone.
 module due_output
    use kinds, only: dp

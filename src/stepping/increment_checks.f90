@@ -1,4 +1,4 @@
-!> What a solved increment must satisfy before it is accepted.
+!> Checks that a solved increment must pass before it is accepted.
 module increment_checks
    use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type

@@ -94,16 +94,13 @@ contains
       type(trade_type) :: trade
       type(error_type), allocatable :: error
       character(:), allocatable :: table
-      integer, allocatable :: pairings(:)
       integer :: i
 
+      status = 0
       call prepare_deck(path, command, deck, model, simulation, error, &
          variation_type(order=2, levels=0))
-      if (allocated(error)) then
-         status = error%status
-         return
-      end if
-      pairings = simulation%bodies%interfaces%pairing
+      if (allocated(error)) status = error%status
+      if (allocated(error)) return
       call simulation%release()
       table = results_of(path, command)//'.trade.csv'
       call inputs%add(path, deck%cards%files)
@@ -115,14 +112,13 @@ contains
          runs(i)%task%command = command
          runs(i)%task%deck => deck
       end do
-      if (.not. allocated(error)) call measure(model, pairings, runs, trade, error)
-      if (allocated(error)) then
-         status = error%status
-         if (status == status_interrupted .and. size(trade%rows) > 0) then
-            trade%ended_early = error%message//': the table contains only the '// &
-               counted(size(trade%rows), 'row')//' measured before'
-            deallocate (error)
-         end if
+      if (.not. allocated(error)) call measure(model, &
+         simulation%bodies%interfaces%pairing, runs, trade, error)
+      if (allocated(error)) status = error%status
+      if (status == status_interrupted .and. size(trade%rows) > 0) then
+         trade%ended_early = error%message//': the table contains only the '// &
+            counted(size(trade%rows), 'row')//' measured before'
+         deallocate (error)
       end if
       if (.not. allocated(error)) then
          call state_errors(model%initial_temperature, trade)
@@ -130,10 +126,8 @@ contains
          call write_trade(table, trade, error)
          if (allocated(error)) status = error%status
       end if
-      if (allocated(error)) then
-         call print_error(path, error%message)
-         return
-      end if
+      if (allocated(error)) call print_error(path, error%message)
+      if (allocated(error)) return
       if (.not. command%quiet) then
          call print_trade(path, trade)
          call print_line(output_unit, 'table: '//table)

@@ -83,7 +83,7 @@ contains
       if (is_there(expected) .and. is_there(found)) distance = abs(found - expected)/scale
    end function distance
 
-   !> What errors are relative to: the value at the instant, for edges the length of the contact, a
+   !> Reference of relative errors: the value at the instant, for edges the length of the contact, a
    !> quarter of the largest over time where that is more, and a hundredth of the largest of all
    !> interfaces; for temperatures the range of all, the initial ones included. 0 where there is
    !> nothing to measure.

@@ -59,7 +59,7 @@ module trade_study
       integer, allocatable :: items(:)                  !! as from item_quantities
       real(dp) :: uncertainty(quantity_count) = absent  !! of the reference; absent: not judged
       logical :: is_known(quantity_count) = .false.     !! whether there is a reference
-      !> What a recommendation does not hold for, or why there is none; empty for neither
+      !> Limits of a recommendation, or why there is none; empty for neither
       type(string_type) :: remarks(target_count)
    end type trade_type
 

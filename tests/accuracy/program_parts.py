@@ -63,7 +63,7 @@ PARTS = {
         "divided_mesh", "doubled_increments", "error_estimator",
         "interface_quantities", "mesh_bounds", "quantity_histories",
     },
-    "refinement": {"hanging_nodes", "local_refinement", "mesh_division", "refinement"},
+    "refinement": {"local_refinement", "mesh_division", "refinement"},
     "printed tables": {"increment_records:points_of_set", "listing_tables:print_contact_table",
                        "listing_tables:print_nodes", "listing_tables:print_points"},
     "checks of the deck": {"deck_builder_verify", "interface_reports:check_arc_lengths",

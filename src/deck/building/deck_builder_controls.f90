@@ -15,7 +15,7 @@ module deck_builder_controls
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use named_items, only: find_named
-   use print_requests, only: append_request, print_displacement, print_force, print_heat, &
+   use print_requests, only: print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
    use spelling, only: known_choices
    use text, only: append, string_type, to_text, to_upper
@@ -244,7 +244,9 @@ contains
                report, request%quantities)
          end do
       end do
-      if (request%set > 0 .and. size(request%quantities) > 0) call append_request(requests, request)
+      if (request%set == 0 .or. size(request%quantities) == 0) return
+      if (.not. allocated(requests)) allocate (requests(0))
+      requests = [requests, request]
    end subroutine build_print
 
    !> Whether a set is known, or must be: not where the cards of sets have errors.

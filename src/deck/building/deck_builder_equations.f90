@@ -4,12 +4,11 @@ module deck_builder_equations
    use card_parameters, only: choose, need_parameter, parameter_place
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use couplings, only: coupling_type
+   use equations, only: coupling_type, equation_type
    use deck_context, only: deck_context_type, need_named, read_target
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: card_count, cards_of, is_keyword
-   use equations, only: equation_type
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type

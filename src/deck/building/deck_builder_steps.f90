@@ -4,7 +4,6 @@ module deck_builder_steps
       take_parameter
    use card_values, only: check_extra, decimal_comma, report_decimal_comma, take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
-   use controls, only: fixed_point_type, implicit_scheme, start_type, thermal_scheme_type
    use deck_builder_contact, only: build_contact_change
    use deck_builder_controls, only: build_fixed_point, build_print, build_start, &
       build_thermal_scheme, read_frequency
@@ -16,7 +15,8 @@ module deck_builder_steps
    use mesh, only: mesh_type
    use model, only: model_type
    use steps, only: analysis_coupled, analysis_heat, analysis_static, increment_growth, &
-      least_increment, planned_increments, solves_heat, solves_mechanics, step_type
+      least_increment, planned_increments, solves_heat, solves_mechanics, step_controls_type, &
+      step_type
    use text, only: to_text
    implicit none
    private
@@ -24,13 +24,6 @@ module deck_builder_steps
 
    real(dp), parameter :: increment_rounding = 1.0e-6_dp   !! a shorter rest is none, relative
    real(dp), parameter :: most_counted = 1.0e9_dp   !! increments that a message counts
-
-   !> Controls that last until a later step changes them.
-   type :: lasting_controls_type
-      type(fixed_point_type) :: fixed_point
-      type(start_type) :: start
-      type(thermal_scheme_type) :: scheme = implicit_scheme
-   end type lasting_controls_type
 
    !> Cards of a step so far.
    type :: card_counts_type
@@ -50,10 +43,9 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives requests and notes
       type(model_type), intent(inout) :: model             !! receives the steps
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      type(lasting_controls_type) :: controls
+      type(step_controls_type) :: controls
       type(card_counts_type) :: counts
       type(step_type) :: before
-      integer, allocatable :: places(:)
       integer :: k, n
 
       context%analyses_sound = .not. report%has_lost('*STEP')
@@ -102,17 +94,23 @@ contains
                end if
             end select
          end associate
-         if (n == 0) cycle
-         model%steps(n)%fixed_point = controls%fixed_point
-         model%steps(n)%start = controls%start
-         model%steps(n)%scheme = controls%scheme
+         if (n > 0) model%steps(n)%step_controls_type = controls
       end do
-      ! It means nothing where no displacements are solved, and is warned of once elsewhere.
-      model%steps%nlgeom = model%steps%nlgeom .and. solves_mechanics(model%steps%analysis)
-      places = pack(cards_of(cards, 'STEP'), model%steps%nlgeom)
+      call warn_of_nlgeom(cards, report, model%steps)
+   end subroutine build_steps
+
+   !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
+   subroutine warn_of_nlgeom(cards, report, steps)
+      type(cards_type), intent(in) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: steps(:)
+      integer, allocatable :: places(:)
+
+      steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
+      places = pack(cards_of(cards, 'STEP'), steps%nlgeom)
       if (size(places) > 0) call report%warning(parameter_place(cards%keywords(places(1)), &
          'NLGEOM'), 'NLGEOM is not modelled: displacements and strains stay small')
-   end subroutine build_steps
+   end subroutine warn_of_nlgeom
 
    !> Reads a card of a step that asks for output; others are ignored.
    subroutine build_output(cards, card, context, mesh, counts, report, step)

@@ -5,7 +5,7 @@ module deck_builder_verify
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
-   use couplings, only: constrained_nodes
+   use equations, only: constrained_nodes
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type

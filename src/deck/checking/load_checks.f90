@@ -1,7 +1,7 @@
 !> Loads and supports once all cards are read: whether they act on something, and in a step that
 !> has use for them.
 module load_checks
-   use couplings, only: constrained_nodes
+   use equations, only: constrained_nodes
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_kinds, only: axisymmetric
@@ -41,10 +41,11 @@ contains
             card = request%card
             select case (request%kind)
             case (load_force, load_nodal_heat)
-               if (.not. (all(used(items_of(request, model%mesh%node_sets))) .or. &
-                  report%has_lost('equation') .or. report%has_lost('element'))) &
+               if (.not. (report%has_lost('equation') .or. report%has_lost('element') .or. &
+                  all(used(items_of(request, model%mesh%node_sets))))) then
                   call report%error(request%place, trim(merge('a force', 'heat   ', &
-                  request%kind == load_force))//' on a node that no element has')
+                     request%kind == load_force))//' on a node that no element has')
+               end if
             case (load_gravity)
                call check_density(request, model, 'GRAV', report)
             case (load_centrifugal)

@@ -225,7 +225,8 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), allocatable :: jacobians(:)
       logical :: clockwise(size(inverted))
-      integer :: e
+      real(dp) :: points(2, most_points), weights(most_points), x(2)
+      integer :: e, g
 
       inverted = .false.
       clockwise = .false.
@@ -234,8 +235,13 @@ contains
          jacobians = point_jacobians(mesh, e)
          inverted(e) = any(jacobians <= 0.0_dp)
          clockwise(e) = all(jacobians < 0.0_dp)
-         if (inverted(e) .and. .not. clockwise(e)) call report%error(context%element_place(e), &
-            inversion(mesh, e, place_words(mesh, e, minloc(jacobians, dim=1))))
+         if (.not. inverted(e) .or. clockwise(e)) cycle
+         g = minloc(jacobians, dim=1)
+         call integration_rule(mesh%element_kind(e), points, weights)
+         x = matmul(mesh%coordinates(:, mesh%element_nodes(:element_node_count( &
+            mesh%element_kind(e)), e)), element_shape(mesh%element_kind(e), points(:, g)))
+         call report%error(context%element_place(e), inversion(mesh, e, 'integration point '// &
+            to_text(g)//' at '//to_text(x(1))//', '//to_text(x(2))))
       end do
       e = findloc(clockwise, .true., dim=1)
       if (e > 0) call report%error(context%element_place(e), inversion(mesh, e, &
@@ -255,21 +261,6 @@ contains
          ', then its midside nodes, each near the middle of its side'
       message = message//', or correct their coordinates'
    end function inversion
-
-   !> An integration point of an element in words.
-   pure function place_words(mesh, e, g) result(words)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: e, g   ! element and its integration point
-      character(:), allocatable :: words
-      real(dp) :: points(2, most_points), weights(most_points), x(2)
-
-      associate (kind => mesh%element_kind(e))
-         call integration_rule(kind, points, weights)
-         x = matmul(mesh%coordinates(:, mesh%element_nodes(:element_node_count(kind), e)), &
-            element_shape(kind, points(:, g)))
-      end associate
-      words = 'integration point '//to_text(g)//' at '//to_text(x(1))//', '//to_text(x(2))
-   end function place_words
 
    !> Jacobians of an element at its integration points.
    pure function point_jacobians(mesh, e) result(jacobians)

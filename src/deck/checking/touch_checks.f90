@@ -5,9 +5,8 @@ module touch_checks
    use contact_definitions, only: contact_definition_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use element_kinds, only: side_nodes
    use element_sides, only: element_sides_type, find_sides
-   use equations, only: equation_nodes
+   use equations, only: equation_nodes, surface_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
@@ -140,7 +139,10 @@ contains
                size(faces, 2))])
          end associate
       end do
-      constrained = constrained_of(model)
+      constrained = equation_nodes(model%equations, size(constrained))
+      do i = 1, size(model%couplings)
+         constrained(surface_nodes(model%mesh, model%couplings(i)%surface)) = .true.
+      end do
       do i = 1, size(touches)
          related(i) = is_paired(touches(i)%side, touches(i)%other) .or. &
             (constrained(touches(i)%node) .and. &
@@ -163,23 +165,6 @@ contains
          is_paired = .false.
       end function is_paired
    end subroutine drop_related
-
-   !> Nodes of equations and of faces that follow a reference node.
-   function constrained_of(model) result(constrained)
-      type(model_type), intent(in) :: model
-      logical :: constrained(size(model%mesh%node_number))
-      integer :: f, i
-
-      constrained = equation_nodes(model%equations, size(constrained))
-      do i = 1, size(model%couplings)
-         associate (faces => model%mesh%surfaces(model%couplings(i)%surface)%faces)
-            do f = 1, size(faces, 2)
-               constrained(model%mesh%element_nodes(side_nodes(model%mesh%element_kind( &
-                  faces(1, f)), faces(2, f)), faces(1, f))) = .true.
-            end do
-         end associate
-      end do
-   end function constrained_of
 
    !> Keys by which touches share a message: hanging nodes, or two faces of the same bodies. Nodes
    !> hang on a side if both its corners are nodes of the sides that lie on it.
