@@ -253,6 +253,28 @@ contains
       end do
    end subroutine choose_opposite
 
+   !> The side of the large element: corner, midside node or 0, corner.
+   pure function coarse_side(mesh, h) result(ends)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: h                      !! 1..hanging_count
+      integer :: ends(3)
+
+      ends = mesh%hanging_sides(:3, h)
+      if (mesh%hanging_sides(4, h) == 0) ends(2) = 0
+   end function coarse_side
+
+   !> The sides of the small elements there.
+   pure function fine_sides(mesh, h) result(ends)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: h                      !! 1..hanging_count
+      integer :: ends(3, 2)
+
+      associate (nodes => mesh%hanging_sides(:, h))
+         ends(:, 1) = nodes([1, 4, 2])
+         ends(:, 2) = nodes([2, 5, 3])
+      end associate
+   end function fine_sides
+
    !> Chooses the elements with sides twice as long beside those that are chosen.
    pure subroutine choose_coarse(mesh, sides, chosen, is_new)
       type(mesh_type), intent(in) :: mesh
@@ -280,28 +302,6 @@ contains
       hanging_count = 0
       if (allocated(mesh%hanging_sides)) hanging_count = size(mesh%hanging_sides, 2)
    end function hanging_count
-
-   !> The side of the large element: corner, midside node or 0, corner.
-   pure function coarse_side(mesh, h) result(ends)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: h                      !! 1..hanging_count
-      integer :: ends(3)
-
-      ends = mesh%hanging_sides(:3, h)
-      if (mesh%hanging_sides(4, h) == 0) ends(2) = 0
-   end function coarse_side
-
-   !> The sides of the small elements there.
-   pure function fine_sides(mesh, h) result(ends)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: h                      !! 1..hanging_count
-      integer :: ends(3, 2)
-
-      associate (nodes => mesh%hanging_sides(:, h))
-         ends(:, 1) = nodes([1, 4, 2])
-         ends(:, 2) = nodes([2, 5, 3])
-      end associate
-   end function fine_sides
 
    !> The nodes that hang there, the one next to an end of the side first, or 0 for the second.
    pure function nodes_between(mesh, h, first) result(nodes)
