@@ -152,7 +152,7 @@ build_preset() {
 run_build() {
    install_packages "${build_packages[@]}"
    install_python_packages
-   build_preset release
+   build_preset release thercon
 }
 
 # Whether the file named first is newer than all files in what is named after it.
