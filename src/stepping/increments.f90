@@ -121,7 +121,8 @@ contains
       associate (analysis => model%steps(self%control%step)%analysis, bodies => self%bodies, &
          heat => self%heat)
          film = heat%added
-         if (solves_heat(analysis) .and. .not. heat%is_of(bodies%thermal, heat%added)) then
+         if (solves_heat(analysis) .and. (heat%numbering /= bodies%thermal%numbering .or. &
+            .not. allocated(heat%solver))) then
             call self%loads%move_to(self%control%next_instant(model), model)
             equation = heat_equation_type(model%steps(self%control%step)%scheme, &
                self%state%sources)
