@@ -82,7 +82,7 @@ contains
       where (ieee_is_nan(change)) change = 0.0_dp
    end function change_since
 
-   !> What two histories differ by at the last instants that both have.
+   !> Difference of two histories at the last instants that both have.
    pure subroutine compare(self, other, interface, time, difference)
       type(quantity_histories_type), intent(in) :: self, other
       integer, intent(in) :: interface

@@ -1,6 +1,6 @@
 !> The contact points of all interfaces in one row, as the solution works on them, and beside them
-!> the points of all ties, the nodes that hang and the equations of the deck.
-!> Also the laws of all contact points in a step, made when it begins.
+!> the points of all ties, the nodes that hang and the equations of the deck; and the laws of all
+!> contact points, made when a step begins.
 module connections
    use conductance_laws, only: conductance_law_type, is_constant, varies_with_temperature
    use contact_definitions, only: is_removed, latest_friction, pairing_nodes, tie_definition_type

@@ -34,8 +34,8 @@
 !>
 !> Its solutions, and all of it that changes, are in contact_workspace.
 !>
-!> What a single contact point does is here too: contact states, Coulomb's law, eq. (1.6), with a
-!> largest friction, in increments, and the law of one that closes within an increment.
+!> The answer of a single contact point is here too: contact states, Coulomb's law, eq. (1.6), with
+!> a largest friction, in increments, and the law of one that closes within an increment.
 module contact_system
    use dense, only: least_squares, null_space, product_of
    use friction_laws, only: friction_bound, friction_law_type

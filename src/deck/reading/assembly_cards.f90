@@ -17,7 +17,8 @@ module assembly_cards
    private
    public :: flatten_cards
 
-   ! Where a card is; from 1 what its keyword opens, and where that one must be.
+   ! Levels at which a card may stand, the keywords that open those from 1 on, and the level at
+   ! which each of these must stand.
    integer, parameter :: at_model = 0, at_part = 1, at_assembly = 2, at_instance = 3
    character(*), parameter :: structures(3) = [character(8) :: 'PART', 'ASSEMBLY', 'INSTANCE']
    integer, parameter :: outside(3) = [at_model, at_model, at_assembly]
@@ -73,7 +74,7 @@ contains
       call replace_cards(cards, all)
    end subroutine flatten_cards
 
-   !> What a keyword opens or ends; at_model where it is of no part and no assembly.
+   !> Level that a keyword opens or ends; at_model where it belongs to no part and no assembly.
    pure integer function level_of(keyword)
       character(*), intent(in) :: keyword
 
