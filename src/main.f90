@@ -18,8 +18,9 @@ program thercon
    use version_report, only: print_versions
    implicit none
    type(command_type) :: command
+   type(deck_outcome_type) :: outcome
    type(error_type), allocatable :: error
-   integer :: i, status
+   integer :: deck_status, i, status
 
    interface
       !> Ends the process without the line that STOP writes.
@@ -45,7 +46,10 @@ program thercon
    case (command_version)
       call print_versions(output_unit)
    case (command_check)
-      call check_all(status)
+      do i = 1, size(command%decks)
+         call check_deck(command%decks(i)%value, command, deck_status)
+         status = max(status, deck_status)
+      end do
    case (command_trade)
       call catch_signals(outlives_pipes=.false.)
       call trade_deck(command%decks(1)%value, command, status)
@@ -53,7 +57,14 @@ program thercon
       if (command%is_batch) then
          call run_batch(command, status)
       else
-         call run_one(command%decks(1)%value, status)
+         associate (path => command%decks(1)%value)
+            call catch_signals(outlives_pipes=.false.)
+            call run_deck(path, command, outcome)
+            status = outcome%status
+            if (.not. command%quiet .and. status /= status_deck) call outcome%print(results_of( &
+               path, command))
+            call outcome%print_failed_checks()
+         end associate
       end if
    end select
    call check_printed(error)
@@ -63,33 +74,5 @@ program thercon
    end if
    flush (error_unit)
    call c_exit(int(status, c_int))
-
-contains
-
-   !> Checks the decks one after the other.
-   subroutine check_all(worst)
-      integer, intent(out) :: worst
-      integer :: deck, deck_status
-
-      worst = 0
-      do deck = 1, size(command%decks)
-         call check_deck(command%decks(deck)%value, command, deck_status)
-         worst = max(worst, deck_status)
-      end do
-   end subroutine check_all
-
-   !> Solves the one deck, here.
-   subroutine run_one(path, deck_status)
-      character(*), intent(in) :: path
-      integer, intent(out) :: deck_status
-      type(deck_outcome_type) :: outcome
-
-      call catch_signals(outlives_pipes=.false.)
-      call run_deck(path, command, outcome)
-      deck_status = outcome%status
-      if (.not. command%quiet .and. deck_status /= status_deck) call outcome%print(results_of( &
-         path, command))
-      call outcome%print_failed_checks()
-   end subroutine run_one
 
 end program thercon

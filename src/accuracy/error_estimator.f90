@@ -4,6 +4,7 @@
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_definitions, only: pairing_surfaces
+   use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use divided_mesh, only: divided_mesh_type
    use doubled_increments, only: doubled_increments_type
@@ -86,6 +87,7 @@ contains
       !> (steps) at their ends in the round before, empty in the first; receives the present ones
       type(quantity_histories_type), intent(inout) :: histories(:)
       real(dp) :: values(size(estimated), size(record%contacts))
+      type(contact_points_type) :: points
       character(:), allocatable :: no_mesh
       integer :: i, q
 
@@ -97,7 +99,8 @@ contains
       end if
       call self%doubled%follow(model, simulation, record)
       do i = 1, size(record%contacts)
-         associate (points => simulation%bodies%interfaces(i), contact => record%contacts(i))
+         call simulation%bodies%view(i, points)
+         associate (contact => record%contacts(i))
             values(:, i) = quantities_of(points, contact)
             self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact))
          end associate
@@ -172,6 +175,7 @@ contains
       type(error_type), allocatable :: error
       real(dp) :: change(size(estimated), size(record%errors))
       real(dp) :: energy
+      type(contact_points_type) :: points
       integer :: i
 
       why_not = ''
@@ -183,7 +187,8 @@ contains
       energy = sum(squared_errors(model%mesh, record), mask=.not. self%divided%is_divided)
       do i = 1, size(record%errors)
          associate (bounds => record%errors(i)%mesh)
-            bounds = bounds_of_mesh(simulation%bodies%interfaces(i), record%contacts(i), &
+            call simulation%bodies%view(i, points)
+            bounds = bounds_of_mesh(points, record%contacts(i), &
                change(:, i), self%histories%scatter(i, before), self%most_locked(i), energy)
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
                left_by_round*abs(self%histories%change_since(i, before)))

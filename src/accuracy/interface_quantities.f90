@@ -56,17 +56,18 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: state
       real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
+      type(contact_points_type) :: points
       integer :: first, i, last
 
-      associate (points => bodies%points, contact => state%contact)
+      associate (start => bodies%points%interface_start, contact => state%contact)
          do i = 1, size(values, 2)
-            first = points%interface_start(i)
-            last = points%interface_start(i + 1) - 1
-            values(:, i) = quantities_of(bodies%interfaces(i), contact_of( &
-               bodies%interfaces(i), bodies%laws%friction(first), &
+            first = start(i)
+            last = start(i + 1) - 1
+            call bodies%view(i, points)
+            values(:, i) = quantities_of(points, contact_of(points, bodies%laws%friction(first), &
                contact%contact_state(first:last), contact%gap(first:last), &
                contact%force(first:last), contact%shear_force(first:last), &
-               heat_across(points%weight(first:last), state%carrying(first:last), &
+               heat_across(points%weight, state%carrying(first:last), &
                state%jump(first:last))))
          end do
       end associate

@@ -127,7 +127,6 @@ contains
       real(dp) :: scale, value(1)
       integer :: d, n
 
-      if (.not. self%is_on) return
       n = size(self%rounds)
       self%rounds(n)%increments = record%increment
       do d = 1, size(self%demands)

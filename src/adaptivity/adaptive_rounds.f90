@@ -115,6 +115,7 @@ contains
       !> In: allocated where not even the first can be solved
       type(error_type), allocatable, intent(inout) :: error
       type(error_estimator_type) :: estimator
+      type(contact_points_type), allocatable :: interfaces(:)
       type(round_indicators_type) :: indicators
 
       call estimator%start(model, simulation)
@@ -125,9 +126,12 @@ contains
          call simulation%advance(model, record, error)
          if (.not. allocated(error)) then
             call estimator%end_increment(model, simulation, record, self%accuracy%histories)
-            call self%accuracy%follow(simulation%bodies%interfaces, record)
-            if (self%accuracy%is_on .and. record%last_of_step) call indicators%take(model, &
-               simulation%bodies%interfaces, self%accuracy, record)
+            if (self%accuracy%is_on) then
+               call simulation%bodies%views(interfaces)
+               call self%accuracy%follow(interfaces, record)
+               if (record%last_of_step) call indicators%take(model, interfaces, self%accuracy, &
+                  record)
+            end if
          end if
          call taker%take(simulation, record, error)
       end do

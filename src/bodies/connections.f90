@@ -5,7 +5,7 @@ module connections
    use conductance_laws, only: conductance_law_type, is_constant, varies_with_temperature
    use contact_definitions, only: is_removed, latest_friction, pairing_nodes, tie_definition_type
    use contact_pairs, only: make_contact_points, make_tie_points
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, contact_row_type
    use element_kinds, only: side_node_count
    use equations, only: equation_type
    use errors, only: error_type
@@ -14,18 +14,19 @@ module connections
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
+   use mortar_segments, only: hat_geometry_type
    use sum_lists, only: sum_list_type
    use temperature_laws, only: face_temperatures_type, law_at, law_jumps
    use transforms, only: partner_type
    implicit none
    private
-   public :: connections_type, tie_points_type, match_surfaces, match_tie, joined_points, &
+   public :: connections_type, tie_points_type, match_surfaces, match_tie, join_points, &
       contact_laws_type, laws_of_step
 
    real(dp), parameter :: opposite = 1.0e-3_dp   !! offset of nodes face to face, of the side
 
    !> The points of all ties in one row.
-   type, extends(contact_points_type) :: tie_points_type
+   type, extends(contact_row_type) :: tie_points_type
       integer, allocatable :: tie(:)            !! (n) index into the model's ties
       logical, allocatable :: is_opposite(:)    !! (n) whether these two are face to face
       !> (n) whether it is a mortar point of a face without midside nodes
@@ -33,12 +34,13 @@ module connections
    end type tie_points_type
 
    !> The contact points of all interfaces in one row, and what else joins nodes.
-   type, extends(contact_points_type) :: connections_type
+   type, extends(contact_row_type) :: connections_type
       integer, allocatable :: interface_start(:)     !! (interfaces + 1) first contact point of each
       !> (m, nodes) mean of both faces; no sums where no conductance law varies with the temperature
       type(sum_list_type) :: mean
       !> (interfaces) whether heat is integrated to the edge of contact
       logical, allocatable :: resolves_edge(:)
+      type(hat_geometry_type), allocatable :: mortar(:) !! (interfaces) their hat functions
       !> nodes of both faces of these interfaces; unallocated where there are none
       integer, allocatable :: edge_nodes(:)
       type(tie_points_type) :: ties                           !! points of the ties, no part of m
@@ -103,12 +105,13 @@ contains
       end associate
    end function thickness_at
 
-   !> Puts the contact points of all interfaces in one row, and those of all ties.
-   pure function joined_points(interfaces, of_ties, model) result(row)
-      type(contact_points_type), intent(in) :: interfaces(:) !! in the order of the deck
+   !> Puts the contact points of all interfaces in one row, and those of all ties. The interfaces
+   !> keep what the row does not have.
+   pure subroutine join_points(interfaces, of_ties, model, row)
+      type(contact_points_type), intent(inout) :: interfaces(:) !! in the order of the deck
       type(contact_points_type), intent(in) :: of_ties(:)    !! (ties) in the order of the deck
       type(model_type), intent(in) :: model
-      type(connections_type) :: row                  !! all their contact points
+      type(connections_type), intent(out) :: row             !! all their contact points
       integer :: i, k
 
       row%slave = [(interfaces(i)%slave, i=1, size(interfaces))]
@@ -155,8 +158,13 @@ contains
       allocate (row%equations(0), row%partners(0))
       if (allocated(model%partners)) row%partners = model%partners
       if (allocated(model%equations)) row%equations = model%equations
-      call find_resolved_faces(model, interfaces, row)
-   end function joined_points
+      row%mortar = interfaces%mortar
+      call find_resolved_faces(model, row)
+      do i = 1, size(interfaces)
+         interfaces(i)%contact_row_type = contact_row_type()
+         interfaces(i)%mortar = hat_geometry_type()
+      end do
+   end subroutine join_points
 
    !> Puts the points of all ties in one row.
    pure function joined_ties(mesh, ties, of_tie) result(row)
@@ -188,25 +196,23 @@ contains
    !> Heat is integrated to the edge of mortar points whose conductance varies without a jump, where
    !> it follows from gap and pressure alone: the means of the faces (contact_heat) go by jumps of
    !> whole hat functions.
-   pure subroutine find_resolved_faces(model, interfaces, row)
+   pure subroutine find_resolved_faces(model, row)
       type(model_type), intent(in) :: model
-      type(contact_points_type), intent(in) :: interfaces(:)
       type(connections_type), intent(inout) :: row
       integer, allocatable :: nodes(:)
       integer :: i, k
 
-      allocate (row%resolves_edge(size(interfaces)), source=.false.)
+      allocate (row%resolves_edge(size(row%mortar)), source=.false.)
       if (row%vary_with_temperature()) return
       nodes = [integer ::]
-      do i = 1, size(interfaces)
-         if (.not. allocated(interfaces(i)%segments)) cycle
-         if (size(interfaces(i)%slave) < 2) cycle
+      do i = 1, size(row%mortar)
+         if (.not. allocated(row%mortar(i)%segments)) cycle
+         if (size(row%mortar(i)%hats) < 2) cycle
          associate (law => model%interactions(model%contacts(i)%interaction)%law)
             row%resolves_edge(i) = .not. (law_jumps(law) .or. is_constant(law))
          end associate
          if (.not. row%resolves_edge(i)) cycle
-         nodes = [nodes, (interfaces(i)%segments(k)%nodes, k=1, &
-            size(interfaces(i)%segments))]
+         nodes = [nodes, (row%mortar(i)%segments(k)%nodes, k=1, size(row%mortar(i)%segments))]
       end do
       if (size(nodes) > 0) row%edge_nodes = nodes
    end subroutine find_resolved_faces

@@ -3,7 +3,7 @@
 !> (heat_reduction).
 module reduced_bodies
    use field_constraints, only: constrain_displacements, constrain_temperatures
-   use connections, only: connections_type, contact_laws_type, joined_points, laws_of_step, &
+   use connections, only: connections_type, contact_laws_type, join_points, laws_of_step, &
       match_surfaces, match_tie
    use conductance_laws, only: is_constant
    use contact_points, only: contact_points_type
@@ -28,8 +28,9 @@ module reduced_bodies
 
    !> The reduced bodies.
    type :: reduced_bodies_type
-      type(contact_points_type), allocatable :: interfaces(:) !! interfaces in the order of the deck
-      type(contact_points_type), allocatable :: ties(:)       !! points of the ties likewise
+      !> Interfaces in the order of the deck: what each has beside its part of `points` (see view)
+      type(contact_points_type), allocatable :: interfaces(:)
+      type(contact_points_type), allocatable :: ties(:)       !! theirs, given to prepare
       type(connections_type) :: points                 !! all their contact points
       type(contact_laws_type) :: laws                         !! theirs in the step
       !> (2, m) along which the supports hold contact points, as from held_directions
@@ -49,6 +50,8 @@ module reduced_bodies
       logical, allocatable, private :: held_temperature(:)   !! (nodes)
    contains
       procedure :: prepare
+      procedure :: view
+      procedure :: views
       procedure :: enter_step
       procedure :: number
       procedure :: assemble_steps
@@ -81,11 +84,35 @@ contains
             if (allocated(error)) return
          end do
       end if
-      self%points = joined_points(self%interfaces, self%ties, model)
+      call join_points(self%interfaces, self%ties, model, self%points)
+      deallocate (self%ties)
       self%laws = laws_of_step(model, self%points%interface_start, self%points%weight, 1)
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
+
+   !> The contact points of one interface.
+   pure subroutine view(self, i, points)
+      class(reduced_bodies_type), intent(in) :: self !! prepared
+      integer, intent(in) :: i                       !! index of the interface
+      type(contact_points_type), intent(out) :: points
+
+      points = self%interfaces(i)
+      points%contact_row_type = self%points%part(self%points%interface_start(i), &
+         self%points%interface_start(i + 1) - 1)
+   end subroutine view
+
+   !> Those of all interfaces.
+   pure subroutine views(self, interfaces)
+      class(reduced_bodies_type), intent(in) :: self !! prepared
+      type(contact_points_type), allocatable, intent(out) :: interfaces(:)
+      integer :: i
+
+      allocate (interfaces(size(self%interfaces)))
+      do i = 1, size(interfaces)
+         call self%view(i, interfaces(i))
+      end do
+   end subroutine views
 
    !> Enters a step: laws of its contact points, unknowns of its fields. A field is numbered again
    !> only where it is solved and its supports or frictions differ from those that were numbered

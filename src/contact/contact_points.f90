@@ -3,23 +3,19 @@
 !> face with its hat function (mortar_points).
 module contact_points
    use contact_definitions, only: pairing_nodes
-   use mortar_segments, only: edge_segment_type, hat_type
+   use mortar_segments, only: hat_geometry_type
    use kinds, only: dp
    use sum_lists, only: sum_list_type
    implicit none
    private
-   public :: contact_points_type, never_approached, no_radius, on_axis, past_end, small_offset
+   public :: contact_row_type, contact_points_type, never_approached, no_radius, on_axis, &
+      past_end, small_offset
 
    real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
    real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
 
-   !> The contact points of one interface, ordered along the slave from the end with the smaller x
-   !> (then y); on a closed face from the corner with the smallest x (then y), with the slave on the
-   !> left.
-   type :: contact_points_type
-      character(:), allocatable :: name        !! name of the *CONTACT PAIR
-      integer :: pairing = pairing_nodes       !! pairing_nodes or pairing_surfaces
-      character(:), allocatable :: mismatch    !! why the faces do not match; unallocated if they do
+   !> Contact points in a row: what the solution asks of them.
+   type :: contact_row_type
       integer, allocatable :: slave(:)         !! (m) node indexes
       integer, allocatable :: master(:)        !! (m) the one opposite, or the nearest one
       !> (m, nodes) slave's value of a field less master's
@@ -28,6 +24,29 @@ module contact_points
       !> point: displacements turned back by the angle a from its own normal, cos a and sin a of the
       !> means; without terms where no normal turns
       type(sum_list_type) :: along, across
+      !> (m) tributary length times thickness, axisymmetric times 2 pi r; 0 where three-node sides
+      !> give the axis or the tip of quarter points none [length^2]
+      real(dp), allocatable :: weight(:)
+      real(dp), allocatable :: normal(:, :)    !! (2, m) common unit normal, outward from the slave
+      real(dp), allocatable :: tangent(:, :)   !! (2, m) unit tangent towards growing s
+      real(dp), allocatable :: initial_gap(:)  !! (m) h [length]
+   contains
+      procedure :: part
+      procedure :: turns
+      procedure :: jumps
+      procedure :: relative
+      procedure :: add_forces
+      procedure :: nodes_of
+      procedure :: means_of
+   end type contact_row_type
+
+   !> The contact points of one interface, ordered along the slave from the end with the smaller x
+   !> (then y); on a closed face from the corner with the smallest x (then y), with the slave on the
+   !> left.
+   type, extends(contact_row_type) :: contact_points_type
+      character(:), allocatable :: name        !! name of the *CONTACT PAIR
+      integer :: pairing = pairing_nodes       !! pairing_nodes or pairing_surfaces
+      character(:), allocatable :: mismatch    !! why the faces do not match; unallocated if they do
       type(sum_list_type) :: slave_mean        !! (m, nodes) slave's value of a field
       type(sum_list_type) :: master_mean       !! (m, nodes) master's
       integer, allocatable :: face_node(:)     !! (n) nodes of both faces in the covered part
@@ -35,12 +54,6 @@ module contact_points
       type(sum_list_type) :: at_face_nodes
       real(dp), allocatable :: position(:, :)  !! (2, m) undeformed slave [length]
       real(dp), allocatable :: arc_length(:)   !! (m) s from the first contact point [length]
-      !> (m) tributary length times thickness, axisymmetric times 2 pi r; 0 where three-node sides
-      !> give the axis or the tip of quarter points none [length^2]
-      real(dp), allocatable :: weight(:)
-      real(dp), allocatable :: normal(:, :)    !! (2, m) common unit normal, outward from the slave
-      real(dp), allocatable :: tangent(:, :)   !! (2, m) unit tangent towards growing s
-      real(dp), allocatable :: initial_gap(:)  !! (m) h [length]
       real(dp), allocatable :: edge(:)         !! (m) longest side of the slave there [length]
       integer :: side_nodes = 2                !! contact points of a side, 2 or 3
       integer :: node_spacings = 1             !! of the slave, from a contact point to the next
@@ -51,16 +64,8 @@ module contact_points
       real(dp) :: to_end(2) = huge(1.0_dp)
       !> Whether one face ends at the first, at the last contact point and the other goes on
       logical :: at_corner(2) = .false.
-      type(edge_segment_type), allocatable :: segments(:)   !! of mortar points; none of node pairs
-      type(hat_type), allocatable :: hats(:)   !! (m) hat functions of mortar points over these
+      type(hat_geometry_type) :: mortar        !! of mortar points; empty for node pairs
       logical :: about_axis = .false.          !! whether the model is axisymmetric
-   contains
-      procedure :: turns
-      procedure :: jumps
-      procedure :: relative
-      procedure :: add_forces
-      procedure :: nodes_of
-      procedure :: means_of
    end type contact_points_type
 
    !> Part of the node spacing by which nodes may lie beside each other. An offset misplaces the
@@ -103,16 +108,30 @@ contains
          no_radius*maxval(abs(points%position(1, :)))
    end function on_axis
 
+   !> Some contact points of a row, without the sums of nodal values.
+   pure function part(self, first, last) result(points)
+      class(contact_row_type), intent(in) :: self
+      integer, intent(in) :: first, last           !! the first and the last of them
+      type(contact_row_type) :: points
+
+      points%slave = self%slave(first:last)
+      points%master = self%master(first:last)
+      points%weight = self%weight(first:last)
+      points%normal = self%normal(:, first:last)
+      points%tangent = self%tangent(:, first:last)
+      points%initial_gap = self%initial_gap(first:last)
+   end function part
+
    !> Whether the normal turns along the face of some contact point.
    pure logical function turns(self)
-      class(contact_points_type), intent(in) :: self
+      class(contact_row_type), intent(in) :: self
 
       turns = allocated(self%across%start)
    end function turns
 
    !> Slave's value less master's of a field, at every contact point.
    pure function jumps(self, field)
-      class(contact_points_type), intent(in) :: self
+      class(contact_row_type), intent(in) :: self
       real(dp), intent(in) :: field(:)             !! (nodes)
       real(dp) :: jumps(size(self%slave))          !! (m)
 
@@ -123,7 +142,7 @@ contains
    !> Slave's displacement less master's, at every contact point, in the directions of its normal:
    !> the mean of displacements that are turned with the face.
    pure function relative(self, displacement)
-      class(contact_points_type), intent(in) :: self
+      class(contact_row_type), intent(in) :: self
       real(dp), intent(in) :: displacement(:)      !! (2 nodes) [length]
       real(dp) :: relative(2, size(self%slave))    !! (2, m) [length]
       real(dp) :: across(2, size(self%slave))
@@ -143,7 +162,7 @@ contains
    !> Adds the nodal forces of forces on the slave at the contact points, and of their opposites on
    !> the master.
    pure subroutine add_forces(self, on_slave, forces)
-      class(contact_points_type), intent(in) :: self
+      class(contact_row_type), intent(in) :: self
       real(dp), intent(in) :: on_slave(:, :)       !! (2, m) [force]
       real(dp), intent(inout) :: forces(:)         !! (2 nodes) [force]
 
@@ -160,7 +179,7 @@ contains
 
    !> The nodes whose values a contact point takes.
    pure function nodes_of(self, k) result(nodes)
-      class(contact_points_type), intent(in) :: self
+      class(contact_row_type), intent(in) :: self
       integer, intent(in) :: k                     !! a contact point
       integer, allocatable :: nodes(:)
 
@@ -170,7 +189,7 @@ contains
    !> Coefficients of nodal displacements in a contact point: slave's less master's along an axis
    !> are along.u of that axis, and across.u of the other one, added for x and subtracted for y.
    pure subroutine means_of(self, k, nodes, along, across)
-      class(contact_points_type), intent(in) :: self
+      class(contact_row_type), intent(in) :: self
       integer, intent(in) :: k                     !! a contact point
       integer, allocatable, intent(out) :: nodes(:)   !! (n) each once
       real(dp), allocatable, intent(out) :: along(:)  !! (n)

@@ -73,9 +73,9 @@ contains
       call set_means(slave, master, integrals, owner, kept, points)
       call set_face_nodes(side, master_line, [slave%nodes, master%nodes], point_of, &
          owner == [(c, c=1, size(owner))], points)
-      points%segments = edge_segments_of(side, master_line, [slave%nodes, master%nodes], &
+      points%mortar%segments = edge_segments_of(side, master_line, [slave%nodes, master%nodes], &
          merge(0.0_dp, thickness, points%about_axis), point_of)
-      points%hats = hats_of(points%segments, size(kept))
+      points%mortar%hats = hats_of(points%mortar%segments, size(kept))
       points%initial_gap = -sum(points%normal*points%relative(reshape(mesh%coordinates, &
          [size(mesh%coordinates)])), dim=1)
       if (size(kept) > 0) call set_ends(mesh%coordinates, slave, master, points)

@@ -43,7 +43,7 @@ module mortar_segments
    implicit none
    private
    public :: mortar_integrals_type, integrate_segments, edge_profile_type, edge_segment_type, &
-      edge_segments_of, hat_type, hats_of, support
+      edge_segments_of, hat_geometry_type, hats_of, support
 
    !> The integrals. Corners of the slave are counted along its line.
    type :: mortar_integrals_type
@@ -96,6 +96,12 @@ module mortar_segments
       integer, allocatable :: end(:)        !! (n) end of their side that it belongs to, 1 or 2
       integer, allocatable :: nodes(:)      !! of these segments, each once
    end type hat_type
+
+   !> The hat functions of an interface.
+   type :: hat_geometry_type
+      type(edge_segment_type), allocatable :: segments(:)
+      type(hat_type), allocatable :: hats(:)   !! (m) over these
+   end type hat_geometry_type
 
    !> Conductance along the side that contains an edge of contact.
    type :: edge_profile_type

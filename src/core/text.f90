@@ -5,7 +5,8 @@ module text
    implicit none
    private
    public :: string_type
-   public :: others, counted, to_text, few_digits, digits_above, with_decimals, percent
+   public :: others, counted, to_text, few_digits, rounded, digits_above, with_decimals
+   public :: percent
    public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
    public :: is_whole, integer_fault, real_fault, largest_magnitude, split_words, quoted
 
@@ -87,6 +88,15 @@ contains
       write (buffer, '(1p,g0.'//to_text(behind_first)//')') number
       string = without_end_zeros(adjustl(buffer))
    end function few_digits
+
+   !> A number with two decimal digits: the same double for the same digits, as text is read.
+   elemental real(dp) function rounded(number)
+      real(dp), intent(in) :: number   !! >= 0
+      character(16) :: digits
+
+      write (digits, '(es16.1e3)') number
+      read (digits, *) rounded
+   end function rounded
 
    !> Significant digits that show a number above a limit as such: two, where these do, or where it
    !> is not above it.

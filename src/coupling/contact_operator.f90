@@ -11,6 +11,7 @@ module contact_operator
    use conductance_laws, only: conductance, conductance_derivative, conductance_law_type
    use contact_heat, only: jump_derivatives_type, settle_conductance, take_temperatures, &
       temperature_jumps
+   use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip, contact_state_type
    use contact_tractions, only: pressures
    use contact_workspace, only: contact_workspace_type
@@ -96,12 +97,14 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(contact_state_type), intent(in) :: state
       real(dp) :: pressure(size(state%contact_state))           !! (m) [stress]
+      type(contact_points_type) :: points
       integer :: first, i, last
 
       do i = 1, size(bodies%interfaces)
          first = bodies%points%interface_start(i)
          last = bodies%points%interface_start(i + 1) - 1
-         pressure(first:last) = pressures(bodies%interfaces(i), state%force(first:last), &
+         call bodies%view(i, points)
+         pressure(first:last) = pressures(points, state%force(first:last), &
             state%contact_state(first:last) /= contact_open)
       end do
    end function law_pressure

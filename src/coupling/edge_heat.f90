@@ -14,7 +14,7 @@ module edge_heat
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip
-   use mortar_segments, only: edge_profile_type, edge_segment_type, support
+   use mortar_segments, only: edge_profile_type, edge_segment_type, hat_geometry_type, support
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
@@ -63,6 +63,7 @@ contains
       real(dp), intent(in) :: opening(:)        !! (m) openings [length]
       type(edge_integral_type), allocatable, intent(out) :: hats(:)
       type(edge_integral_type), allocatable :: beside(:)
+      type(contact_points_type) :: points
       logical :: is_beside(size(opening))
       logical, allocatable :: is_crossed(:)
       integer :: found, i
@@ -82,7 +83,8 @@ contains
          associate (first => bodies%points%interface_start(i), &
             last => bodies%points%interface_start(i + 1) - 1)
             if (.not. any(is_beside(first:last))) cycle
-            call integrate_hats(bodies%interfaces(i), edges_of(bodies%interfaces(i), &
+            call bodies%view(i, points)
+            call integrate_hats(bodies%points%mortar(i), edges_of(points, &
                bodies%laws%conductance(first), opening(first:last), modulus(first:last)), &
                is_beside(first:last), beside(found + 1:found + count(is_beside(first:last))))
             associate (new => beside(found + 1:found + count(is_beside(first:last))))
@@ -110,25 +112,25 @@ contains
    end function beside_edge
 
    !> The integrals of the hat functions of an interface beside an edge.
-   pure subroutine integrate_hats(points, edges, is_beside, hats)
-      type(contact_points_type), intent(in) :: points
+   pure subroutine integrate_hats(mortar, edges, is_beside, hats)
+      type(hat_geometry_type), intent(in) :: mortar
       type(side_edge_type), intent(in) :: edges(:)       ! (sides)
       logical, intent(in) :: is_beside(:)                ! (m)
-      type(edge_integral_type), intent(inout) :: hats(:) ! (count of them) with numbers in points
+      type(edge_integral_type), intent(inout) :: hats(:) ! (count of them)
       real(dp) :: weights(support, 2)
       integer :: i, k, n, side
       logical :: crossed
 
       hats%point = pack([(k, k=1, size(is_beside))], is_beside)
       do n = 1, size(hats)
-         hats(n)%nodes = points%hats(hats(n)%point)%nodes
+         hats(n)%nodes = mortar%hats(hats(n)%point)%nodes
          allocate (hats(n)%shares(size(hats(n)%nodes), 2), source=0.0_dp)
       end do
       do n = 1, size(hats)
          k = hats(n)%point
-         do i = 1, size(points%hats(k)%segment)
-            associate (segment => points%segments(points%hats(k)%segment(i)), &
-               end => points%hats(k)%end(i))
+         do i = 1, size(mortar%hats(k)%segment)
+            associate (segment => mortar%segments(mortar%hats(k)%segment(i)), &
+               end => mortar%hats(k)%end(i))
                side = segment%side()
                crossed = side > 0
                if (crossed) crossed = allocated(edges(side)%along)

@@ -227,9 +227,14 @@ contains
 
       n = size(opening)
       do k = 1, n
-         rate = coordinate_rate(graph(k), self%trial(k), body(k), self%length)
-         matrix(:n, k) = -self%trial_t*rate*graph(k)%derivative(self%trial(k))*derivative(:, k)
-         matrix(k, k) = matrix(k, k) + rate*graph(k)%advance(self%trial(k))
+         associate (omega => graph(k)%omega(self%trial(k)), advance => graph(k)%advance( &
+            self%trial(k)), slope => graph(k)%derivative(self%trial(k)))
+            ! Change of the coordinate for the length along the graph.
+            rate = 1.0_dp/(advance/self%length + body(k)/(omega + body(k))*abs(slope)/ &
+               (omega + body(k)))
+            matrix(:n, k) = -self%trial_t*rate*slope*derivative(:, k)
+            matrix(k, k) = matrix(k, k) + rate*advance
+         end associate
       end do
       matrix(:n, n + 1) = self%first - opening
       matrix(n + 1, :) = self%tangent
@@ -248,17 +253,6 @@ contains
       if (self%trial_t < 1.0_dp) step%change = step%change - &
          dot_product(step%change, step%tangent)*step%tangent
    end subroutine find_step
-
-   !> Change of the coordinate for the length along the graph.
-   pure function coordinate_rate(graph, coordinate, body, length) result(rate)
-      type(conductance_graph_type), intent(in) :: graph
-      real(dp), intent(in) :: coordinate, body, length
-      real(dp) :: rate   !! [length]
-
-      rate = 1.0_dp/(graph%advance(coordinate)/length + &
-         body/(graph%omega(coordinate) + &
-         body)*abs(graph%derivative(coordinate))/(graph%omega(coordinate) + body))
-   end function coordinate_rate
 
    !> Coordinates at the ends of walks along the graphs, of given lengths.
    elemental function moved_along(graph, from, walk, body, length) result(coordinate)

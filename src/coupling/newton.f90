@@ -113,7 +113,7 @@ contains
    subroutine next(self, pass)
       class(newton_type), intent(inout) :: self   !! memory of the method
       type(pass_type), intent(inout) :: pass      !! the last pass in, next omega* out
-      real(dp) :: fall
+      real(dp) :: fall, ratio
 
       if (.not. pass%found) then
          call retreat(self, pass)
@@ -133,7 +133,10 @@ contains
          call take(self, pass)
          call make_step(self, pass%graph)
       else
-         self%part = self%part*shortening(self, pass)
+         ! Where the parabola through |r|^2 is lowest.
+         ratio = (norm2(self%rest)/norm2(residual(pass)))**2
+         self%part = self%part*min(max(self%part*ratio/(1.0_dp + (2.0_dp*self%part - 1.0_dp)* &
+            ratio), 0.1_dp), 0.5_dp)
          if (self%part < shortest) then
             self%time_step = first_time_step
             call make_step(self, pass%graph)
@@ -208,18 +211,6 @@ contains
       end associate
       self%g = spread(self%part, 1, size(pass%omega))
    end subroutine try
-
-   !> Part of the step that is tried next: where the parabola through |r|^2 is lowest.
-   pure function shortening(self, pass) result(part)
-      class(newton_type), intent(in) :: self
-      type(pass_type), intent(in) :: pass
-      real(dp) :: part
-      real(dp) :: ratio
-
-      ratio = (norm2(self%rest)/norm2(residual(pass)))**2
-      part = self%part*ratio/(1.0_dp + (2.0_dp*self%part - 1.0_dp)*ratio)
-      part = min(max(part, 0.1_dp), 0.5_dp)
-   end function shortening
 
    !> dz from the pass that was taken last; the image where the derivative is not known.
    subroutine make_step(self, graph)

@@ -37,12 +37,18 @@ contains
       logical, intent(inout) :: chosen(:)                  !! (elements) those that are divided
       integer, allocatable :: together(:, :)
       type(element_sides_type) :: sides
+      integer :: i
       logical :: is_new
 
       call find_opposite(model, together)
       sides = find_sides(model%mesh)
       do
-         call choose_opposite(together, chosen, is_new)
+         is_new = .false.
+         do i = 1, size(together, 2)
+            if (chosen(together(1, i)) .eqv. chosen(together(2, i))) cycle
+            chosen(together(:, i)) = .true.
+            is_new = .true.
+         end do
          call choose_coarse(model%mesh, sides, chosen, is_new)
          if (.not. is_new) exit
       end do
@@ -237,21 +243,6 @@ contains
          elements(k) = faces(1, i)
       end do
    end subroutine elements_along
-
-   !> Chooses the elements opposite to those that are chosen.
-   pure subroutine choose_opposite(pairs, chosen, is_new)
-      integer, intent(in) :: pairs(:, :)
-      logical, intent(inout) :: chosen(:)
-      logical, intent(out) :: is_new            ! whether any was chosen
-      integer :: i
-
-      is_new = .false.
-      do i = 1, size(pairs, 2)
-         if (chosen(pairs(1, i)) .eqv. chosen(pairs(2, i))) cycle
-         chosen(pairs(:, i)) = .true.
-         is_new = .true.
-      end do
-   end subroutine choose_opposite
 
    !> The side of the large element: corner, midside node or 0, corner.
    pure function coarse_side(mesh, h) result(ends)

@@ -102,13 +102,24 @@ contains
       type(division_type), intent(in) :: division
       type(mesh_type), intent(inout) :: mesh
       real(dp), allocatable :: coordinates(:, :)
-      integer :: i, first, parent(division%elements_after)
+      integer :: child, i, first, k, parent(division%elements_after)
+      integer, allocatable :: divided(:)
+      logical :: is_member(division%nodes)
 
       do i = 1, size(mesh%node_sets)
-         call refine_node_set(division, mesh%node_sets(i)%members)
+         associate (members => mesh%node_sets(i)%members)
+            is_member = .false.
+            is_member(members) = .true.
+            mesh%node_sets(i)%members = pack([(k, k=1, division%nodes_after)], &
+               refined_members(division, is_member))
+         end associate
       end do
       do i = 1, size(mesh%element_sets)
-         call refine_element_set(division, mesh%element_sets(i)%members)
+         associate (members => mesh%element_sets(i)%members)
+            divided = pack(members, division%rank(members) > 0)
+            mesh%element_sets(i)%members = [members, ((child_element(division, divided(k), &
+               child), child=2, 4), k=1, size(divided))]
+         end associate
       end do
       do i = 1, size(mesh%surfaces)
          call refine_faces(division, mesh%element_kind, mesh%surfaces(i)%faces)
@@ -178,28 +189,6 @@ contains
          end do
       end do
    end function parents_of
-
-   subroutine refine_node_set(division, members)
-      type(division_type), intent(in) :: division
-      integer, allocatable, intent(inout) :: members(:)
-      logical :: member(division%nodes)
-      integer :: i
-
-      member = .false.
-      member(members) = .true.
-      members = pack([(i, i=1, division%nodes_after)], refined_members(division, member))
-   end subroutine refine_node_set
-
-   subroutine refine_element_set(division, members)
-      type(division_type), intent(in) :: division
-      integer, allocatable, intent(inout) :: members(:)
-      integer, allocatable :: divided(:)
-      integer :: i, child
-
-      divided = pack(members, division%rank(members) > 0)
-      members = [members, ((child_element(division, divided(i), child), child=2, 4), &
-         i=1, size(divided))]
-   end subroutine refine_element_set
 
    !> A face of a divided element becomes the faces of the same name of the two children at it.
    subroutine refine_faces(division, kinds, faces)

@@ -150,7 +150,7 @@ contains
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:)
       integer :: shared(size(sections), axisymmetric), e, g, n, pass
-      real(dp) :: position(2)
+      real(dp) :: axes(2, 2), position(2)
 
       allocate (self%material(size(mesh%element_kind)))
       self%one_material = sections(mesh%element_section)%orientation == 0
@@ -172,28 +172,22 @@ contains
                   n = n + 1
                   if (pass == 1) cycle
                   position = matmul(mesh%coordinates(:, nodes), rule%shape(g, :rule%nodes))
-                  self%materials(n) = material_at(materials(sections(s)%material), plane, &
-                     material_axes(orientations, sections(s)%orientation, position))
+                  axes = material_axes(orientations, sections(s)%orientation, position)
+                  associate (material => materials(sections(s)%material), &
+                     there => self%materials(n))
+                     there%elasticity = elasticity_in(plane, material, axes)
+                     there%thermal_modulus = thermal_modulus_in(plane, material, axes)
+                     ! Not condensed: with sigma_zz = 0 its energy is that of plane stress, too.
+                     there%compliance = inverse_of(elasticity_in(plane_strain, material, axes))
+                     there%conductivity = conductivity_in(material, axes)
+                     there%resistivity = inverse_of(there%conductivity)
+                  end associate
                end do
             end associate
          end do
          if (pass == 1) allocate (self%materials(n))
       end do
    end subroutine place_materials
-
-   pure function material_at(material, plane, axes) result(there)
-      type(material_type), intent(in) :: material
-      integer, intent(in) :: plane
-      real(dp), intent(in) :: axes(2, 2)
-      type(point_material_type) :: there
-
-      there%elasticity = elasticity_in(plane, material, axes)
-      there%thermal_modulus = thermal_modulus_in(plane, material, axes)
-      ! Not condensed: with sigma_zz = 0 its energy is that of plane stress, too.
-      there%compliance = inverse_of(elasticity_in(plane_strain, material, axes))
-      there%conductivity = conductivity_in(material, axes)
-      there%resistivity = inverse_of(there%conductivity)
-   end function material_at
 
    !> Inverse of a symmetric positive definite matrix; zero where it is not.
    pure function inverse_of(matrix) result(inverse)

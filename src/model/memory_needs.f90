@@ -35,7 +35,7 @@ contains
       real(dp) :: bytes                       !! [byte]
       real(dp) :: entries, factors, nodes, points, written
       integer, allocatable :: kinds(:)
-      integer :: solver
+      integer :: i, solver
       logical :: bounds_errors, heat, mechanics
 
       heat = any(solves_heat(model%steps%analysis))
@@ -43,7 +43,8 @@ contains
       kinds = model%mesh%element_kind
       if (order == 1) kinds = linear_kind(kinds)
       nodes = size(model%mesh%node_number)*4.0_dp**levels
-      points = contact_point_count(model)*2.0_dp**levels
+      points = sum([(2*size(model%mesh%surfaces(model%contacts(i)%slave)%faces, 2) + 1, &
+         i=1, size(model%contacts))])*2.0_dp**levels
       entries = entries_of(kinds, heat, mechanics)*4.0_dp**levels
       ! Every n-th increment of a step and its last are written, of n = 0 the last alone.
       written = sum(1 + merge(min(planned_increments(model%steps), &
@@ -86,18 +87,6 @@ contains
       dissected = 0.0_dp
       if (is_solved) dissected = 7.75_dp*unknowns*log(max(unknowns, 2.0_dp))/log(2.0_dp)
    end function dissected
-
-   !> Slave nodes of all interfaces.
-   pure real(dp) function contact_point_count(model)
-      type(model_type), intent(in) :: model
-      integer :: i
-
-      contact_point_count = 0.0_dp
-      do i = 1, size(model%contacts)
-         contact_point_count = contact_point_count + &
-            2*size(model%mesh%surfaces(model%contacts(i)%slave)%faces, 2) + 1
-      end do
-   end function contact_point_count
 
    !> Entries of the skyline of one unknown a node, with the columns of the contact points, after
    !> refinement.

@@ -240,6 +240,8 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: lines(:), warnings(:)
       character(:), allocatable :: block
+      type(run_entry_type), allocatable :: entries(:)
+      logical, allocatable :: is_time(:)
       integer :: i
 
       if (size(verifier%outcomes) > 0) call print_verdicts(self%text%unit, model%verifications, &
@@ -259,7 +261,12 @@ contains
       end do
       call print_list(self%text%unit, 'WARNINGS', warnings)
       if (size(warnings) == 0) write (self%text%unit, '(/, a)') 'No warnings.'
-      call print_times(self%text%unit, run_entries(run, model))
+      entries = run_entries(run, model)
+      is_time = [(entries(i)%is_told(in_times), i=1, size(entries))]
+      call print_title(self%text%unit, 'SECONDS')
+      write (self%text%unit, '(3x, *(a12))') (entries(i)%label, i=findloc(is_time, .true., dim=1), &
+         findloc(is_time, .true., dim=1, back=.true.))
+      write (self%text%unit, '(3x, *(f12.4))') pack(entries%number, is_time)
       call print_deck(self%text%unit, cards)
       call write_text(self, error)
       if (allocated(error)) return
@@ -350,18 +357,5 @@ contains
          call print_wrapped(unit, '   ', line)
       end do
    end subroutine print_unapproached
-
-   subroutine print_times(unit, entries)
-      integer, intent(in) :: unit
-      type(run_entry_type), intent(in) :: entries(:)
-      integer :: i
-      logical :: is_time(size(entries))
-
-      is_time = [(entries(i)%is_told(in_times), i=1, size(entries))]
-      call print_title(unit, 'SECONDS')
-      write (unit, '(3x, *(a12))') (entries(i)%label, i=findloc(is_time, .true., dim=1), &
-         findloc(is_time, .true., dim=1, back=.true.))
-      write (unit, '(3x, *(f12.4))') pack(entries%number, is_time)
-   end subroutine print_times
 
 end module listing

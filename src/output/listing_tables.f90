@@ -289,23 +289,14 @@ contains
             points%point(k)
          write (unit, '(2a)', advance='no') in_columns(points%position(:, k), 12, 4), &
             in_columns(columns(:, k), 14, 6)
-         write (unit, '(a)') axes_name(request, model, points%element(k))
+         associate (axes => model%sections(model%mesh%element_section(points%element(k)))% &
+            orientation)
+            if (request%local_axes .and. axes > 0) write (unit, '(1x, a)', advance='no') &
+               model%orientations(axes)%name
+         end associate
+         write (unit, '()')
       end do
    end subroutine print_points
-
-   !> Name of the orientation along whose axes an element's values are; empty for x and y.
-   pure function axes_name(request, model, element) result(name)
-      type(print_request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: element
-      character(:), allocatable :: name
-
-      name = ''
-      if (.not. request%local_axes) return
-      associate (orientation => model%sections(model%mesh%element_section(element))%orientation)
-         if (orientation > 0) name = ' '//model%orientations(orientation)%name
-      end associate
-   end function axes_name
 
    subroutine print_absence(unit, title, quantity)
       integer, intent(in) :: unit, quantity

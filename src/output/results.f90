@@ -27,10 +27,10 @@ module results
    use run_summaries, only: or_blank, run_summary_type, write_run
    use solution_report, only: iteration_record_type
    use status_files, only: status_file_type
-   use steps, only: planned_increments, solves_heat, solves_mechanics
+   use steps, only: dof_temperature, planned_increments, solves_heat, solves_mechanics
    use clock, only: wall_seconds
    use text, only: string_type
-   use unit_labels, only: load_unit, unit_in_words
+   use unit_labels, only: unit_in_words
    use working_files, only: working_file_type
    implicit none
    private
@@ -333,8 +333,9 @@ contains
          end do
          if (.not. is_new) return
          call file%set('/history/load', 'label', or_blank(model%load_label))
-         call file%set('/history/load', 'unit', unit_in_words(load_unit(model%load_dof), &
-            model%units))
+         call file%set('/history/load', 'unit', unit_in_words(trim(merge( &
+            'time       ', merge('temperature', 'length     ', model%load_dof == dof_temperature), &
+            model%load_dof == 0)), model%units))
       end associate
    end subroutine flush_all
 

@@ -66,7 +66,7 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       real(dp) :: largest(2)
-      integer :: element(2), i
+      integer :: element(2), i, k, last
 
       if (.not. allocated(self%closes)) then
          allocate (self%closes(size(interfaces)), source=.false.)
@@ -85,7 +85,15 @@ contains
             self%closes(i) = self%closes(i) .or. any(record%contacts(i)%contact_state /= &
                contact_open)
             self%smallest_gap(i) = min(self%smallest_gap(i), minval(record%contacts(i)%gap))
-            call follow_ends(record%contacts(i), interfaces(i), self%past(:, i))
+            associate (contact => record%contacts(i))
+               if (.not. allocated(contact%movement)) cycle
+               do last = 1, 2
+                  k = merge(1, size(contact%movement), last == 1)
+                  if (contact%contact_state(k) /= contact_open) self%past(last, i) = &
+                     max(self%past(last, i), past_end(interfaces(i), last == 2, &
+                     contact%movement(k)))
+               end do
+            end associate
          end do
          if (.not. allocated(fields%stress)) return
          call largest_deformation(model%mesh, fields%displacement, largest, element)
@@ -96,21 +104,6 @@ contains
          end where
       end associate
    end subroutine take
-
-   !> Follows how far the first and the last contact point, if closed, move past the master's end.
-   pure subroutine follow_ends(contact, points, past)
-      type(contact_record_type), intent(in) :: contact
-      type(contact_points_type), intent(in) :: points
-      real(dp), intent(inout) :: past(2)
-      integer :: k, last
-
-      if (.not. allocated(contact%movement)) return
-      do last = 1, 2
-         k = merge(1, size(contact%movement), last == 1)
-         if (contact%contact_state(k) == contact_open) cycle
-         past(last) = max(past(last), past_end(points, last == 2, contact%movement(k)))
-      end do
-   end subroutine follow_ends
 
    !> Notes that the run ended early, so that what never happened might still have done.
    pure subroutine fail(self)

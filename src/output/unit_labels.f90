@@ -5,7 +5,7 @@ module unit_labels
    use steps, only: dof_temperature
    implicit none
    private
-   public :: unit_label, unit_in_words, load_unit
+   public :: unit_label, unit_in_words
 
 contains
 
@@ -35,21 +35,6 @@ contains
       words = unit_label(unit, labels)
       if (words == '') words = trim(unit)
    end function unit_in_words
-
-   !> Quantity on the load axis, by the degree of freedom that it follows.
-   pure function load_unit(dof) result(unit)
-      integer, intent(in) :: dof                        !! as in steps; 0 for the time
-      character(:), allocatable :: unit
-
-      select case (dof)
-      case (0)
-         unit = 'time'
-      case (dof_temperature)
-         unit = 'temperature'
-      case default
-         unit = 'length'
-      end select
-   end function load_unit
 
    !> A text with another word for one of its words.
    pure recursive function with(word, label, text) result(changed)

@@ -222,17 +222,18 @@ contains
 
       too_much = over_constrained(simulation%bodies%points, supports%active)
       do i = 1, size(model%contacts)
-         associate (row => simulation%bodies%points, points => simulation%bodies%interfaces(i), &
+         associate (row => simulation%bodies%points, own => simulation%bodies%interfaces(i), &
             number => model%mesh%node_number, first => simulation%bodies%points% &
             interface_start(i), last => simulation%bodies%points%interface_start(i + 1) - 1)
             k = findloc(too_much(first:last), .true., dim=1)
             if (k > 0) then
-               reason = cards_at(model, row, supports, first + k - 1)//' the motion of '// &
-                  'slave node '//to_text(number(points%slave(k)))//' and master node '// &
-                  to_text(number(points%master(k)))//' towards each other, so that their '// &
+               k = first + k - 1
+               reason = cards_at(model, row, supports, k)//' the motion of slave node '// &
+                  to_text(number(row%slave(k)))//' and master node '// &
+                  to_text(number(row%master(k)))//' towards each other, so that their '// &
                   'contact force is undetermined; free one of the two nodes along the normal '// &
                   'of the faces'
-            else if (points%pairing == pairing_surfaces) then
+            else if (own%pairing == pairing_surfaces) then
                k = first_redundant(row, first, last, supports%active, &
                   laws%friction%coefficient > 0.0_dp)
                if (k == 0) cycle
@@ -245,7 +246,7 @@ contains
                cycle
             end if
             call report%error(place_type(image=model%contacts(i)%card), 'step '// &
-               to_text(step)//': contact pair '//points%name//': '//reason)
+               to_text(step)//': contact pair '//own%name//': '//reason)
          end associate
       end do
    end subroutine report_over_constrained

@@ -5,6 +5,7 @@ module deck_run
    use blas_lapack, only: reserve_blas_memory
    use clock, only: wall_seconds
    use command_line, only: command_type
+   use contact_points, only: contact_points_type
    use deck_files, only: input_files_type, outputs_of, results_of
    use deck_outcomes, only: deck_outcome_type
    use deck_preparation, only: not_a_deck, prepare_deck, read_deck_type
@@ -181,14 +182,17 @@ contains
       type(adaptive_rounds_type), intent(inout) :: rounds
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: output_error
+      type(contact_points_type), allocatable :: interfaces(:)
       type(increment_record_type) :: record
 
       associate (model => self%model, output => self%output, outcome => self%outcome, &
-         cards => self%deck%cards%images, interfaces => self%simulation%bodies%interfaces)
+         cards => self%deck%cards%images)
          call self%end%hold(.true.)
+         call self%simulation%bodies%views(interfaces)
          associate (points => self%simulation%recovery%points)
             call output%start(model, interfaces, points%node, points%element_points, cards, error)
          end associate
+         deallocate (interfaces)
          if (allocated(error)) return
          call outcome%note_files(output%written())
          call prepare_end(self, end_at_once)
@@ -214,6 +218,7 @@ contains
             call outcome%note(record, output%results%accepted, output%written())
             if (output%kept_round > 0) return
          end if
+         call self%simulation%bodies%views(interfaces)
          call output%finish(model, interfaces, cards, rounds%accuracy, output_error)
          if (output%kept_round == 0) then
             outcome%keeps_round = .false.
@@ -247,6 +252,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(inout) :: error
+      type(contact_points_type), allocatable :: interfaces(:)
 
       associate (output => self%output, outcome => self%outcome, &
          tolerance => self%model%steps(simulation%control%step)%fixed_point%tolerance)
@@ -257,7 +263,8 @@ contains
          else
             call self%end%hold(.true.)
             if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
-            call output%accept(record, self%model, simulation%bodies%interfaces, error)
+            call simulation%bodies%views(interfaces)
+            call output%accept(record, self%model, interfaces, error)
             call outcome%note(record, output%results%accepted, output%written())
             self%is_written = .not. allocated(error)
             if (allocated(error)) return

@@ -5,6 +5,7 @@ module run_description
    use command_line, only: command_type
    use conductance_laws, only: is_constant
    use contact_definitions, only: brings_friction
+   use contact_points, only: contact_points_type
    use controls, only: solver_mumps
    use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type
@@ -171,6 +172,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(run_summary_type), intent(in) :: run
       type(run_entry_type), allocatable :: entries(:)
+      type(contact_points_type) :: points
       integer :: i
 
       call print_line(output_unit, run%deck_path//': no errors, '// &
@@ -187,13 +189,11 @@ contains
          end associate
       end do
       do i = 1, size(simulation%bodies%interfaces)
-         associate (points => simulation%bodies%interfaces(i))
-            call line('contact pair '//points%name, to_text(size(points%slave))// &
-               ' '//points_words(points)//', initial gaps '// &
-               from_to(gap_range(model%mesh, points)))
-            call line('pairing of '//points%name, pairing_words(model%contacts(i)%pairing, points))
-            if (len(open_words(points)) > 0) call line('note on '//points%name, open_words(points))
-         end associate
+         call simulation%bodies%view(i, points)
+         call line('contact pair '//points%name, to_text(size(points%slave))// &
+            ' '//points_words(points)//', initial gaps '//from_to(gap_range(model%mesh, points)))
+         call line('pairing of '//points%name, pairing_words(model%contacts(i)%pairing, points))
+         if (len(open_words(points)) > 0) call line('note on '//points%name, open_words(points))
       end do
       if (run%has_biot) call line('contact Biot number', from_to(run%contact_biot)// &
          ' at the initial gaps')

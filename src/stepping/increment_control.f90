@@ -109,21 +109,15 @@ contains
 
       left = planned_increments(model%steps)
       left(:self%step - 1) = 0.0_dp
-      if (self%step > 0) left(self%step) = remaining(self, model%steps(self%step), left(self%step))
+      if (self%step > 0) then
+         associate (step => model%steps(self%step), of_step => left(self%step))
+            if (step%grows) of_step = merge(0.0_dp, max(of_step - self%increments_of_step, &
+               1.0_dp), self%step_time >= step%period)
+            if (.not. step%grows) of_step = (step%period - self%step_time)/step%first_increment
+         end associate
+      end if
       planned = self%increments + sum(ceiling(min(left - rounding, 1.0e6_dp)))
    end function planned
-
-   !> Increments that are left of the present step.
-   pure function remaining(self, step, planned) result(left)
-      type(increment_control_type), intent(in) :: self
-      type(step_type), intent(in) :: step
-      real(dp), intent(in) :: planned      ! of the whole step
-      real(dp) :: left
-
-      left = (step%period - self%step_time)/step%first_increment
-      if (step%grows) left = merge(0.0_dp, max(planned - self%increments_of_step, 1.0_dp), &
-         self%step_time >= step%period)
-   end function remaining
 
    !> Goes on behind an increment that converged.
    pure subroutine accept(self, model, clock)

@@ -114,50 +114,50 @@ contains
       type(contact_record_type) :: record
       type(contact_state_type) :: contact
       type(conductance_law_type) :: law
-      logical :: closed(size(bodies%interfaces(i)%slave)), touches(size(closed))
+      type(contact_points_type) :: points
+      logical, allocatable :: closed(:), touches(:)
       integer :: first, k, last
 
       first = bodies%points%interface_start(i)
       last = bodies%points%interface_start(i + 1) - 1
       contact = kept_contact(next%contact, next%has_mechanics)
-      associate (points => bodies%interfaces(i))
-         record%contact_state = contact%contact_state(first:last)
-         where (next%idle(first:last)) record%contact_state = merge(contact_slip, contact_open, &
-            next%resting(first:last))
-         record%gap = contact%gap(first:last)
-         record%smallest_gap = next%smallest_gap(first:last)
-         closed = record%contact_state /= contact_open
-         if (next%has_mechanics) closed = in_contact(points, closed, record%gap, &
-            contact%force(first:last), bodies%equilibrium%contact%alone(first:last))
-         touches = closed .and. record%contact_state == contact_open
-         where (touches)
-            record%contact_state = merge(contact_stick, contact_slip, &
-               bodies%laws%friction(first:last)%coefficient > 0.0_dp)
-            record%gap = 0.0_dp
-         end where
-         call measure_contact(points, bodies%laws%friction(first), closed, &
-            contact%force(first:last), contact%shear_force(first:last), record)
-         record%movement = contact%tangential(first:last)
-         record%slip = record%movement - contact%slip_origin(first:last)
-         if (allocated(bodies%thermal%matrix%value)) then
-            allocate (record%slave_temperature(size(closed)), record%master_temperature( &
-               size(closed)), source=0.0_dp)
-            call points%slave_mean%add_totals(next%temperature, record%slave_temperature)
-            call points%master_mean%add_totals(next%temperature, record%master_temperature)
-         end if
-         if (.not. with_heat) return
-         record%conductance = next%carrying(first:last)
-         do k = 1, size(touches)
-            if (.not. touches(k)) cycle
-            law = law_at(bodies%laws%conductance(first - 1 + k), face_temperatures_type( &
-               0.5_dp*(record%slave_temperature(k) + record%master_temperature(k)), &
-               next%jump(first - 1 + k)))
-            record%conductance(k) = conductance(law, .true., 0.0_dp, record%pressure(k))
-         end do
-         associate (jump => next%jump(first:last))
-            record%heat_flux = heat_across(1.0_dp, record%conductance, jump)
-            record%heat_rate = sum(heat_across(points%weight, record%conductance, jump))
-         end associate
+      call bodies%view(i, points)
+      record%contact_state = contact%contact_state(first:last)
+      where (next%idle(first:last)) record%contact_state = merge(contact_slip, contact_open, &
+         next%resting(first:last))
+      record%gap = contact%gap(first:last)
+      record%smallest_gap = next%smallest_gap(first:last)
+      closed = record%contact_state /= contact_open
+      if (next%has_mechanics) closed = in_contact(points, closed, record%gap, &
+         contact%force(first:last), bodies%equilibrium%contact%alone(first:last))
+      touches = closed .and. record%contact_state == contact_open
+      where (touches)
+         record%contact_state = merge(contact_stick, contact_slip, &
+            bodies%laws%friction(first:last)%coefficient > 0.0_dp)
+         record%gap = 0.0_dp
+      end where
+      call measure_contact(points, bodies%laws%friction(first), closed, &
+         contact%force(first:last), contact%shear_force(first:last), record)
+      record%movement = contact%tangential(first:last)
+      record%slip = record%movement - contact%slip_origin(first:last)
+      if (allocated(bodies%thermal%matrix%value)) then
+         allocate (record%slave_temperature(size(closed)), record%master_temperature( &
+            size(closed)), source=0.0_dp)
+         call points%slave_mean%add_totals(next%temperature, record%slave_temperature)
+         call points%master_mean%add_totals(next%temperature, record%master_temperature)
+      end if
+      if (.not. with_heat) return
+      record%conductance = next%carrying(first:last)
+      do k = 1, size(touches)
+         if (.not. touches(k)) cycle
+         law = law_at(bodies%laws%conductance(first - 1 + k), face_temperatures_type( &
+            0.5_dp*(record%slave_temperature(k) + record%master_temperature(k)), &
+            next%jump(first - 1 + k)))
+         record%conductance(k) = conductance(law, .true., 0.0_dp, record%pressure(k))
+      end do
+      associate (jump => next%jump(first:last))
+         record%heat_flux = heat_across(1.0_dp, record%conductance, jump)
+         record%heat_rate = sum(heat_across(points%weight, record%conductance, jump))
       end associate
    end function contact_record
 

@@ -170,7 +170,13 @@ contains
          call enter_step(self, model, error)
          if (allocated(error)) return
       end if
-      call check_count(self%control, model, error)
+      associate (control => self%control, step => model%steps(self%control%step))
+         ! Attempts that failed do not count.
+         if (control%increments_of_step >= step%max_increments) call set_error(error, &
+            status_no_convergence, 'step '//to_text(control%step)//' is not finished after INC='// &
+            counted(step%max_increments, 'increment')//', at '//to_text(control%step_time)// &
+            ' of its period '//to_text(step%period))
+      end associate
       if (allocated(error)) return
       call self%reduce(model, error)
       if (allocated(error)) return
@@ -242,20 +248,6 @@ contains
          to_text(10*epsilon(1.0_dp)/self%pivot_told)// &
          ' only: are bodies held by others that are far softer?')
    end subroutine warn_of_pivot
-
-   !> A step takes no more increments than INC= allows; attempts that failed do not count.
-   subroutine check_count(control, model, error)
-      type(increment_control_type), intent(in) :: control
-      type(model_type), intent(in) :: model
-      type(error_type), allocatable, intent(out) :: error
-
-      associate (step => model%steps(control%step))
-         if (control%increments_of_step < step%max_increments) return
-         call set_error(error, status_no_convergence, 'step '//to_text(control%step)// &
-            ' is not finished after INC='//counted(step%max_increments, 'increment')//', at '// &
-            to_text(control%step_time)//' of its period '//to_text(step%period))
-      end associate
-   end subroutine check_count
 
    !> Tries an increment that ends at an instant. The state of the run stays; what else an attempt
    !> leaves behind, loads and factors, the next one sets anew.

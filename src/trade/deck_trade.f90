@@ -1,15 +1,17 @@
-!> `thercon trade`: speed against accuracy of one deck, measured. Rows are solved in processes of
-!> their own, without output, as often as their times ask for.
+!> `thercon trade`: speed against accuracy of one deck, measured. Each row is solved in a process of
+!> its own, without output, as often as its time asks for.
 module deck_trade
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_int
-   use, intrinsic :: iso_fortran_env, only: output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use adaptive_rounds, only: adaptive_rounds_type, increment_taker_type
    use clock, only: wall_seconds
    use command_line, only: command_type
+   use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
    use deck_files, only: input_files_type, results_of
    use deck_preparation, only: prepare_deck, read_deck_type
+   use element_kinds, only: side_node_count
    use errors, only: error_type, set_error, status_internal, status_interrupted, &
       status_no_convergence
    use file_calls, only: make_folder, try_file
@@ -29,9 +31,10 @@ module deck_trade
    use steps, only: solves_heat
    use text, only: counted, few_digits, string_type, to_text
    use trade_reference, only: state_errors
-   use trade_study, only: absent, common_instants, figure_count, instant_at, item_quantities, &
+   use trade_study, only: absent, factors, figure_count, item_quantities, &
       judge_rows, mesh_rows, most_levels, single_rows, trade_row_type, trade_type
-   use trade_table, only: print_trade, write_trade
+   use trade_table, only: imbalanced_rows, print_trade, write_trade
+   use variation_instants, only: common_instants, instant_at
    use variations, only: variation_type
    implicit none
    private
@@ -39,41 +42,42 @@ module deck_trade
 
    integer, parameter :: most_nodes = 2000     !! whose temperatures are compared
    real(dp), parameter :: growth = 4.0_dp      !! of elements from one mesh to the next
+   real(dp), parameter :: unknown = 1.0e300_dp !! seconds of a row whose coarser one is left out
 
    !> Runs of a row by the CPU seconds of its first: short times scatter most.
    real(dp), parameter :: moments(3) = [0.1_dp, 1.0_dp, 5.0_dp]   !! [s]
    integer, parameter :: runs_within(4) = [7, 5, 3, 1]            !! up to each, and beyond
-   real(dp), parameter :: patience = 5.0_dp        !! a row may take so many times the limit
+   real(dp), parameter :: patience = 5.0_dp        !! a run may take so many times the limit
    real(dp), parameter :: least_patience = 20.0_dp !! and this [s]
 
-   !> What is compared of a row, taken as its increments come.
+   !> What is known of a row, in memory that its process shares, taken as its increments come.
    type, extends(increment_taker_type) :: row_values_type
       real(dp), allocatable :: instants(:)   !! total times of comparison [time]
-      !> Nodes whose temperature is compared: numbers of the deck, in the process of a row indexes
-      integer, allocatable :: nodes(:)
-      real(dp), pointer :: values(:, :)      !! (items, instants) shared with that process
-      integer :: increments = 0              !! accepted ones
-      integer :: passes = 0                  !! of the fixed point in all of them
+      integer, allocatable :: nodes(:)       !! indexes of nodes whose temperature is compared
+      real(dp), pointer :: values(:, :)      !! (items, instants)
+      !> (7, 2) CPU seconds of the runs that have ended [s]; accepted increments, passes of the
+      !> fixed point in all of them, largest pointwise imbalance of heat
+      real(dp), pointer :: figures(:, :)
    contains
       procedure :: take
    end type row_values_type
 
-   !> All that a row needs.
+   !> A row in a process of its own.
    type, extends(task_type) :: row_task_type
       character(:), allocatable :: path           !! the deck as given
       type(command_type) :: command               !! options of the command line
       type(read_deck_type), pointer :: deck => null()   !! read
+      integer, allocatable :: nodes(:)            !! numbers of nodes whose temperature is compared
       type(row_values_type) :: found              !! values of the row
       type(variation_type) :: variation           !! the row
    contains
       procedure :: execute
    end type row_task_type
 
-   !> A row in a process of its own.
+   !> One of the processes that run beside each other.
    type :: row_run_type
       type(row_task_type) :: task     !! all but the variation is given
-      integer :: row = 0              !! its index
-      integer :: runs_left = 0        !! of it, the present one included; 0: none runs
+      integer :: row = 0              !! its index, 0 where none runs
       type(child_type) :: child
       real(dp) :: since = 0.0_dp      !! when it began [s]
    end type row_run_type
@@ -93,7 +97,7 @@ contains
       type(row_run_type) :: runs(command%jobs)
       type(trade_type) :: trade
       type(error_type), allocatable :: error
-      character(:), allocatable :: table
+      character(:), allocatable :: ended_early, table
       integer :: i
 
       status = 0
@@ -116,7 +120,7 @@ contains
          simulation%bodies%interfaces%pairing, runs, trade, error)
       if (allocated(error)) status = error%status
       if (status == status_interrupted .and. size(trade%rows) > 0) then
-         trade%ended_early = error%message//': the table contains only the '// &
+         ended_early = error%message//': the table contains only the '// &
             counted(size(trade%rows), 'row')//' measured before'
          deallocate (error)
       end if
@@ -128,14 +132,12 @@ contains
       end if
       if (allocated(error)) call print_error(path, error%message)
       if (allocated(error)) return
-      if (.not. command%quiet) then
-         call print_trade(path, trade)
-         call print_line(output_unit, 'table: '//table)
-      end if
-      if (allocated(trade%ended_early)) then
-         call print_error(path, trade%ended_early)
-         return
-      end if
+      if (.not. command%quiet) call print_trade(path, table, trade)
+      if (imbalanced_rows(trade) /= '') call print_line(error_unit, path//': warning: at the '// &
+         'end of an increment heat is out of balance by more than 1 % of the largest rate '// &
+         '(heat_imbalance_pointwise), left by the thermal scheme: '//imbalanced_rows(trade))
+      if (allocated(ended_early)) call print_error(path, ended_early)
+      if (allocated(ended_early)) return
       i = findloc(trade%rows%is_default, .true., dim=1)
       status = trade%rows(i)%status
       if (status /= 0) call print_error(path, 'the deck as written fails: '// &
@@ -154,7 +156,7 @@ contains
       type(progress_type) :: progress
       type(trade_row_type), allocatable :: rows(:)
       integer, allocatable :: nodes(:)
-      integer :: i, level, contact_level, corners(2, size(model%mesh%node_number))
+      integer :: contact_level, corners(2, size(model%mesh%node_number)), highest, i, level, most
 
       allocate (trade%rows(0), trade%left_out(0))
       ! Temperatures are those of the corners of the deck's own elements, which all rows have.
@@ -162,29 +164,31 @@ contains
       nodes = pack(model%mesh%node_number, corners(1, :) == 0 .and. &
          any(solves_heat(model%steps%analysis)))
       nodes = nodes(::1 + (size(nodes) - 1)/most_nodes)
-      trade%instants = common_instants(model)
+      trade%instants = common_instants(model, factors(1))
       trade%items = item_quantities(size(model%contacts), size(nodes))
       do i = 1, size(runs)
-         runs(i)%task%found%nodes = nodes
-         runs(i)%task%found%instants = trade%instants
-         call share_numbers(runs(i)%task%found%values, size(trade%items), size(trade%instants), &
-            error)
+         associate (task => runs(i)%task)
+            task%nodes = nodes
+            task%found%instants = trade%instants
+            call share_numbers(task%found%figures, runs_within(1), 2, error)
+            if (.not. allocated(error)) call share_numbers(task%found%values, size(trade%items), &
+               size(trade%instants), error)
+         end associate
          if (allocated(error)) return
       end do
-      associate (limit => runs(1)%task%command%limit, quiet => runs(1)%task%command%quiet, &
-         most => model%written_levels + most_levels)
-         call progress%start(quiet)
-         do contact_level = 0, merge(most, 0, size(model%contacts) > 0)
-            do level = 0, most - contact_level
-               call mesh_rows(model, level, contact_level, rows)
-               call leave_out_expensive(limit, trade, rows)
-               call measure_rows(runs, progress, rows, error)
-               trade%rows = [trade%rows, rows]
-               if (allocated(error)) return
-            end do
+      call progress%start(runs(1)%task%command%quiet)
+      most = model%written_levels + most_levels
+      highest = merge(2, 1, any(side_node_count(model%mesh%element_kind) == 3))
+      do contact_level = 0, merge(most, 0, size(model%contacts) > 0)
+         do level = 0, most - contact_level
+            call mesh_rows(model, highest, level, contact_level, rows)
+            call leave_out_expensive(runs(1)%task%command%limit, trade, rows)
+            call measure_rows(runs, progress, rows, error)
+            trade%rows = [trade%rows, rows]
+            if (allocated(error)) return
          end do
-      end associate
-      call single_rows(model, pairings, rows)
+      end do
+      call single_rows(model, highest, pairings, rows)
       call measure_rows(runs, progress, rows, error)
       trade%rows = [trade%rows, rows]
       call progress%clear()
@@ -196,28 +200,34 @@ contains
       real(dp), intent(in) :: limit                       !! CPU seconds that a row may take [s]
       type(trade_type), intent(inout) :: trade            !! receives them
       type(trade_row_type), allocatable, intent(inout) :: rows(:)
-      logical :: is_kept(size(rows))
-      integer :: coarser, i, less
+      real(dp) :: expected(size(rows))
+      integer :: i
 
+      expected = [(expected_seconds(trade%rows, rows(i)%variation), i=1, size(rows))]
+      where (rows%is_default) expected = 0.0_dp
       do i = 1, size(rows)
-         associate (mesh => rows(i)%variation)
-            is_kept(i) = rows(i)%is_default .or. mesh%levels + mesh%contact_levels == 0
-            if (is_kept(i)) cycle
-            ! The row on the next coarser mesh, with the same elements and increments.
-            less = merge(1, 0, mesh%contact_levels > 0)
-            coarser = findloc(trade%rows%variation%order == mesh%order .and. &
-               trade%rows%variation%contact_levels == mesh%contact_levels - less .and. &
-               trade%rows%variation%levels == mesh%levels - (1 - less) .and. &
-               abs(trade%rows%variation%increments - mesh%increments) <= 0.0_dp, .true., dim=1)
-         end associate
-         if (coarser == 0) cycle
-         is_kept(i) = growth*trade%rows(coarser)%cpu_seconds <= limit
-         if (is_kept(i)) cycle
-         rows(i)%reason = 'at least '//few_digits(growth*trade%rows(coarser)%cpu_seconds)//' s'
+         if (expected(i) <= limit .or. expected(i) >= unknown) cycle
+         rows(i)%reason = 'at least '//few_digits(expected(i))//' s'
          trade%left_out = [trade%left_out, rows(i)]
       end do
-      rows = rows(pack([(i, i=1, size(rows))], is_kept))
+      rows = rows(pack([(i, i=1, size(rows))], expected <= limit))
    end subroutine leave_out_expensive
+
+   !> CPU seconds of a row, from the one on the next coarser mesh with the same elements and
+   !> increments; 0 on the coarsest mesh.
+   pure real(dp) function expected_seconds(rows, mesh)
+      type(trade_row_type), intent(in) :: rows(:)      !! measured
+      type(variation_type), intent(in) :: mesh
+      integer :: coarser, local
+
+      local = merge(1, 0, mesh%contact_levels > 0)
+      coarser = findloc(rows%variation%order == mesh%order .and. &
+         rows%variation%contact_levels == mesh%contact_levels - local .and. &
+         rows%variation%levels == mesh%levels - (1 - local) .and. &
+         abs(rows%variation%increments - mesh%increments) <= 0.0_dp, .true., dim=1)
+      expected_seconds = merge(0.0_dp, unknown, mesh%levels + mesh%contact_levels == 0)
+      if (coarser > 0) expected_seconds = growth*rows(coarser)%cpu_seconds
+   end function expected_seconds
 
    !> Runs some rows. A row that fails keeps its reason.
    !> Errors: status_interrupted after a signal, then only the rows that were measured remain;
@@ -231,23 +241,18 @@ contains
       logical :: has_ended
 
       next = 1
-      do while (next <= size(rows) .or. any(runs%runs_left > 0))
+      do while (next <= size(rows) .or. any(runs%row > 0))
          do i = 1, size(runs)
             associate (run => runs(i))
-               if (run%runs_left > 0) then
-                  call collect(run, rows(run%row), has_ended)
-                  if (.not. has_ended) cycle
-               end if
-               if (run%runs_left == 0) then
-                  if (next > size(rows)) cycle
-                  run%row = next
-                  run%runs_left = 1
-                  run%task%variation = rows(next)%variation
-                  next = next + 1
-               end if
+               if (run%row > 0) call collect(run, rows(run%row))
+               if (run%row > 0 .or. next > size(rows)) cycle
+               run%row = next
+               run%task%variation = rows(next)%variation
+               next = next + 1
                call progress%say('level '//to_text(run%task%variation%levels)//', row '// &
                   to_text(run%row)//' of '//to_text(size(rows)))
                run%task%found%values = absent
+               run%task%found%figures = 0.0_dp
                run%since = wall_seconds()
                call run%child%start(run%task, error)
             end associate
@@ -265,78 +270,90 @@ contains
          [(allocated(rows(i)%cpu), i=1, size(rows))]))
    end subroutine measure_rows
 
-   !> Takes what a run left, once it has ended; after the first one of a row, repetitions are due.
-   subroutine collect(self, row, has_ended)
+   !> Takes what a row left, once its process has ended or its time is over.
+   subroutine collect(self, row)
       type(row_run_type), intent(inout) :: self
       type(trade_row_type), intent(inout) :: row
-      logical, intent(out) :: has_ended
       type(report_type) :: report
       real(dp) :: longest
       integer :: i
 
-      longest = max(patience*self%task%command%limit, least_patience)
-      has_ended = self%child%has_ended()
-      if (has_ended) then
-         report = self%child%report()
-         call self%child%drop_files()
-      else if (wall_seconds() - self%since >= longest) then
-         call self%child%kill()
-         has_ended = .true.
-         report%status = int(status_internal, c_int)
-         call set_reason(report, 'took longer than '//to_text(longest)//' s')
-      else
-         return
-      end if
-      self%runs_left = self%runs_left - 1
-      associate (ended => self%child%end)
-         row%peak_bytes = max(row%peak_bytes, ended%peak_bytes)
-         if (.not. allocated(row%cpu)) then
-            row%cpu = [ended%cpu_seconds]
-            row%status = int(report%status)
-            row%reason = reason_of(report)
-            row%increments = int(report%increments)
-            row%passes = int(report%iterations)
-            row%values = self%task%found%values
-            if (row%status == 0) self%runs_left = &
-               runs_within(count(ended%cpu_seconds > moments) + 1) - 1
-         else if (report%status == 0) then
-            row%cpu = [row%cpu, ended%cpu_seconds]
+      associate (figures => self%task%found%figures)
+         longest = max(patience*self%task%command%limit, least_patience)
+         if (self%child%has_ended()) then
+            report = self%child%report()
+            call self%child%drop_files()
+         else if (wall_seconds() - self%since >= longest*(1 + count(figures(:, 1) > 0.0_dp))) then
+            call self%child%kill()
+            report%status = int(status_internal, c_int)
+            call set_reason(report, 'took longer than '//to_text(longest)//' s')
+         else
+            return
          end if
+         self%row = 0
+         row%peak_bytes = self%child%end%peak_bytes
+         row%status = int(report%status)
+         row%reason = reason_of(report)
+         row%increments = nint(figures(1, 2))
+         row%passes = nint(figures(2, 2))
+         row%imbalance = figures(3, 2)
+         row%values = self%task%found%values
+         row%cpu = pack(figures(:, 1), figures(:, 1) > 0.0_dp)
       end associate
+      if (size(row%cpu) == 0) row%cpu = [self%child%end%cpu_seconds]
       ! The median: the smallest that at least half of them do not exceed.
       row%cpu_seconds = minval(row%cpu, mask=[(2*count(row%cpu <= row%cpu(i)) >= size(row%cpu), &
          i=1, size(row%cpu))])
    end subroutine collect
 
-   !> Solves the row, a round without estimates and without a request.
+   !> Solves the row as often as its time asks for.
    subroutine execute(self, report)
       class(row_task_type), intent(inout) :: self
       type(report_type), intent(inout) :: report    !! how it ended
+      type(error_type), allocatable :: error
+      real(dp) :: ended, began
+      integer :: run
+
+      associate (seconds => self%found%figures(:, 1))
+         do run = 1, size(seconds)
+            if (run > runs_within(count(seconds(1) > moments) + 1)) exit
+            call cpu_time(began)
+            call solve_once(self, error)
+            if (allocated(error)) exit
+            call cpu_time(ended)
+            seconds(run) = max(ended - began, tiny(ended))
+         end do
+      end associate
+      if (.not. allocated(error)) return
+      report%status = int(error%status, c_int)
+      call set_reason(report, error%message)
+   end subroutine execute
+
+   !> A round without estimates and without a request.
+   !> Errors: as prepare_deck and solve_increments.
+   subroutine solve_once(self, error)
+      class(row_task_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
       type(model_type) :: model
       type(simulation_type) :: simulation
       type(adaptive_rounds_type) :: rounds
       type(increment_record_type) :: record
       type(number_index_type) :: index
-      type(error_type), allocatable :: error
       integer :: i
 
       call prepare_deck(self%path, self%command, self%deck, model, simulation, error, &
          self%variation)
-      if (.not. allocated(error)) then
-         model%estimates_errors = .false.
-         if (allocated(model%accuracy%targets)) deallocate (model%accuracy%targets)
-         call index%build(model%mesh%node_number)
-         self%found%nodes = [(index%find(self%found%nodes(i)), i=1, size(self%found%nodes))]
-         call simulation%reduce(model, error)
-         call rounds%solve_increments(model, simulation, self%found, record, error)
-         if (allocated(error)) error%status = max(error%status, status_no_convergence)
-      end if
-      report%increments = int(self%found%increments, c_int)
-      report%iterations = int(self%found%passes, c_int)
-      if (.not. allocated(error)) return
-      report%status = int(error%status, c_int)
-      call set_reason(report, error%message)
-   end subroutine execute
+      if (allocated(error)) return
+      model%estimates_errors = .false.
+      if (allocated(model%accuracy%targets)) deallocate (model%accuracy%targets)
+      call index%build(model%mesh%node_number)
+      self%found%nodes = [(index%find(self%nodes(i)), i=1, size(self%nodes))]
+      self%found%figures(:, 2) = 0.0_dp
+      call simulation%reduce(model, error)
+      call rounds%solve_increments(model, simulation, self%found, record, error)
+      if (allocated(error)) error%status = max(error%status, status_no_convergence)
+      call simulation%release()
+   end subroutine solve_once
 
    !> Takes the values at the instants of comparison; their order is that of item_quantities.
    subroutine take(self, simulation, record, error)
@@ -344,24 +361,28 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable, intent(inout) :: error
+      type(contact_points_type), allocatable :: interfaces(:)
       real(dp), allocatable :: values(:)
       integer :: i, instant, q
 
-      if (allocated(record%iterations)) self%passes = self%passes + size(record%iterations)
-      if (allocated(error)) return
-      self%increments = self%increments + 1
+      associate (counts => self%figures(:, 2))
+         if (allocated(record%iterations)) counts(2) = counts(2) + size(record%iterations)
+         if (allocated(error)) return
+         counts(1) = counts(1) + 1
+         if (record%heat_imbalance_pointwise > counts(3)) counts(3) = &
+            record%heat_imbalance_pointwise
+      end associate
       instant = instant_at(self%instants, record%time)
       if (instant == 0) return
-      associate (interfaces => simulation%bodies%interfaces)
-         allocate (values(0))
-         do i = 1, size(interfaces)
-            values = [values, (contact_values(traded(q)%name, interfaces(i), &
-               record%contacts(i)), q=1, figure_count), &
-               closed_length(record%contacts(i), interfaces(i)%arc_length)]
-         end do
-         if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
-            traded(q)%name == 'heat_rate'), q=1, figure_count), 0.0_dp]
-      end associate
+      call simulation%bodies%views(interfaces)
+      allocate (values(0))
+      do i = 1, size(interfaces)
+         values = [values, (contact_values(traded(q)%name, interfaces(i), &
+            record%contacts(i)), q=1, figure_count), &
+            closed_length(record%contacts(i), interfaces(i)%arc_length)]
+      end do
+      if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
+         traded(q)%name == 'heat_rate'), q=1, figure_count), 0.0_dp]
       values = [values, record%fields%temperature(self%nodes)]
       where (.not. ieee_is_finite(values)) values = absent
       self%values(:, instant) = values

@@ -6,20 +6,17 @@ module trade_study
    use contact_definitions, only: pairing_name, pairing_nodes, pairing_surfaces
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
       method_names, solver_mumps, solver_skyline, thermal_scheme_type
-   use element_kinds, only: side_node_count
-   use increment_control, only: increment_control_type
    use kinds, only: dp
-   use load_histories, only: step_clock_type
    use model, only: model_type
    use reported_quantities, only: traded
    use steps, only: analysis_coupled, solves_heat
-   use text, only: percent, string_type, to_text
-   use variations, only: variation_type, varied_increment
+   use text, only: percent, rounded, string_type, to_text
+   use variations, only: variation_type
    implicit none
    private
    public :: trade_row_type, trade_type, targets, target_count, quantity_count, figure_count, &
-      closed_length, is_there, absent, item_quantities, judge_rows, are_optimal, rounded, &
-      same_time, mesh_rows, single_rows, common_instants, instant_at, factors, most_levels
+      closed_length, is_there, absent, item_quantities, judge_rows, are_optimal, &
+      same_time, mesh_rows, single_rows, factors, most_levels
 
    integer, parameter :: quantity_count = size(traded)       !! quantities that rows are judged by
    integer, parameter :: figure_count = quantity_count - 1   !! all but the last: the temperatures
@@ -43,6 +40,7 @@ module trade_study
       real(dp) :: peak_bytes = 0.0_dp                   !! largest resident memory [byte]
       integer :: increments = 0                         !! accepted increments
       integer :: passes = 0                             !! passes of the fixed point in all of them
+      real(dp) :: imbalance = 0.0_dp                    !! largest heat_imbalance_pointwise
       real(dp), allocatable :: values(:, :)             !! (items, instants), or absent
       real(dp) :: errors(quantity_count) = absent       !! stated errors [-]
       real(dp) :: worst = absent                        !! largest of them
@@ -54,11 +52,9 @@ module trade_study
    type :: trade_type
       type(trade_row_type), allocatable :: rows(:)
       type(trade_row_type), allocatable :: left_out(:)  !! by --limit, with the reason
-      character(:), allocatable :: ended_early          !! why rows are missing; else unallocated
       real(dp), allocatable :: instants(:)              !! total times of comparison [time]
       integer, allocatable :: items(:)                  !! as from item_quantities
       real(dp) :: uncertainty(quantity_count) = absent  !! of the reference; absent: not judged
-      logical :: is_known(quantity_count) = .false.     !! whether there is a reference
       !> Limits of a recommendation, or why there is none; empty for neither
       type(string_type) :: remarks(target_count)
    end type trade_type
@@ -70,9 +66,6 @@ module trade_study
    real(dp), parameter :: tolerances(4) = [1.0e-3_dp, 1.0e-5_dp, 1.0e-8_dp, 1.0e-11_dp]
    type(thermal_scheme_type), parameter :: schemes(4) = [implicit_scheme, galerkin_scheme, &
       crank_nicolson_scheme, explicit_scheme]
-
-   integer, parameter :: few = 4             !! instants: fewer all count
-   integer, parameter :: most_instants = 60  !! of all steps, but at least three in each
 
 contains
 
@@ -99,7 +92,8 @@ contains
    !> the targets before it, in all quantities in which some row does.
    pure subroutine judge_rows(trade)
       type(trade_type), intent(inout) :: trade   !! with the errors of its rows
-      logical :: meets(size(trade%rows)), is_reachable(quantity_count)
+      logical :: meets(size(trade%rows)), is_known(quantity_count), &
+         is_reachable(quantity_count)
       real(dp) :: least(quantity_count)
       character(:), allocatable :: words
       integer :: k, q, i
@@ -107,31 +101,28 @@ contains
       associate (rows => trade%rows)
          rows%is_optimal = are_optimal(rounded(rows%cpu_seconds), &
             rounded(max(rows%worst, negligible)), rows%status == 0 .and. is_there(rows%worst))
+         is_known = is_there(trade%uncertainty)
          least = [(minval(rows%errors(q), mask=rows%status == 0), q=1, quantity_count)]
          meets = rows%status == 0
          do k = 1, target_count
-            is_reachable = trade%is_known .and. least <= targets(k)
+            is_reachable = is_known .and. least <= targets(k)
             meets = meets .and. [(all(rows(i)%errors <= targets(k) .or. .not. is_reachable), &
                i=1, size(rows))]
             if (any(is_reachable) .and. any(meets)) rows(cheapest(rows, meets))% &
                is_recommended(k) = .true.
             words = ''
             do q = 1, quantity_count
-               if (is_reachable(q) .or. .not. trade%is_known(q)) cycle
-               if (words /= '') words = words//'; '
-               words = words//trim(traded(q)%name)
-               if (trade%uncertainty(q) >= targets(k)) then
-                  words = words//': the reference itself is uncertain by '// &
-                     percent(trade%uncertainty(q))
-               else
-                  words = words//': the best row has '//percent(least(q))
-               end if
+               if (is_reachable(q) .or. .not. is_known(q)) cycle
+               words = words//'; '//trim(traded(q)%name)//': '
+               if (trade%uncertainty(q) < targets(k)) words = words//'the best row has '// &
+                  percent(least(q))
+               if (trade%uncertainty(q) >= targets(k)) words = words// &
+                  'the reference itself is uncertain by '//percent(trade%uncertainty(q))
             end do
-            if (words == '' .and. .not. any(rows%is_recommended(k))) then
-               words = 'no row meets it in all quantities'
-               if (.not. any(trade%is_known)) words = 'there is nothing to judge by'
-            end if
-            trade%remarks(k)%value = words
+            if (words == '' .and. .not. any(rows%is_recommended(k))) words = '; '//trim(merge( &
+               'no row meets it in all quantities', 'there is nothing to judge by     ', &
+               any(is_known)))
+            trade%remarks(k)%value = words(3:)
          end do
       end associate
    end subroutine judge_rows
@@ -165,142 +156,83 @@ contains
       if (best == 0) best = findloc(candidates, .true., dim=1)
    end function cheapest
 
-   !> A number with two decimal digits: the same double for the same digits, as text is read.
-   elemental real(dp) function rounded(number)
-      real(dp), intent(in) :: number
-      character(16) :: digits
-
-      write (digits, '(es16.1e3)') number
-      read (digits, *) rounded
-   end function rounded
-
    !> The rows on one mesh: elements by increments; with levels at the contact faces, some with the
    !> deck's elements. Factors that do not change the increments of the deck are left out.
-   pure subroutine mesh_rows(model, level, contact_level, rows)
+   pure subroutine mesh_rows(model, highest, level, contact_level, rows)
       type(model_type), intent(in) :: model       !! on the deck's mesh
+      integer, intent(in) :: highest              !! order of its elements
       integer, intent(in) :: level                !! refinements of that mesh
       integer, intent(in) :: contact_level        !! more of them at the contact faces
       type(trade_row_type), allocatable, intent(out) :: rows(:)
-      integer :: f, highest, order
+      type(trade_row_type) :: row
+      integer :: f, order
 
       allocate (rows(0))
-      highest = highest_order(model)
+      row%varied = ''
       do order = 1, highest
          do f = 1, size(factors)
             associate (is_default => order == min(model%written_order, highest))
                if (contact_level > 0 .and. .not. (is_default .and. is_local(f))) cycle
                if (all(0.5_dp*factors(f)*model%steps%first_increment >= &
                   0.999_dp*model%steps%period)) cycle
-               call add(variation_type(order=order, levels=level, contact_levels=contact_level, &
-                  increments=factors(f)), '', rows)
-               rows(size(rows))%is_default = is_default .and. contact_level == 0 .and. &
+               row%variation = variation_type(order=order, levels=level, &
+                  contact_levels=contact_level, increments=factors(f))
+               row%is_default = is_default .and. contact_level == 0 .and. &
                   level == model%written_levels .and. abs(factors(f) - 1.0_dp) <= 0.0_dp
+               rows = [rows, row]
             end associate
          end do
       end do
    end subroutine mesh_rows
 
    !> The rows that vary one thing, each where the deck has a use for it.
-   pure subroutine single_rows(model, pairings, rows)
+   subroutine single_rows(model, highest, pairings, rows)
       type(model_type), intent(in) :: model        !! on the deck's mesh
+      integer, intent(in) :: highest               !! order of its elements
       integer, intent(in) :: pairings(:)           !! (interfaces) as the deck has them
       type(trade_row_type), allocatable, intent(out) :: rows(:)
-      type(variation_type) :: written
+      type(variation_type) :: written, varied
       integer :: i, coupled, heated, pairing
 
       allocate (rows(0))
-      written = variation_type(order=min(model%written_order, highest_order(model)), &
-         levels=model%written_levels)
+      written = variation_type(order=min(model%written_order, highest), levels=model%written_levels)
+      varied = written
       coupled = findloc(model%steps%analysis, analysis_coupled, dim=1)
       if (size(model%contacts) == 0) coupled = 0
       heated = findloc(solves_heat(model%steps%analysis), .true., dim=1)
       do i = 1, merge(size(tolerances), 0, coupled > 0)
          if (abs(tolerances(i)/model%steps(coupled)%fixed_point%tolerance - 1.0_dp) < 0.5_dp) cycle
-         call add(written, 'TOL='//to_text(tolerances(i)), rows)
-         rows(size(rows))%variation%tolerance = tolerances(i)
+         varied%tolerance = tolerances(i)
+         call add('TOL='//to_text(tolerances(i)))
       end do
       do i = 1, merge(size(schemes), 0, heated > 0)
          if (schemes(i)%name == model%steps(heated)%scheme%name) cycle
-         call add(written, trim(schemes(i)%name), rows)
-         rows(size(rows))%variation%scheme = schemes(i)
+         varied%scheme = schemes(i)
+         call add(schemes(i)%name)
       end do
       do i = 1, merge(size(method_names), 0, coupled > 0)
          if (i == model%steps(coupled)%fixed_point%method) cycle
-         call add(written, trim(method_names(i)), rows)
-         rows(size(rows))%variation%method = i
+         varied%method = i
+         call add(method_names(i))
       end do
       pairing = merge(pairing_surfaces, 0, all(pairings == pairing_nodes))
       if (any(model%contacts%pairing == pairing_surfaces)) pairing = pairing_nodes
-      if (size(pairings) > 0 .and. pairing /= 0) then
-         call add(written, pairing_name(pairing), rows)
-         rows(size(rows))%variation%pairing = pairing
-      end if
-      call add(written, trim(merge('MUMPS  ', 'SKYLINE', model%solver == solver_skyline)), rows)
-      rows(size(rows))%variation%solver = merge(solver_mumps, solver_skyline, &
-         model%solver == solver_skyline)
+      varied%pairing = pairing
+      if (size(pairings) > 0 .and. pairing /= 0) call add(pairing_name(pairing))
+      varied = written
+      varied%solver = merge(solver_mumps, solver_skyline, model%solver == solver_skyline)
+      call add(merge('MUMPS  ', 'SKYLINE', model%solver == solver_skyline))
+   contains
+      !> Adds the row with what is varied, and goes back to the deck.
+      subroutine add(name)
+         character(*), intent(in) :: name
+         type(trade_row_type) :: row
+
+         row%variation = varied
+         row%varied = trim(name)
+         rows = [rows, row]
+         varied = written
+      end subroutine add
    end subroutine single_rows
-
-   pure subroutine add(variation, varied, rows)
-      type(variation_type), intent(in) :: variation
-      character(*), intent(in) :: varied
-      type(trade_row_type), allocatable, intent(inout) :: rows(:)
-      type(trade_row_type) :: row
-
-      row%variation = variation
-      row%varied = varied
-      row%reason = ''
-      rows = [rows, row]
-   end subroutine add
-
-   !> Order of the elements that the deck has.
-   pure integer function highest_order(model)
-      type(model_type), intent(in) :: model
-
-      highest_order = merge(2, 1, any(side_node_count(model%mesh%element_kind) == 3))
-   end function highest_order
-
-   !> Instants at which rows are compared: ends of the longest increments, which shorter ones meet
-   !> too, of many every n-th; where increments grow, only the instants on which they land. The
-   !> first end of a step is the coarsest part of a path and left out, unless there are few.
-   pure function common_instants(model) result(times)
-      type(model_type), intent(in) :: model      !! as the deck is written
-      real(dp), allocatable :: times(:)          !! total times, ascending [time]
-      type(model_type) :: longest
-      type(increment_control_type) :: control
-      type(step_clock_type) :: clock
-      real(dp), allocatable :: ends(:)
-      integer :: s, count
-
-      longest = model
-      allocate (times(0))
-      do s = 1, size(model%steps)
-         associate (step => longest%steps(s), most => max(most_instants/size(model%steps), 2))
-            step%first_increment = varied_increment(step%first_increment, step%period, factors(1))
-            count = floor(step%period/step%first_increment + 1.0e-6_dp)
-            step%first_increment = step%first_increment*(1 + (count - 1)/most)
-            if (step%grows) step%first_increment = step%period
-            step%grows = .false.
-         end associate
-         call control%enter_step(longest)
-         allocate (ends(0))
-         do while (.not. control%step_is_over(longest))
-            clock = control%next_instant(longest)
-            call control%accept(longest, clock)
-            ends = [ends, clock%total_time]
-         end do
-         times = [times, ends(merge(2, 1, count >= few .and. .not. model%steps(s)%grows):)]
-         deallocate (ends)
-      end do
-   end function common_instants
-
-   !> Which of some instants a time is; 0 for none.
-   pure integer function instant_at(times, time)
-      real(dp), intent(in) :: times(:)   !! instants [time]
-      real(dp), intent(in) :: time       !! a total time [time]
-
-      do instant_at = size(times), 1, -1
-         if (abs(times(instant_at) - time) <= 1.0e-9_dp*times(size(times))) return
-      end do
-   end function instant_at
 
 end module trade_study

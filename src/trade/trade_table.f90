@@ -1,6 +1,7 @@
 !> The table of a trade-off study, as text and as a CSV file.
 module trade_table
    use, intrinsic :: iso_fortran_env, only: output_unit
+   use balances, only: sound_imbalance
    use errors, only: error_type
    use kinds, only: dp
    use messages, only: print_line
@@ -11,7 +12,7 @@ module trade_table
       trade_row_type, trade_type
    implicit none
    private
-   public :: print_trade, write_trade
+   public :: imbalanced_rows, print_trade, write_trade
 
    real(dp), parameter :: megabyte = 1.0e6_dp               !! [byte]
    character(2), parameter :: elements(2) = ['Q4', 'Q8']    !! by their order
@@ -21,9 +22,26 @@ module trade_table
 
 contains
 
+   !> Names the rows that leave heat out of balance; empty for none.
+   pure function imbalanced_rows(trade) result(names)
+      type(trade_type), intent(in) :: trade
+      character(:), allocatable :: names
+      integer :: i
+
+      names = ''
+      do i = 1, size(trade%rows)
+         associate (row => trade%rows(i))
+            if (row%status /= 0 .or. row%imbalance <= sound_imbalance) cycle
+            if (names /= '') names = names//', '
+            names = names//'row '//to_text(i)//' ('//percent(row%imbalance)//')'
+         end associate
+      end do
+   end function imbalanced_rows
+
    !> Prints the table, the rows that were left out, and the recommendations on stdout.
-   subroutine print_trade(name, trade)
+   subroutine print_trade(name, table, trade)
       character(*), intent(in) :: name          !! the deck
+      character(*), intent(in) :: table         !! the CSV file
       type(trade_type), intent(in) :: trade
       character(68 + 9*(quantity_count + 1)) :: head
       character(12) :: mesh
@@ -64,11 +82,11 @@ contains
          call say('left out by --limit: '//described(trade%left_out(i))//': '// &
             trade%left_out(i)%reason)
       end do
-      if (allocated(trade%ended_early)) call say(trade%ended_early)
       call say('')
       do i = 1, target_count
          call print_target(trade, i)
       end do
+      call say('table: '//table)
    end subroutine print_trade
 
    subroutine say(line)
@@ -88,8 +106,7 @@ contains
             call say(words//': no row; '//remark)
             return
          end if
-         call say(words//trim(merge(', not of all quantities', repeat(' ', 23), remark /= ''))// &
-            ': row '//to_text(i)//' ('//described(trade%rows(i))//'), '// &
+         call say(words//': row '//to_text(i)//' ('//described(trade%rows(i))//'), '// &
             with_decimals(trade%rows(i)%cpu_seconds, 3)//' s of CPU')
          if (remark /= '') call say('       but not for '//remark)
       end associate
@@ -183,15 +200,12 @@ contains
    pure function fields(numbers) result(text)
       real(dp), intent(in) :: numbers(:)
       character(:), allocatable :: text
-      character(12) :: buffer
       integer :: i
 
       text = ''
       do i = 1, size(numbers)
-         write (buffer, '(es12.5)') numbers(i)
-         if (.not. is_there(numbers(i))) buffer = ''
          if (i > 1) text = text//','
-         text = text//trim(adjustl(buffer))
+         if (is_there(numbers(i))) text = text//to_text(numbers(i))
       end do
    end function fields
 

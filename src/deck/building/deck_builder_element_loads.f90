@@ -310,7 +310,8 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: label, labels
-      integer :: errors, surface
+      real(dp) :: vector(2)
+      integer :: errors, i, surface
       logical :: valid
 
       valid = .true.
@@ -342,35 +343,19 @@ contains
          request%kind = load_pressure
          if (valid) call add_faces(model%mesh%surfaces(surface), request, 1, 0, context)
       case ('TRVEC')
-         call build_traction(data, request, model, surface, context, report, valid)
+         call need_plane_vector(data, 3, report, vector, valid)
+         call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', report)
+         request%kind = load_traction
+         do i = 1, merge(2, 0, valid)
+            request%value = vector(i)
+            call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, context)
+         end do
       case default
          if (surface == 0 .or. report%error_count() > errors) return
          call build_on_faces(label//'1', model%mesh%surfaces(surface), data, &
             request, film_amplitude, context, report)
       end select
    end subroutine build_surface_load
-
-   !> Magnitude and direction of a traction vector.
-   subroutine build_traction(data, request, model, surface, context, report, valid)
-      type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: surface
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: valid
-      real(dp) :: vector(2)
-      integer :: i
-
-      call need_plane_vector(data, 3, report, vector, valid)
-      call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', report)
-      if (.not. valid) return
-      request%kind = load_traction
-      do i = 1, 2
-         request%value = vector(i)
-         call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, context)
-      end do
-   end subroutine build_traction
 
    !> One request a face, its component a multiple of the face's number and an offset.
    subroutine add_faces(surface, request, multiple, offset, context)
