@@ -238,7 +238,6 @@ contains
       type(trade_row_type), allocatable, intent(inout) :: rows(:)
       type(error_type), allocatable, intent(out) :: error
       integer :: next, i
-      logical :: has_ended
 
       next = 1
       do while (next <= size(rows) .or. any(runs%row > 0))

@@ -32,10 +32,12 @@ contains
       do i = 1, size(trade%rows)
          associate (row => trade%rows(i))
             if (row%status /= 0 .or. row%imbalance <= sound_imbalance) cycle
-            if (names /= '') names = names//', '
-            names = names//'row '//to_text(i)//' ('//percent(row%imbalance)//')'
+            names = names//', row '//to_text(i)//' ('//percent(row%imbalance)
+            if (row%varied /= '') names = names//', '//row%varied
+            names = names//')'
          end associate
       end do
+      names = names(3:)
    end function imbalanced_rows
 
    !> Prints the table, the rows that were left out, and the recommendations on stdout.

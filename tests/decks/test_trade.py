@@ -264,10 +264,15 @@ def r1(tmp_path_factory):
     return *trade(INPUT / "rods" / "r1.inp", out, "--quiet", "--limit", "0.001"), out
 
 
-def test_only_the_table_is_left(r1):
+def test_only_the_table_is_left_and_rows_out_of_balance_are_named(r1):
+    """The gap of the rods changes in one increment, which only the implicit scheme takes whole."""
     _, process, out = r1
     assert [path.name for path in out.iterdir()] == ["r1.trade.csv"]
-    assert process.stdout == process.stderr == ""
+    assert process.stdout == ""
+    (warning,) = process.stderr.splitlines()
+    assert "heat is out of balance by more than 1 %" in warning
+    named = [name for *_, name in re.findall(r"row (\d+) \(([> 0-9.]+) %, ([-A-Z]+)\)", warning)]
+    assert named == ["GALERKIN", "CRANK-NICOLSON", "EXPLICIT"]
 
 
 def test_rows_that_would_take_longer_than_the_limit_are_left_out_and_named(tmp_path):
