@@ -103,7 +103,7 @@ contains
       next%sources = run%state%sources
       next%force_load = run%state%force_load
       call begin_increment(run%bodies, step, before, next, data)
-      film = data%equation%left_film()
+      film = data%equation%left_film(run%bodies%capacity)
       if (run%heat%serves(run%bodies, film) .or. .not. solves_heat(step%analysis)) then
          call solve_with(run%heat)
       else

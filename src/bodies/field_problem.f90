@@ -66,6 +66,7 @@ module field_problem
       procedure :: recover
       procedure :: extended
       procedure :: unit_responses
+      procedure :: welded_response
       procedure :: condense_forces
       procedure :: release
    end type field_reduction_type
@@ -296,6 +297,21 @@ contains
       end do
       values = self%extended(problem, unit)
    end function unit_responses
+
+   !> Values of all degrees of freedom under nodal forces, the tail held, with zero prescribed
+   !> values.
+   function welded_response(self, problem, forces) result(values)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
+      real(dp), intent(in) :: forces(:)                   !! (dofs)
+      real(dp) :: values(size(forces))                    !! (dofs)
+      real(dp) :: condensed(problem%map%tail, 1), rhs(problem%map%equations, 1), &
+         solution(problem%map%equations, 1)
+
+      rhs(:, 1) = problem%map%restrict(forces)
+      call self%solver%condense(rhs, condensed, solution)
+      values = problem%map%expand(solution(:, 1), 0.0_dp*forces)
+   end function welded_response
 
    !> Nodal forces condensed on the tail.
    subroutine condense_forces(self, problem, forces, condensed)

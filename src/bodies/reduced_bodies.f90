@@ -19,7 +19,7 @@ module reduced_bodies
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
    use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
-   use thermal_matrix, only: assemble_conduction
+   use thermal_matrix, only: assemble_capacity, assemble_conduction
    implicit none
    private
    public :: reduced_bodies_type
@@ -37,6 +37,8 @@ module reduced_bodies
       real(dp), allocatable :: held_direction(:, :)
       type(field_problem_type) :: thermal                     !! heat, (3.3)
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
+      !> C of (1.2); without values where no step stores heat [energy/temperature]
+      type(sparse_matrix_type) :: capacity
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       real(dp), allocatable :: initial_force(:)               !! (2 nodes) of stresses, or none
       type(equilibrium_reduction_type) :: equilibrium         !! the partial solution of (2.4)
@@ -256,6 +258,8 @@ contains
          model%materials, model%orientations)
       if (with_heat) call self%thermal%set_matrix(assemble_conduction(model%mesh, model%sections, &
          model%materials, model%orientations))
+      if (any(model%steps%is_transient)) self%capacity = assemble_capacity(model%mesh, &
+         model%sections, model%materials)
    end subroutine assemble
 
 end module reduced_bodies

@@ -286,8 +286,8 @@ contains
       end do
    end function equation_rows
 
-   !> Bodies with a prescribed temperature, or with a film in a step: its own ones and those of the
-   !> steps before that it keeps.
+   !> Bodies with a prescribed temperature, with a heat capacity in a transient step, or with a film
+   !> in a step: its own ones and those of the steps before that it keeps.
    pure function with_source(model, held, step) result(source)
       type(model_type), intent(in) :: model
       logical, intent(in) :: held(:)
@@ -307,6 +307,9 @@ contains
          end associate
       end do
       source(pack(model%mesh%node_body, held .and. model%mesh%node_body > 0)) = .true.
+      if (model%steps(step)%is_transient) source(pack(model%mesh%element_body, &
+         model%materials(model%sections(model%mesh%element_section)%material)%specific_heat > &
+         0.0_dp)) = .true.
    end function with_source
 
    !> The moving part, in words.

@@ -27,6 +27,9 @@ module solution_state
       real(dp), allocatable :: reaction(:, :)
       real(dp), allocatable :: stress_temperature(:)  !! (nodes) of that increment [temperature]
       type(heat_sources_type) :: sources            !! Q of (3.3) and F of films
+      real(dp), allocatable :: stored(:)            !! (nodes) rate of stored heat, or none [power]
+      !> Lowest and highest temperature of the transient step so far [temperature]
+      real(dp), allocatable :: extremes(:)
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
       logical :: has_mechanics = .false.            !! whether mechanics was ever solved
@@ -105,6 +108,8 @@ contains
       if (allocated(state%edge%point)) state%edge%jump%count = size(state%edge%point)
       call reals(self, 'jump', state%jump)
       call reals(self, 'temperature', state%temperature)
+      call reals(self, 'stored', state%stored)
+      call reals(self, 'extremes', state%extremes)
       call reals(self, 'displacement', state%displacement)
       call reals(self, 'stress_temperature', state%stress_temperature)
       call reals(self, 'smallest_gap', state%smallest_gap)

@@ -10,11 +10,13 @@
 !>
 !> the terms with weight standing in the rows of the jumps only. Films, conductances of faces to a
 !> sink, are beside G: their matrices F have the weights of G. Where c1 = 0 loads act as they are at
-!> t_i+1, and films, which are loads, with them.
+!> t_i+1, and films, which are loads, with them. Bodies that store heat, (1.2), add
+!> C (T_i+1 - T*)/(a1 dt) on the left, where T* is T_i; in the second of two stages, what the first
+!> one makes of it (hold_heat).
 module thermal_matrix
    use controls, only: implicit_scheme, thermal_scheme_type
    use element_assembly, only: element_assembly_type
-   use element_conduction, only: conduction_matrix
+   use element_conduction, only: capacity_matrix, conduction_matrix
    use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: material_type, orientation_type, section_type
@@ -24,7 +26,7 @@ module thermal_matrix
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    implicit none
    private
-   public :: assemble_conduction, heat_across
+   public :: assemble_capacity, assemble_conduction, heat_across
    public :: heat_equation_type, heat_rates_type, heat_sources_type
 
    real(dp), parameter :: undamped = 1.0_dp - 1.0e-9_dp   !! amplification that damps nothing
@@ -43,6 +45,7 @@ module thermal_matrix
       real(dp), allocatable :: conducted(:)         !! (nodes) K T of the bodies alone [power]
       real(dp), allocatable :: entering(:)          !! (nodes) by loads and films, Q - F T [power]
       real(dp), allocatable :: crossing(:)          !! (m) from slave to master [power]
+      real(dp), allocatable :: stored(:)            !! (nodes) by heat capacities, or none [power]
    end type heat_rates_type
 
    !> Eq. (3.4) of one increment, from what is known at its start.
@@ -54,6 +57,10 @@ module thermal_matrix
       real(dp), allocatable :: weight(:)            !! (m) tributary areas [length^2]
       real(dp), allocatable :: omega_old(:)         !! (m) omega_i
       real(dp), allocatable :: jump_old(:)          !! (m) theta_i [temperature]
+      !> a1 dt, 0 where no heat is stored [time]
+      real(dp) :: duration = 0.0_dp
+      real(dp), allocatable :: content_old(:)       !! (nodes) C T* [energy]
+      real(dp), allocatable :: stored_old(:)        !! (nodes) rate of stored heat at t_i [power]
    contains
       procedure :: takes_past_conductance
       procedure :: takes_past_field
@@ -61,6 +68,8 @@ module thermal_matrix
       procedure :: is_explicit
       procedure :: amplification
       procedure :: never_damps
+      procedure :: hold_heat
+      procedure :: stored_rate
       procedure :: left_film
       procedure :: history
       procedure :: contact_diagonal
@@ -103,6 +112,31 @@ contains
       conduction = assembly%matrix
    end function assemble_conduction
 
+   !> C of (1.2), both triangles, in the pattern of K: consistent in elements with nodes between
+   !> corners, else lumped.
+   pure function assemble_capacity(mesh, sections, materials) result(capacity)
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
+      type(sparse_matrix_type) :: capacity                   !! (nodes, nodes) [energy/temperature]
+      type(element_assembly_type) :: assembly
+      integer :: element
+
+      call assembly%begin(mesh, 1, 1)
+      do element = 1, size(mesh%element_number)
+         associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+            section => sections(mesh%element_section(element)), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
+            associate (material => materials(section%material))
+               if (material%specific_heat <= 0.0_dp) cycle
+               call assembly%add(nodes, material%density*material%specific_heat* &
+                  capacity_matrix(kind, plane, mesh%coordinates(:, nodes), section%thickness))
+            end associate
+         end associate
+      end do
+      capacity = assembly%matrix
+   end function assemble_capacity
+
    !> Heat that crosses a contact point from slave to master; of a unit area, its heat flux.
    elemental real(dp) function heat_across(weight, omega, jump)
       real(dp), intent(in) :: weight   !! tributary area [length^2]
@@ -126,7 +160,7 @@ contains
    pure logical function takes_past_field(self)
       class(heat_equation_type), intent(in) :: self
 
-      takes_past_field = sum(abs(self%scheme%b)) > 0.0_dp
+      takes_past_field = sum(abs(self%scheme%b)) > 0.0_dp .or. self%duration > 0.0_dp
    end function takes_past_field
 
    !> Whether temperatures at the end of the increment depend on nothing at its start.
@@ -166,15 +200,54 @@ contains
       never_damps = abs(self%amplification()) >= undamped
    end function never_damps
 
-   !> F beside K on the left of (3.4) divided by a1; without values where no film acts.
-   pure function left_film(self) result(film)
+   !> Bodies store heat.
+   pure subroutine hold_heat(self, capacity, duration, temperature, stored)
+      class(heat_equation_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: capacity  !! C [energy/temperature]
+      real(dp), intent(in) :: duration                  !! dt of the increment or stage [time]
+      real(dp), intent(in) :: temperature(:)            !! (nodes) T* [temperature]
+      real(dp), intent(in) :: stored(:)                 !! (nodes) rate of stored heat at t_i [power]
+
+      self%duration = self%scheme%a(1)*duration
+      self%content_old = capacity%multiply(temperature)
+      self%stored_old = stored
+   end subroutine hold_heat
+
+   !> Rate of stored heat at the end of the increment: the mean is a1 of it and b1 of that at the
+   !> start.
+   pure function stored_rate(self, capacity, temperature) result(stored)
+      class(heat_equation_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: capacity  !! C [energy/temperature]
+      real(dp), intent(in) :: temperature(:)            !! (nodes) T_i+1 [temperature]
+      real(dp) :: stored(size(temperature))             !! (nodes) [power]
+
+      stored = 0.0_dp
+      if (self%duration <= 0.0_dp) return
+      stored = (capacity%multiply(temperature) - self%content_old)/self%duration
+      associate (a => self%scheme%a, b => self%scheme%b)
+         if (abs(b(1)) > 0.0_dp) stored = stored - b(1)/a(1)*self%stored_old
+      end associate
+   end function stored_rate
+
+   !> F and C/(a1 dt) beside K on the left of (3.4) divided by a1; without values where no film acts
+   !> and no heat is stored.
+   pure function left_film(self, capacity) result(film)
       class(heat_equation_type), intent(in) :: self     !! scheme and sources
+      type(sparse_matrix_type), intent(in) :: capacity  !! C; without values where there is none
       type(sparse_matrix_type) :: film                  !! (nodes, nodes) [power/temperature]
       real(dp) :: part(2)
 
-      if (.not. (has_entries(self%old%film) .or. has_entries(self%new%film))) return
-      part = film_parts(self%scheme, self%scheme%a)
-      film = linear_combination(part(1), self%old%film, part(2), self%new%film)
+      if (has_entries(self%old%film) .or. has_entries(self%new%film)) then
+         part = film_parts(self%scheme, self%scheme%a)
+         film = linear_combination(part(1), self%old%film, part(2), self%new%film)
+      end if
+      if (self%duration <= 0.0_dp) return
+      if (has_entries(film)) then
+         film = linear_combination(1.0_dp, film, 1.0_dp/self%duration, capacity)
+      else
+         film = capacity
+         film%value = film%value/self%duration
+      end if
    end function left_film
 
    !> Parts of F_i and F_i+1 in a bracket of (3.4) divided by a1.
@@ -197,6 +270,7 @@ contains
       associate (a => self%scheme%a, b => self%scheme%b, c => self%scheme%c)
          if (abs(b(1)) > 0.0_dp) rhs = -b(1)/a(1)*conduction%multiply(self%temperature_old) + rhs
          rhs = rhs + (c(1)*self%old%load + c(2)*self%new%load)/a(1)
+         if (self%duration > 0.0_dp) rhs = rhs + self%content_old/self%duration
       end associate
    end function history
 
@@ -255,9 +329,10 @@ contains
    end function carrying
 
    !> The heat rates that (3.4) balances, means over the increment: each side divided by a1 + b1.
-   pure function rates(self, conduction, temperature, omega, jump)
+   pure function rates(self, conduction, capacity, temperature, omega, jump)
       class(heat_equation_type), intent(in) :: self
       type(sparse_matrix_type), intent(in) :: conduction   !! K
+      type(sparse_matrix_type), intent(in) :: capacity     !! C, where heat is stored
       real(dp), intent(in) :: temperature(:)               !! (nodes) T_i+1 [temperature]
       real(dp), intent(in) :: omega(:)                     !! (m) omega_i+1
       real(dp), intent(in) :: jump(:)                      !! (m) theta_i+1 [temperature]
@@ -276,12 +351,14 @@ contains
          rates%crossing = heat_across(self%weight, a(2)*self%omega_old + a(3)*omega, jump) + &
             heat_across(self%weight, b(2)*self%omega_old + b(3)*omega, self%jump_old)
       end associate
+      if (self%duration > 0.0_dp) rates%stored = self%scheme%a(1)/whole* &
+         (capacity%multiply(temperature) - self%content_old)/self%duration
       rates%conducted = rates%conducted/whole
       rates%entering = rates%entering/whole
       rates%crossing = rates%crossing/whole
    end function rates
 
-   !> The heat rates at the start of the increment.
+   !> The heat rates at the start of the increment; what they leave over is stored.
    pure function rates_at_start(self, conduction) result(rates)
       class(heat_equation_type), intent(in) :: self
       type(sparse_matrix_type), intent(in) :: conduction   !! K

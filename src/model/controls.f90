@@ -6,6 +6,7 @@ module controls
    public :: fixed_point_type, start_type, thermal_scheme_type
    public :: start_previous, start_open, start_closed, start_both, start_given
    public :: implicit_scheme, galerkin_scheme, crank_nicolson_scheme, explicit_scheme
+   public :: l_stable_scheme, stage_part
    public :: method_picard, method_zaitsev, method_anderson, method_newton, method_names
    public :: solver_by_size, solver_skyline, solver_mumps, mumps_from, default_solver
 
@@ -50,6 +51,7 @@ module controls
       real(dp) :: b(3)                !! b1, b2, b3
       real(dp) :: c(2)                !! c1, c2
       character(14) :: name = 'FREE'  !! TYPE= of *THERMAL SCHEME
+      integer :: stages = 1           !! implicit solutions that make an increment
    end type thermal_scheme_type
 
    !> The implicit scheme of the paper: a1 = a3 = c2 = 1.
@@ -71,6 +73,13 @@ module controls
    type(thermal_scheme_type), parameter :: explicit_scheme = &
       thermal_scheme_type([1.0_dp, 1.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
       'EXPLICIT')
+
+   !> The singly diagonally implicit scheme of two stages, L-stable and of second order (R. Alexander,
+   !> SIAM J. Numer. Anal. 14 (1977) 1006): both stages are implicit ones of a part of the increment.
+   type(thermal_scheme_type), parameter :: l_stable_scheme = &
+      thermal_scheme_type([1.0_dp, 0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
+      'L-STABLE', 2)
+   real(dp), parameter :: stage_part = 1.0_dp - sqrt(0.5_dp)   !! gamma, this part
 
 contains
 

@@ -31,10 +31,12 @@ module materials
       real(dp) :: expansion(3) = 0.0_dp               !! alpha along axes 1, 2, 3 [1/temperature]
       real(dp) :: conductivity(2) = 0.0_dp            !! K_1, K_2 [power/(length temperature)]
       real(dp) :: density = 0.0_dp                    !! mass per volume, 0 where not given
+      real(dp) :: specific_heat = 0.0_dp              !! c_p [energy/(mass temperature)]
       logical :: has_elasticity = .false.             !! *ELASTIC was given
       logical :: has_expansion = .false.              !! *EXPANSION was given
       logical :: has_conductivity = .false.           !! *CONDUCTIVITY was given
       logical :: has_density = .false.                !! *DENSITY was given
+      logical :: has_specific_heat = .false.          !! *SPECIFIC HEAT was given
       !> All constants as the deck gives them; unallocated for none
       type(constant_type), allocatable :: constants(:)
    end type material_type

@@ -12,7 +12,8 @@ module steps
    public :: load_centrifugal, centrifugal_round, load_nodal_heat, load_face_heat, load_body_heat
    public :: load_film_coefficient, load_film_sink, load_temperature, acts_on_nodes, loaded_side
    public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
-   public :: solves_heat, solves_mechanics, least_increment, increment_growth, planned_increments
+   public :: solves_heat, solves_mechanics, adapts_increments
+   public :: least_increment, increment_growth, planned_increments
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
    integer, parameter :: analysis_coupled = 2   !! *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
@@ -76,6 +77,11 @@ module steps
    !> One *STEP. Loads are those that its own cards give; what earlier steps gave stays (OP=MOD).
    type, extends(step_controls_type) :: step_type
       integer :: analysis = analysis_static          !! one of the analysis_* constants
+      logical :: is_transient = .false.              !! heat is stored: no STEADY STATE
+      !> Part of the range of temperatures that an increment of a transient may err by.
+      real(dp) :: local_error = 1.0e-3_dp
+      logical :: dilates = .false.                   !! DILATATION=YES
+      real(dp) :: largest_change = huge(1.0_dp)      !! DELTMX=, of a temperature in an increment
       integer :: max_increments = 100                !! INC=
       logical :: ramped = .true.                     !! loads ramp over the step; else whole at once
       logical :: direct = .false.                    !! DIRECT
@@ -117,6 +123,13 @@ contains
       end do
       planned = planned + ceiling(max((step%period - time)/increment - remainder, 0.0_dp))
    end function planned_increments
+
+   !> Whether the increments of a step follow the error that they make in time.
+   elemental logical function adapts_increments(step)
+      type(step_type), intent(in) :: step
+
+      adapts_increments = step%is_transient .and. .not. step%direct
+   end function adapts_increments
 
    !> Whether the item of a kind of load is a node.
    elemental logical function acts_on_nodes(kind)

@@ -16,8 +16,8 @@ module results
    use hdf5_writer, only: end_hdf5, start_hdf5
    use kinds, only: dp, long
    use model, only: model_type
-   use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, needs_nothing, &
-      needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes, &
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_heat, needs_mechanics, &
+      needs_nothing, needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes, &
       quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
@@ -103,7 +103,7 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      logical :: has(0:needs_coupling), has_errors
+      logical :: has(0:needs_dilatation), has_errors
       integer :: i, expected, n
 
       call start_hdf5(error)
@@ -236,13 +236,15 @@ contains
    pure function what_is_solved(model, has_contact) result(has)
       type(model_type), intent(in) :: model
       logical, intent(in) :: has_contact
-      logical :: has(0:needs_coupling)
+      logical :: has(0:needs_dilatation)
 
       associate (analysis => model%steps%analysis)
          has(needs_nothing) = .true.
          has(needs_heat) = any(solves_heat(analysis))
          has(needs_temperature) = has(needs_heat) .or. any(model%materials%has_expansion)
          has(needs_mechanics) = any(solves_mechanics(analysis))
+         has(needs_storage) = any(model%steps%is_transient)
+         has(needs_dilatation) = any(model%steps%dilates)
          has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &
             solves_mechanics(analysis))
       end associate

@@ -2,7 +2,8 @@
 module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
-   use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, of_bodies, of_elements, &
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_heat, needs_mechanics, &
+      needs_storage, of_bodies, of_elements, &
       of_history, of_passes, quantity_type
    use field_recovery, only: error_record_type
    use records, only: increment_record_type
@@ -25,6 +26,10 @@ module increment_quantities
       description='sum of the net heat rates of loads and supports that are positive'), &
       quantity_type('heat_out', of_history, 'power', needs_heat, label='out', &
       description='sum of those that are negative, as a magnitude'), &
+      quantity_type('heat_stored', of_history, 'power', needs_storage, label='stored', &
+      description='heat that the bodies store; without DILATATION in is the sum of out and this'), &
+      quantity_type('heat_dilatation', of_history, 'power', needs_dilatation, label='dilatation', &
+      description='heat that strains take up, the term with T0 beta of (1.2)'), &
       quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance', &
       description='imbalance of the heat balance that the scheme solves, over the largest rate'), &
       quantity_type('heat_imbalance_pointwise', of_history, '-', needs_heat, &
@@ -89,6 +94,10 @@ contains
          value = record%heat_in
       case ('heat_out')
          value = record%heat_out
+      case ('heat_stored')
+         value = record%heat_stored
+      case ('heat_dilatation')
+         value = record%heat_dilatation
       case ('heat_imbalance')
          value = record%heat_imbalance
       case ('heat_imbalance_pointwise')

@@ -99,6 +99,10 @@ module records
       real(dp) :: load = 0.0_dp              !! value on the load axis
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
+      !> Of a transient: error in time over the range of temperatures, and largest change of one.
+      real(dp) :: local_error = 0.0_dp, largest_change = 0.0_dp
+      real(dp) :: heat_stored = 0.0_dp       !! by heat capacities; NaN in a steady step [power]
+      real(dp) :: heat_dilatation = 0.0_dp   !! by strains; NaN without DILATATION [power]
       real(dp) :: heat_imbalance = 0.0_dp    !! of (3.4), relative to the largest rate
       !> Of (3.3) at the end of the increment, relative to the largest rate.
       real(dp) :: heat_imbalance_pointwise = 0.0_dp

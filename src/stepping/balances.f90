@@ -2,6 +2,7 @@
 !> the recovered fields, against what the reduced system says crosses the contacts. Of heat, those
 !> of the discrete equation (3.4) and of the states at its ends.
 module balances
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use connections, only: connections_type
    use contact_operator, only: unstrained_forces
    use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick
@@ -63,18 +64,26 @@ contains
       rates%conducted = bodies%thermal%matrix%multiply(next%temperature)
       rates%entering = next%sources%net_heat(next%temperature)
       rates%crossing = heat_across(bodies%points%weight, next%carrying, next%jump)
+      record%heat_stored = ieee_value(1.0_dp, ieee_quiet_nan)
+      record%heat_dilatation = record%heat_stored
+      if (data%equation%duration > 0.0_dp) then
+         rates%stored = next%stored
+         record%heat_stored = sum(next%stored)
+      end if
       residual = supplied_heat(bodies, next%edge, rates)
       call sum_rates(loads, next%temperature, residual, record)
       associate (held => loads%temperature%active, body => model%mesh%node_body)
          scale = max(record%heat_in, record%heat_out, abs(sum(rates%crossing)), &
             maxval(abs(residual), mask=held), maxval(abs(rates%entering)), &
             noise*bodies%thermal%largest_entry*norm2(next%temperature), tiny(1.0_dp))
+         if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)))
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + rates%entering
          rates%crossing = heat_across(bodies%points%weight, omega, next%jump)
          record%heat_imbalance_pointwise = imbalance(rates%conducted, &
             supplied_heat(bodies, next%edge, rates), held, body, [.true.], scale)
-         rates = data%equation%rates(bodies%thermal%matrix, next%temperature, omega, next%jump)
+         rates = data%equation%rates(bodies%thermal%matrix, bodies%capacity, next%temperature, &
+            omega, next%jump)
          record%heat_imbalance = imbalance(rates%conducted, supplied_heat(bodies, next%edge, &
             rates), held, body, [.true.], scale)
          call warn_of_imbalances(bodies, held, data, next%is_out_of_balance, record)

@@ -4,8 +4,9 @@ module increment_control
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use model, only: model_type
-   use steps, only: increment_growth, planned_increments, step_type
-   use text, only: counted, to_text
+   use records, only: increment_record_type
+   use steps, only: adapts_increments, increment_growth, planned_increments, step_type
+   use text, only: counted, percent, to_text
    implicit none
    private
    public :: increment_control_type, next_end
@@ -15,6 +16,8 @@ module increment_control
    real(dp), parameter :: cut = 0.25_dp           !! part of a failed increment that is tried next
    real(dp), parameter :: growth = 2.0_dp         !! of increments after one that did not fail
    real(dp), parameter :: hardly_longer = 1.001_dp !! factor that makes no longer increment
+   real(dp), parameter :: allowance = 1.2_dp       !! of what a step allows its increments
+   real(dp), parameter :: aim = 0.7_dp             !! part of it that they are made for
 
    !> Position in the steps, and size of the next increment.
    type :: increment_control_type
@@ -31,6 +34,9 @@ module increment_control
       procedure :: enter_step
       procedure :: step_is_over
       procedure :: next_instant
+      procedure :: start_of_step
+      procedure :: goes_too_far
+      procedure :: shorten
       procedure :: planned
       procedure :: accept
       procedure :: can_cut_back
@@ -92,12 +98,70 @@ contains
 
       associate (step => model%steps(self%step))
          clock%step_time = next_end(self%step_time, self%largest, &
-            merge(step%period, step%first_increment, step%grows), step%period, self%landings)
+            merge(step%period, step%first_increment, step%grows .or. adapts_increments(step)), &
+            step%period, self%landings)
          clock%period = step%period
          clock%total_time = self%step_start + clock%step_time
          clock%ramped = step%ramped
       end associate
    end function next_instant
+
+   !> The instant at which the step begins.
+   pure function start_of_step(self, model) result(clock)
+      class(increment_control_type), intent(in) :: self   !! position in the steps
+      type(model_type), intent(in) :: model
+      type(step_clock_type) :: clock
+
+      clock = step_clock_type(0.0_dp, model%steps(self%step)%period, self%step_start, &
+         model%steps(self%step)%ramped)
+   end function start_of_step
+
+   !> Whether an increment of a transient errs or changes temperatures by more than the step allows,
+   !> and may be shorter.
+   pure logical function goes_too_far(self, model, increment_size, record)
+      class(increment_control_type), intent(in) :: self   !! position in the steps
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: increment_size              !! of it [time]
+      type(increment_record_type), intent(in) :: record   !! of it
+
+      goes_too_far = .false.
+      if (.not. adapts_increments(model%steps(self%step))) return
+      goes_too_far = excess(model%steps(self%step), record) > allowance .and. &
+         self%can_cut_back(model, increment_size)
+   end function goes_too_far
+
+   !> What an increment takes of what its step allows: 1 is all of it.
+   pure real(dp) function excess(step, record)
+      type(step_type), intent(in) :: step
+      type(increment_record_type), intent(in) :: record
+
+      excess = max(record%local_error/step%local_error, (record%largest_change/ &
+         step%largest_change)**2)
+   end function excess
+
+   !> Makes the next attempt shorter than one that went too far, and says why. Sizes are halves of
+   !> halves of the first one, so that few are different.
+   function shorten(self, model, increment_size, record) result(words)
+      class(increment_control_type), intent(inout) :: self   !! position in the steps
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: increment_size                 !! of the attempt [time]
+      type(increment_record_type), intent(in) :: record      !! of it
+      character(:), allocatable :: words                     !! part of a sentence
+      real(dp) :: wanted
+
+      associate (step => model%steps(self%step))
+         words = 'its temperatures err by '//percent(record%local_error)//' of their range'
+         if (record%local_error <= allowance*step%local_error) words = &
+            'a temperature changes by '//to_text(record%largest_change)//', more than DELTMX='// &
+            to_text(step%largest_change)
+         wanted = increment_size*sqrt(aim/excess(step, record))
+         do while (self%largest > max(wanted, step%smallest_increment))
+            self%largest = 0.5_dp*self%largest
+         end do
+         self%largest = max(self%largest, step%smallest_increment)
+      end associate
+      self%cut_backs = self%cut_backs + 1
+   end function shorten
 
    !> How many increments the whole run takes where no further one is cut back or ends before its
    !> time on an instant of the deck.
@@ -120,16 +184,23 @@ contains
    end function planned
 
    !> Goes on behind an increment that converged.
-   pure subroutine accept(self, model, clock)
+   pure subroutine accept(self, model, clock, record)
       class(increment_control_type), intent(inout) :: self   !! position in the steps
       type(model_type), intent(in) :: model
       type(step_clock_type), intent(in) :: clock             !! its end
+      type(increment_record_type), optional, intent(in) :: record   !! of it, where it was solved
+      real(dp) :: increment_size
 
+      increment_size = clock%step_time - self%step_time
       self%step_time = clock%step_time
       self%increments = self%increments + 1
       self%increments_of_step = self%increments_of_step + 1
       associate (step => model%steps(self%step))
-         if (self%cut_backs == 0 .and. step%grows) then
+         if (adapts_increments(step)) then
+            if (.not. present(record)) return
+            if (2.0_dp*self%largest <= step%largest_increment .and. excess(step, record)* &
+               (2.0_dp*self%largest/increment_size)**2 <= aim) self%largest = 2.0_dp*self%largest
+         else if (self%cut_backs == 0 .and. step%grows) then
             self%largest = min(increment_growth*self%largest, step%largest_increment)
          else if (self%cut_backs == 0) then
             self%largest = min(growth*self%largest, step%first_increment)

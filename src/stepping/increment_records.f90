@@ -81,6 +81,8 @@ contains
             call balance_heat(bodies, model, loads, data, next, record)
          else
             record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
+            record%heat_stored = record%heat_in
+            record%heat_dilatation = record%heat_in
             record%heat_out = record%heat_in
             record%heat_imbalance = record%heat_in
             record%heat_imbalance_pointwise = record%heat_in

@@ -4,11 +4,13 @@ module increments
    use clock, only: wall_seconds
    use contact_operator, only: kept_contact, law_conductance
    use contact_system, only: contact_open
+   use controls, only: stage_part
    use discretisation_errors, only: recovery_type
    use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: solved_loads_type
    use balances, only: sound_imbalance
    use heat_reduction, only: heat_reduction_type
+   use heat_storage, only: begin_storage, measure_changes, stage_type
    use increment_checks, only: check_heat, check_record, warn_of_choices
    use increment_control, only: increment_control_type
    use increment_data, only: increment_data_type, increment_workspace_type
@@ -114,6 +116,7 @@ contains
       type(error_type), allocatable :: of_elimination
       type(heat_equation_type) :: equation
       type(sparse_matrix_type) :: film
+      type(step_clock_type) :: clock
       real(dp) :: since
 
       call self%assemble(model)
@@ -127,7 +130,13 @@ contains
             equation = heat_equation_type(model%steps(self%control%step)%scheme, &
                self%state%sources)
             equation%new%film = self%loads%film_matrix()
-            film = equation%left_film()
+            clock = self%control%next_instant(model)
+            associate (step => model%steps(self%control%step))
+               if (step%is_transient) equation%duration = equation%scheme%a(1)* &
+                  (clock%step_time - self%control%step_time)*merge(stage_part, 1.0_dp, &
+                  step%scheme%stages == 2)
+            end associate
+            film = equation%left_film(bodies%capacity)
          end if
          call heat%renumber_both(bodies)
          ! Both fields are eliminated while neither has factors, for their memory. Where that fails,
@@ -185,7 +194,13 @@ contains
          increment_size = clock%step_time - self%control%step_time
          call attempt(self, model, clock, next, record, error)
          call add_attempts(before, record)
-         if (.not. allocated(error)) exit
+         if (.not. allocated(error)) then
+            if (.not. self%control%goes_too_far(model, increment_size, record)) exit
+            call note_failure(record, increment_size, self%control%shorten(model, &
+               increment_size, record))
+            before = record
+            cycle
+         end if
          if (error%status == status_no_convergence) then
             call note_failure(record, increment_size, error%message)
             if (allocated(record%runaway)) then
@@ -207,7 +222,7 @@ contains
       end do
       call warn_of_pivot(self, record)
       call accept_increment(next, model, self%state, record)
-      call self%control%accept(model, clock)
+      call self%control%accept(model, clock, record)
    end subroutine advance
 
    !> Makes the end of an increment the state of a run, the only place where that changes. A
@@ -249,8 +264,8 @@ contains
          ' only: are bodies held by others that are far softer?')
    end subroutine warn_of_pivot
 
-   !> Tries an increment that ends at an instant. The state of the run stays; what else an attempt
-   !> leaves behind, loads and factors, the next one sets anew.
+   !> Tries an increment that ends at an instant, stage by stage. The state of the run stays; what
+   !> else an attempt leaves behind, loads and factors, the next one sets anew.
    subroutine attempt(self, model, clock, next, record, error)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -258,17 +273,69 @@ contains
       type(solution_state_type), intent(out) :: next
       type(increment_record_type), intent(out) :: record
       type(error_type), allocatable, intent(out) :: error
+      type(increment_record_type) :: of_first
+      type(solution_state_type) :: before
+      type(stage_type) :: stage
+
+      before = self%state
+      stage%clock = clock
+      stage%size = clock%step_time - self%control%step_time
+      stage%duration = stage%size
+      associate (step => model%steps(self%control%step))
+         if (step%is_transient) then
+            if (self%control%increments_of_step == 0) call begin_storage(model, self%bodies, &
+               self%loads, self%control%start_of_step(model), before)
+            stage%temperature = before%temperature
+            if (step%scheme%stages == 2) then
+               stage%is_last = .false.
+               stage%duration = stage_part*stage%size
+               stage%size = stage%duration
+               stage%clock%step_time = self%control%step_time + stage%size
+               stage%clock%total_time = self%control%step_start + stage%clock%step_time
+               call solve_stage(self, model, clock, stage, before, next, of_first, error)
+               if (allocated(error)) then
+                  record = of_first
+                  return
+               end if
+               ! C (T_i+1 - T_i)/dt is (1 - gamma) of the first stage's rate and gamma of its own.
+               stage%temperature = before%temperature + (1/stage_part - 1)* &
+                  (next%temperature - before%temperature)
+               stage%size = clock%step_time - stage%clock%step_time
+               stage%clock = clock
+               stage%is_last = .true.
+               before = next
+            end if
+         end if
+         call solve_stage(self, model, clock, stage, before, next, record, error)
+         if (of_first%increment > 0) call add_attempts(of_first, record)
+         if (.not. step%is_transient .or. allocated(error)) return
+         if (of_first%increment > 0) before%temperature = self%state%temperature
+         call measure_changes(self%bodies, self%heat, self%loads%temperature%active, step, before, &
+            next, record)
+      end associate
+   end subroutine attempt
+
+   !> Solves a stage of an increment, mostly the only one; the last one is recorded.
+   subroutine solve_stage(self, model, clock, stage, before, next, record, error)
+      class(simulation_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(step_clock_type), intent(in) :: clock             ! end of the increment
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before
+      type(solution_state_type), intent(out) :: next
+      type(increment_record_type), intent(out) :: record
+      type(error_type), allocatable, intent(out) :: error
       type(increment_data_type) :: data
       type(increment_workspace_type) :: workspace
       real(dp) :: since
 
-      call self%loads%move_to(clock, model)
+      call self%loads%move_to(stage%clock, model)
       call check_prescribed_ties(model, self%bodies, self%loads, self%control%step, error)
       call begin_record(self, model, clock, record)
       if (allocated(error)) return
       workspace%record%increment = record%increment
-      next = self%state
-      next%increment_size = clock%step_time - self%control%step_time
+      next = before
+      next%increment_size = stage%size
       ! (3.4) asks for them at the start of the next increment, whether this one solves heat or not.
       if (any(solves_heat(model%steps%analysis))) then
          next%sources%load = self%loads%heat_load()
@@ -276,9 +343,11 @@ contains
       end if
       next%force_load = self%loads%nodal_forces()
       associate (step => model%steps(self%control%step), bodies => self%bodies)
-         call begin_increment(bodies, step, self%state, next, data)
+         call begin_increment(bodies, step, before, next, data)
+         if (step%is_transient) call data%equation%hold_heat(bodies%capacity, stage%duration, &
+            stage%temperature, before%stored)
          if (solves_heat(step%analysis)) then
-            call self%heat%reduce(model, bodies, data%equation%left_film(), error)
+            call self%heat%reduce(model, bodies, data%equation%left_film(bodies%capacity), error)
             if (allocated(error)) return
             call measure_factors(bodies, self%heat, self%sizes)
          end if
@@ -302,13 +371,19 @@ contains
             workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
          call recover_fields(bodies, self%heat, self%loads, data, workspace, next)
+         if (step%is_transient) next%stored = data%equation%stored_rate(bodies%capacity, &
+            next%temperature)
+         if (.not. stage%is_last) then
+            call move_alloc(workspace%known, self%known)
+            return
+         end if
          call complete_record(bodies, model, self%recovery, self%loads, data, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
          call check_record(record, step%analysis, error)
          if (allocated(error)) return
          call move_alloc(workspace%known, self%known)
       end associate
-   end subroutine attempt
+   end subroutine solve_stage
 
    !> Which increment a record is of.
    subroutine begin_record(self, model, clock, record)

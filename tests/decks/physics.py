@@ -112,13 +112,15 @@ def side_shares(cards, axis, value):
 
 
 def material(name, elastic=(1000.0, 0.3), expansion=None, conductivity=None, density=None,
-             elastic_type=None, expansion_type=None, conductivity_type=None, section=""):
+             specific_heat=None, elastic_type=None, expansion_type=None, conductivity_type=None,
+             section=""):
     """Return the cards of a material and its section; data beyond eight fields continue."""
     cards = [f"*MATERIAL, NAME={name}"]
     for keyword, kind, data in (("*ELASTIC", elastic_type, elastic),
                                 ("*EXPANSION", expansion_type, expansion),
                                 ("*CONDUCTIVITY", conductivity_type, conductivity),
-                                ("*DENSITY", None, density)):
+                                ("*DENSITY", None, density),
+                                ("*SPECIFIC HEAT", None, specific_heat)):
         if data is None:
             continue
         values = [data] if isinstance(data, float) else list(data)

@@ -64,7 +64,7 @@ contains
                call report%lose('*ELASTIC')   ! the other one may have these
                call report%lose('*CONDUCTIVITY')
                call report%lose('*DENSITY')
-            case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY')
+            case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT')
                if (n == 0) then
                   if (len(card%meant) == 0) call report%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')
@@ -104,6 +104,12 @@ contains
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
          call build_conductivity(cards, card, context, report, material)
+      case ('SPECIFIC HEAT')
+         material%has_specific_heat = .true.
+         call read_constants(cards, card, ['specific heat'], context, report, material, constants)
+         if (.not. allocated(constants)) return
+         call refuse_not_positive(cards, card, ['specific heat'], constants, [1], report)
+         material%specific_heat = constants(1)
       case default
          material%has_density = .true.
          call read_constants(cards, card, ['density'], context, report, material, constants)

@@ -58,7 +58,7 @@ contains
                if (solver == 'MUMPS') model%solver = solver_mumps
             case ('REFINE')
                call build_levels(card, context, report)
-            case ('CONTROLS', 'SPECIFIC HEAT', 'RESTART')
+            case ('CONTROLS', 'RESTART')
                call context%note('*'//card%name//' is ignored')
             case default
                cycle

@@ -4,6 +4,7 @@ module deck_builder_steps
       take_parameter
    use card_values, only: check_extra, decimal_comma, report_decimal_comma, take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
+   use controls, only: explicit_scheme, l_stable_scheme
    use deck_builder_contact, only: build_contact_change
    use deck_builder_controls, only: build_fixed_point, build_print, build_start, &
       build_thermal_scheme, read_frequency
@@ -14,10 +15,10 @@ module deck_builder_steps
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use steps, only: analysis_coupled, analysis_heat, analysis_static, increment_growth, &
+   use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, increment_growth, &
       least_increment, planned_increments, solves_heat, solves_mechanics, step_controls_type, &
       step_type
-   use text, only: to_text
+   use text, only: percent, to_text
    implicit none
    private
    public :: build_steps, increment_rounding, build_increments
@@ -31,6 +32,8 @@ module deck_builder_steps
       integer :: files = 0             !! *NODE FILE, *EL FILE, *CONTACT FILE
       integer :: node_prints = 0
       integer :: element_prints = 0
+      logical :: says_course = .false.   !! AMPLITUDE= on *STEP
+      logical :: is_uncoupled = .false.  !! *UNCOUPLED TEMPERATURE-DISPLACEMENT
    end type card_counts_type
 
    real(dp), parameter :: smallest_part = 1.0e-5_dp   !! of a period: smallest increment
@@ -46,8 +49,10 @@ contains
       type(step_controls_type) :: controls
       type(card_counts_type) :: counts
       type(step_type) :: before
+      logical :: has_scheme       ! whether *THERMAL SCHEME was there
       integer :: k, n
 
+      has_scheme = .false.
       context%analyses_sound = .not. report%has_lost('*STEP')
       context%boundaries_sound = context%analyses_sound
       n = card_count(cards, 'STEP')
@@ -58,15 +63,23 @@ contains
             select case (card%name)
             case ('STEP')
                n = n + 1
-               counts = card_counts_type()
+               counts = card_counts_type(says_course=has_parameter(card, 'AMPLITUDE'))
                context%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
-            case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT')
+            case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
+               'UNCOUPLED TEMPERATURE-DISPLACEMENT')
                counts%analyses = counts%analyses + 1
                if (counts%analyses > 1) call report%error(card%place, &
                   'a second analysis in one step')
-               if (n > 0) call build_analysis(cards, card, n, context, report, model%steps(n))
+               counts%is_uncoupled = card%name(1:2) == 'UN'
+               if (n == 0) cycle
+               call build_analysis(cards, card, n, context, report, model%steps(n))
+               if (model%steps(n)%is_transient .and. .not. counts%says_course) then
+                  model%steps(n)%ramped = .false.
+                  call context%note('*'//card%name//' without STEADY STATE: loads without an '// &
+                     'amplitude act at once; *STEP, AMPLITUDE=RAMP ramps them')
+               end if
             case ('END STEP')
                if (counts%analyses > 0) cycle
                context%analyses_sound = .false.
@@ -77,6 +90,7 @@ contains
             case ('START')
                call build_start(cards, card, model, report, controls%start)
             case ('THERMAL SCHEME')
+               has_scheme = .true.
                call build_thermal_scheme(cards, card, report, controls%scheme)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
                'SFILM', 'TEMPERATURE')
@@ -94,7 +108,12 @@ contains
                end if
             end select
          end associate
-         if (n > 0) model%steps(n)%step_controls_type = controls
+         if (n > 0) then
+            model%steps(n)%step_controls_type = controls
+            if (model%steps(n)%is_transient .and. .not. has_scheme) model%steps(n)%scheme = &
+               l_stable_scheme
+            if (counts%is_uncoupled .and. .not. has_scheme) model%steps(n)%scheme = explicit_scheme
+         end if
       end do
       call warn_of_nlgeom(cards, report, model%steps)
    end subroutine build_steps
@@ -181,10 +200,7 @@ contains
       step%analysis = analysis_coupled
       if (card%name == 'STATIC') step%analysis = analysis_static
       if (card%name == 'HEAT TRANSFER') step%analysis = analysis_heat
-      if (solves_heat(step%analysis) .and. lacks_parameter(card, 'STEADY STATE')) then
-         call report%error(card%place, '*'//card%name// &
-            ' needs STEADY STATE: heat capacity is not modelled')
-      end if
+      step%is_transient = solves_heat(step%analysis) .and. lacks_parameter(card, 'STEADY STATE')
       creep = 'NONE'
       call choose(card, 'CREEP', 'NONE', report, creep)
       step%direct = is_on(card, 'DIRECT', report)
@@ -193,12 +209,52 @@ contains
       else
          call context%note('*'//card%name//' without data: one increment, period 1')
       end if
+      if (adapts_increments(step) .and. .not. has_largest(cards, card)) step%largest_increment = &
+         step%period
+      call build_storage(card, context, report, step)
       if (card%flawed .or. report%error_count() > errors) then
          context%analyses_sound = .false.
-      else
+      else if (.not. adapts_increments(step)) then
          call fit_increments(cards, card, n, context, report, step)
       end if
    end subroutine build_analysis
+
+   !> Whether an analysis gives its largest increment.
+   pure logical function has_largest(cards, card)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+
+      has_largest = card%last_data >= card%first_data
+      if (has_largest) has_largest = has_field(cards%data(card%first_data), 4)
+   end function has_largest
+
+   !> What a step that stores heat allows its increments, and whether strains take up heat.
+   subroutine build_storage(card, context, report, step)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: step
+
+      if (.not. step%is_transient) then
+         if (has_parameter(card, 'DELTMX') .or. has_parameter(card, 'LOCAL ERROR') .or. &
+            has_parameter(card, 'DILATATION')) call context%note('*'//card%name// &
+            ', STEADY STATE: DELTMX=, LOCAL ERROR= and DILATATION= are ignored, no heat is stored')
+         return
+      end if
+      call take_parameter(card, 'DELTMX', report, step%largest_change)
+      if (step%largest_change <= 0.0_dp) call report%error(parameter_place(card, 'DELTMX'), &
+         'DELTMX= must be positive: the largest change of a temperature in an increment')
+      call take_parameter(card, 'LOCAL ERROR', report, step%local_error)
+      if (step%local_error <= 0.0_dp) call report%error(parameter_place(card, 'LOCAL ERROR'), &
+         'LOCAL ERROR= must be positive: 1E-3 is 0.1 % of the range of temperatures')
+      step%dilates = is_on(card, 'DILATATION', report)
+      if (step%direct .and. (has_parameter(card, 'DELTMX') .or. has_parameter(card, &
+         'LOCAL ERROR'))) call context%note('*'//card%name//', DIRECT: DELTMX= and LOCAL '// &
+         'ERROR= are ignored, increments are fixed')
+      if (adapts_increments(step) .and. .not. has_parameter(card, 'LOCAL ERROR')) call &
+         context%note('*'//card%name//' without LOCAL ERROR=: increments err by at most '// &
+         percent(step%local_error)//' of the range of temperatures')
+   end subroutine build_storage
 
    !> Increments are all as long as the first, unless INC= does not hold for these: then they grow
    !> as in CalculiX, up to the largest.
@@ -210,15 +266,12 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
       character(:), allocatable :: number
-      logical :: has_largest
 
       if (step%max_increments < 1) return
-      has_largest = .false.
-      if (card%last_data >= card%first_data) has_largest = has_field(cards%data(card%first_data), 4)
       if (too_many(step)) then
          number = to_text(ceiling(min(planned_increments(step) - increment_rounding, most_counted)))
          step%grows = .not. step%direct
-         if (.not. has_largest) step%largest_increment = step%period
+         if (.not. has_largest(cards, card)) step%largest_increment = step%period
          if (too_many(step)) then
             call report%error(context%step_place(n), 'the step takes '//number// &
                ' increments of '//to_text(step%first_increment)//', more than the '// &
@@ -231,7 +284,7 @@ contains
                'up to '// &
                to_text(step%largest_increment))
          end if
-      else if (has_largest .and. .not. step%direct) then
+      else if (has_largest(cards, card) .and. .not. step%direct) then
          call context%note('largest increment ignored: no increment is longer than the first')
       end if
    end subroutine fit_increments

@@ -64,7 +64,7 @@ module keywords
    character(*), parameter :: file_parameters = 'FREQUENCY=/~FREQUENCYF=/~NSET=/~GLOBAL=/'// &
       '~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/~DIRECTIONS=/~VARIABLE='
 
-   type(keyword_type), parameter :: known_keywords(76) = [ &
+   type(keyword_type), parameter :: known_keywords(77) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -84,7 +84,7 @@ module keywords
       keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/~ZERO='), &
       keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
       keyword_type('DENSITY', built, in_model, 1, many, ''), &
-      keyword_type('SPECIFIC HEAT', not_needed, in_model, 0, many, ''), &
+      keyword_type('SPECIFIC HEAT', built, in_model, 1, many, ''), &
       keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
       keyword_type('SOLID SECTION', built, in_model, 0, 1, &
          'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
@@ -125,9 +125,11 @@ module keywords
          'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM=/~EXTRAPOLATION='), &
       keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
       keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
-         'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX='), &
-      keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
-         'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/~DELTMX='), &
+         'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR='), &
+      keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, 'CREEP=/'// &
+         stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/DILATATION='), &
+      keyword_type('UNCOUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
+         'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR='), &
       keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE=/TYPE='), &
       keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
@@ -205,10 +207,8 @@ module keywords
       advice_type(refused, '', 'CHANGE MATERIAL/CHANGE SOLID SECTION/CHANGE SURFACE BEHAVIOR', &
          'materials, elements and sections are the same in all steps'), &
       advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/MODAL DYNAMIC/'// &
-         'STEADY STATE DYNAMICS/VISCO/UNCOUPLED TEMPERATURE-DISPLACEMENT/SENSITIVITY/GREEN/'// &
-         'ELECTROMAGNETICS/CFD', &
-         'steps are *STATIC, or STEADY STATE *HEAT TRANSFER or *COUPLED '// &
-         'TEMPERATURE-DISPLACEMENT'), &
+         'STEADY STATE DYNAMICS/VISCO/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD', &
+         'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
       advice_type(refused, 'STATIC', 'NO ANALYSIS', &
          'thercon check DECK reads a deck without solving it'), &
       advice_type(refused, '', 'TIME POINTS', &

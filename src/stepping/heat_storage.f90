@@ -1,0 +1,94 @@
+!> What a step that stores heat, (1.2), asks of its increments: the stages of the scheme, the heat
+!> that is stored when the step begins, and how far an increment goes and errs in time.
+!>
+!> The error of an increment is that of its scheme beside one of first order, smoothed by the
+!> matrix that is factored anyway, as Hosea and Shampine do: with the rates of stored heat S_1 and
+!> S_2 of both stages, (K + C/(gamma dt)) e = S_2 - S_1. A scheme of one stage has S_i and S_i+1, and
+!> half of their difference. E is no error of the result, which is of second order; it says how fast
+!> temperatures change their course.
+!>
+!> R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; M. E. Hosea, L. F. Shampine, Appl. Numer. Math.
+!> 20 (1996) 21.
+module heat_storage
+   use edge_heat, only: supplied_heat
+   use heat_reduction, only: heat_reduction_type
+   use kinds, only: dp
+   use load_histories, only: step_clock_type
+   use loads, only: loads_type
+   use model, only: model_type
+   use records, only: increment_record_type
+   use reduced_bodies, only: reduced_bodies_type
+   use solution_state, only: solution_state_type
+   use steps, only: step_type
+   use thermal_matrix, only: heat_across, heat_rates_type
+   implicit none
+   private
+   public :: stage_type, begin_storage, measure_changes
+
+   !> A stage of an increment.
+   type :: stage_type
+      type(step_clock_type) :: clock = step_clock_type()   !! its end
+      real(dp) :: size = 0.0_dp                            !! from the end of the one before [time]
+      real(dp) :: duration = 0.0_dp                        !! dt of its equation [time]
+      real(dp), allocatable :: temperature(:)              !! (nodes) T* of its equation
+      logical :: is_last = .true.                          !! whether the increment ends with it
+   end type stage_type
+
+contains
+
+   !> The state as its first increment finds it: temperatures that the step prescribes, its loads and
+   !> its films act as at its start, jumps included, and what they leave over is stored.
+   subroutine begin_storage(model, bodies, loads, start, state)
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(loads_type), intent(inout) :: loads               !! moved to the start of the step
+      type(step_clock_type), intent(in) :: start             !! this instant
+      type(solution_state_type), intent(inout) :: state      !! before the first increment
+      type(heat_rates_type) :: rates
+      logical :: stores(size(state%temperature))
+      integer :: i
+
+      call loads%move_to(start, model)
+      associate (held => loads%temperature%active)
+         where (held) state%temperature = loads%temperature%value
+         state%sources%load = loads%heat_load()
+         state%sources%film = loads%film_matrix()
+         rates%conducted = bodies%thermal%matrix%multiply(state%temperature)
+         rates%entering = state%sources%net_heat(state%temperature)
+         rates%crossing = heat_across(bodies%points%weight, state%carrying, state%jump)
+         stores = .not. held
+         do i = 1, bodies%capacity%row_count
+            associate (row => bodies%capacity%value(bodies%capacity%row_start(i): &
+               bodies%capacity%row_start(i + 1) - 1))
+               stores(i) = stores(i) .and. any(abs(row) > 0.0_dp)
+            end associate
+         end do
+      end associate
+      state%stored = merge(-supplied_heat(bodies, state%edge, rates), 0.0_dp, stores)
+      state%extremes = [minval(state%temperature), maxval(state%temperature)]
+   end subroutine begin_storage
+
+   !> Measures an increment: error and largest change of its temperatures.
+   subroutine measure_changes(bodies, heat, held, step, before, next, record)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat          !! of the increment
+      logical, intent(in) :: held(:)                         !! (nodes) prescribed temperatures
+      type(step_type), intent(in) :: step
+      !> State before the last stage, with the temperatures at the start of the increment
+      type(solution_state_type), intent(in) :: before
+      type(solution_state_type), intent(inout) :: next       !! state at the end
+      type(increment_record_type), intent(inout) :: record
+      real(dp) :: part, range
+
+      next%extremes = [min(before%extremes(1), minval(next%temperature)), &
+         max(before%extremes(2), maxval(next%temperature))]
+      range = max(next%extremes(2) - next%extremes(1), &
+         epsilon(range)*maxval(abs(next%extremes)), tiny(range))
+      part = merge(1.0_dp, 0.5_dp/step%scheme%a(1), step%scheme%stages == 2)
+      record%local_error = maxval(abs(heat%welded_response(bodies%thermal, part* &
+         (next%stored - before%stored))))/range
+      record%largest_change = maxval(abs(next%temperature - before%temperature), &
+         mask=.not. held)
+   end subroutine measure_changes
+
+end module heat_storage
