@@ -19,11 +19,11 @@ module contact_points
       integer, allocatable :: slave(:)         !! (m) node indexes
       integer, allocatable :: master(:)        !! (m) the one opposite, or the nearest one
       !> (m, nodes) slave's value of a field less master's
-      type(sum_list_type) :: difference
+      type(sum_list_type) :: difference = sum_list_type()
       !> (m, nodes) the same of displacements where the normal turns along the face of a contact
       !> point: displacements turned back by the angle a from its own normal, cos a and sin a of the
       !> means; without terms where no normal turns
-      type(sum_list_type) :: along, across
+      type(sum_list_type) :: along = sum_list_type(), across = sum_list_type()
       !> (m) tributary length times thickness, axisymmetric times 2 pi r; 0 where three-node sides
       !> give the axis or the tip of quarter points none [length^2]
       real(dp), allocatable :: weight(:)

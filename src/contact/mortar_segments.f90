@@ -43,7 +43,7 @@ module mortar_segments
    implicit none
    private
    public :: mortar_integrals_type, integrate_segments, edge_profile_type, edge_segment_type, &
-      edge_segments_of, hat_geometry_type, hats_of, support
+      edge_segments_of, hat_geometry_type, hat_type, hats_of, support
 
    !> The integrals. Corners of the slave are counted along its line.
    type :: mortar_integrals_type
