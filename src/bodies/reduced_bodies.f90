@@ -7,12 +7,14 @@ module reduced_bodies
       match_surfaces, match_tie
    use conductance_laws, only: is_constant
    use contact_points, only: contact_points_type
+   use dilatation, only: dilatation_type
    use element_kinds, only: element_node_count
    use equilibrium_reduction, only: equilibrium_reduction_type
    use errors, only: error_type
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use loads, only: loads_type
+   use materials, only: heat_capacity
    use model, only: model_type
    use held_points, only: held_directions
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
@@ -39,6 +41,7 @@ module reduced_bodies
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       !> C of (1.2); without values where no step stores heat [energy/temperature]
       type(sparse_matrix_type) :: capacity
+      type(dilatation_type) :: dilatation                     !! heat that strains take up
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       real(dp), allocatable :: initial_force(:)               !! (2 nodes) of stresses, or none
       type(equilibrium_reduction_type) :: equilibrium         !! the partial solution of (2.4)
@@ -259,7 +262,9 @@ contains
       if (with_heat) call self%thermal%set_matrix(assemble_conduction(model%mesh, model%sections, &
          model%materials, model%orientations))
       if (any(model%steps%is_transient)) self%capacity = assemble_capacity(model%mesh, &
-         model%sections, model%materials)
+         model%sections, heat_capacity(model%materials(model%sections(model%mesh% &
+         element_section)%material)))
+      if (any(model%steps%dilates)) call self%dilatation%prepare(model)
    end subroutine assemble
 
 end module reduced_bodies

@@ -28,6 +28,7 @@ module solution_state
       real(dp), allocatable :: stress_temperature(:)  !! (nodes) of that increment [temperature]
       type(heat_sources_type) :: sources            !! Q of (3.3) and F of films
       real(dp), allocatable :: stored(:)            !! (nodes) rate of stored heat, or none [power]
+      real(dp) :: dilatation = 0.0_dp               !! rate of heat that strains take up [power]
       !> Lowest and highest temperature of the transient step so far [temperature]
       real(dp), allocatable :: extremes(:)
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
@@ -84,7 +85,7 @@ contains
       class(state_table_type), intent(inout) :: self
       type(solution_state_type), intent(inout) :: state
       logical, allocatable :: flags(:)
-      real(dp), allocatable :: reaction(:), increment_size(:)
+      real(dp), allocatable :: reaction(:), scalars(:)
 
       associate (contact => state%contact)
          call integers(self, 'contact_state', contact%contact_state)
@@ -116,9 +117,10 @@ contains
       if (allocated(state%reaction)) reaction = [state%reaction]
       call reals(self, 'reaction', reaction)
       if (allocated(reaction)) state%reaction = reshape(reaction, [2, size(reaction)/2])
-      increment_size = [state%increment_size]
-      call reals(self, 'increment_size', increment_size)
-      state%increment_size = increment_size(1)
+      scalars = [state%increment_size, state%dilatation]
+      call reals(self, 'scalars', scalars)
+      state%increment_size = scalars(1)
+      state%dilatation = scalars(2)
       flags = [state%has_mechanics, state%keeps_imbalance, state%is_out_of_balance]
       call logicals(self, 'flags', flags)
       state%has_mechanics = flags(1)

@@ -61,6 +61,8 @@ module thermal_matrix
       real(dp) :: duration = 0.0_dp
       real(dp), allocatable :: content_old(:)       !! (nodes) C T* [energy]
       real(dp), allocatable :: stored_old(:)        !! (nodes) rate of stored heat at t_i [power]
+      !> (nodes) heat that strains take up in dt; unallocated where they take up none [energy]
+      real(dp), allocatable :: taken_up(:)
    contains
       procedure :: takes_past_conductance
       procedure :: takes_past_field
@@ -112,13 +114,13 @@ contains
       conduction = assembly%matrix
    end function assemble_conduction
 
-   !> C of (1.2), both triangles, in the pattern of K: consistent in elements with nodes between
-   !> corners, else lumped.
-   pure function assemble_capacity(mesh, sections, materials) result(capacity)
+   !> C of (1.2), both triangles, or another matrix of its kind: consistent in elements with nodes
+   !> between corners, else lumped.
+   pure function assemble_capacity(mesh, sections, heat) result(capacity)
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(sparse_matrix_type) :: capacity                   !! (nodes, nodes) [energy/temperature]
+      real(dp), intent(in) :: heat(:)          !! (elements) rho c [energy/(volume temperature)]
+      type(sparse_matrix_type) :: capacity     !! (nodes, nodes) [energy/temperature]
       type(element_assembly_type) :: assembly
       integer :: element
 
@@ -127,11 +129,8 @@ contains
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
-            associate (material => materials(section%material))
-               if (material%specific_heat <= 0.0_dp) cycle
-               call assembly%add(nodes, material%density*material%specific_heat* &
-                  capacity_matrix(kind, plane, mesh%coordinates(:, nodes), section%thickness))
-            end associate
+            call assembly%add(nodes, heat(element)*capacity_matrix(kind, plane, &
+               mesh%coordinates(:, nodes), section%thickness))
          end associate
       end do
       capacity = assembly%matrix
@@ -213,21 +212,30 @@ contains
       self%stored_old = stored
    end subroutine hold_heat
 
-   !> Rate of stored heat at the end of the increment: the mean is a1 of it and b1 of that at the
-   !> start.
+   !> Rate of heat that is stored, or taken up by strains, at the end of the increment: the mean is
+   !> a1 of it and b1 of that at the start.
    pure function stored_rate(self, capacity, temperature) result(stored)
-      class(heat_equation_type), intent(in) :: self
+      class(heat_equation_type), intent(in) :: self     !! that stores heat
       type(sparse_matrix_type), intent(in) :: capacity  !! C [energy/temperature]
       real(dp), intent(in) :: temperature(:)            !! (nodes) T_i+1 [temperature]
       real(dp) :: stored(size(temperature))             !! (nodes) [power]
 
-      stored = 0.0_dp
-      if (self%duration <= 0.0_dp) return
-      stored = (capacity%multiply(temperature) - self%content_old)/self%duration
+      stored = gain(self, capacity, temperature)/self%duration
       associate (a => self%scheme%a, b => self%scheme%b)
          if (abs(b(1)) > 0.0_dp) stored = stored - b(1)/a(1)*self%stored_old
       end associate
    end function stored_rate
+
+   !> Heat that is stored and taken up from the start of the increment on.
+   pure function gain(equation, capacity, temperature) result(heat)
+      type(heat_equation_type), intent(in) :: equation
+      type(sparse_matrix_type), intent(in) :: capacity
+      real(dp), intent(in) :: temperature(:)
+      real(dp) :: heat(size(temperature))
+
+      heat = capacity%multiply(temperature) - equation%content_old
+      if (allocated(equation%taken_up)) heat = heat + equation%taken_up
+   end function gain
 
    !> F and C/(a1 dt) beside K on the left of (3.4) divided by a1; without values where no film acts
    !> and no heat is stored.
@@ -271,6 +279,7 @@ contains
          if (abs(b(1)) > 0.0_dp) rhs = -b(1)/a(1)*conduction%multiply(self%temperature_old) + rhs
          rhs = rhs + (c(1)*self%old%load + c(2)*self%new%load)/a(1)
          if (self%duration > 0.0_dp) rhs = rhs + self%content_old/self%duration
+         if (allocated(self%taken_up)) rhs = rhs - self%taken_up/self%duration
       end associate
    end function history
 
@@ -351,8 +360,8 @@ contains
          rates%crossing = heat_across(self%weight, a(2)*self%omega_old + a(3)*omega, jump) + &
             heat_across(self%weight, b(2)*self%omega_old + b(3)*omega, self%jump_old)
       end associate
-      if (self%duration > 0.0_dp) rates%stored = self%scheme%a(1)/whole* &
-         (capacity%multiply(temperature) - self%content_old)/self%duration
+      if (self%duration > 0.0_dp) rates%stored = self%scheme%a(1)/whole/self%duration* &
+         gain(self, capacity, temperature)
       rates%conducted = rates%conducted/whole
       rates%entering = rates%entering/whole
       rates%crossing = rates%crossing/whole

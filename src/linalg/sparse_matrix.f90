@@ -19,6 +19,7 @@ module sparse_matrix
    contains
       procedure :: multiply
       procedure :: multiply_columns
+      procedure :: multiply_transposed
    end type sparse_matrix_type
 
    !> Entries as they come from the elements, in any order; equal positions add up.
@@ -101,6 +102,21 @@ contains
          y(i, :) = total
       end do
    end subroutine multiply_columns
+
+   !> y = A^T x.
+   pure function multiply_transposed(self, x) result(y)
+      class(sparse_matrix_type), intent(in) :: self
+      real(dp), intent(in) :: x(:)                  !! (rows)
+      real(dp) :: y(self%column_count)              !! (columns)
+      integer :: i, k
+
+      y = 0.0_dp
+      do i = 1, self%row_count
+         do k = self%row_start(i), self%row_start(i + 1) - 1
+            y(self%column(k)) = y(self%column(k)) + self%value(k)*x(i)
+         end do
+      end do
+   end function multiply_transposed
 
    !> Makes room for entries; what the list held is dropped.
    pure subroutine reserve(self, capacity)

@@ -5,7 +5,7 @@ module materials
    implicit none
    private
    public :: material_type, section_type, constant_type, set_constants, orientation_type, &
-      material_axes, strain_rotation
+      material_axes, strain_rotation, heat_capacity
 
    !> Local axes: axis 1 at a fixed angle to x, or to the radius from a centre.
    type, extends(named_type) :: orientation_type
@@ -49,6 +49,13 @@ module materials
    end type section_type
 
 contains
+
+   !> rho c_p, 0 of a material without one.
+   elemental real(dp) function heat_capacity(material)
+      type(material_type), intent(in) :: material
+
+      heat_capacity = material%density*material%specific_heat
+   end function heat_capacity
 
    !> Keeps the constants of a property; those of an earlier card of the same property end.
    pure subroutine set_constants(material, property, names, values)

@@ -29,6 +29,7 @@ module model
 
    !> *PHYSICAL CONSTANTS.
    type :: physical_constants_type
+      logical :: has_absolute_zero = .false.    !! whether it is given
       logical :: has_radiation = .false.        !! whether both are given
       real(dp) :: absolute_zero = 0.0_dp        !! [temperature]
       real(dp) :: stefan_boltzmann = 0.0_dp     !! [power/(length^2 temperature^4)]

@@ -9,7 +9,8 @@ module listing_increments
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, page_width, print_wrapped
-   use quantity_types, only: needs_coupling, needs_heat, needs_mechanics, needs_nothing, needs_storage, &
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_heat, needs_mechanics, &
+      needs_nothing, needs_storage, &
       of_bodies, of_history, of_interface, quantity_type
    use records, only: attempt_record_type, contact_record_type, increment_record_type, &
       interface_errors_type
@@ -152,6 +153,8 @@ contains
       if (solves_heat(analysis)) write (unit, '(a)') history_line(needs_heat, record)
       if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_stored)) write (unit, '(a)') &
          history_line(needs_storage, record)
+      if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_dilatation)) &
+         write (unit, '(a)') history_line(needs_dilatation, record)
       if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
       associate (work => record%work)
          if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &

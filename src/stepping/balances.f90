@@ -69,6 +69,10 @@ contains
       if (data%equation%duration > 0.0_dp) then
          rates%stored = next%stored
          record%heat_stored = sum(next%stored)
+         if (model%steps(record%step)%dilates) then
+            record%heat_dilatation = next%dilatation
+            record%heat_stored = record%heat_stored - next%dilatation
+         end if
       end if
       residual = supplied_heat(bodies, next%edge, rates)
       call sum_rates(loads, next%temperature, residual, record)
@@ -77,6 +81,8 @@ contains
             maxval(abs(residual), mask=held), maxval(abs(rates%entering)), &
             noise*bodies%thermal%largest_entry*norm2(next%temperature), tiny(1.0_dp))
          if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)))
+         if (allocated(data%equation%taken_up)) scale = max(scale, &
+            maxval(abs(data%equation%taken_up))/data%equation%duration)
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + rates%entering
          rates%crossing = heat_across(bodies%points%weight, omega, next%jump)

@@ -10,7 +10,8 @@ module increments
    use field_problem, only: solved_loads_type
    use balances, only: sound_imbalance
    use heat_reduction, only: heat_reduction_type
-   use heat_storage, only: begin_storage, measure_changes, stage_type
+   use heat_storage, only: begin_storage, measure_changes, stage_type, strain_heat_type, &
+      strain_rate
    use increment_checks, only: check_heat, check_record, warn_of_choices
    use increment_control, only: increment_control_type
    use increment_data, only: increment_data_type, increment_workspace_type
@@ -286,6 +287,7 @@ contains
             if (self%control%increments_of_step == 0) call begin_storage(model, self%bodies, &
                self%loads, self%control%start_of_step(model), before)
             stage%temperature = before%temperature
+            stage%displacement = before%displacement
             if (step%scheme%stages == 2) then
                stage%is_last = .false.
                stage%duration = stage_part*stage%size
@@ -300,6 +302,8 @@ contains
                ! C (T_i+1 - T_i)/dt is (1 - gamma) of the first stage's rate and gamma of its own.
                stage%temperature = before%temperature + (1/stage_part - 1)* &
                   (next%temperature - before%temperature)
+               stage%displacement = before%displacement + (1/stage_part - 1)* &
+                  (next%displacement - before%displacement)
                stage%size = clock%step_time - stage%clock%step_time
                stage%clock = clock
                stage%is_last = .true.
@@ -326,14 +330,16 @@ contains
       type(increment_record_type), intent(out) :: record
       type(error_type), allocatable, intent(out) :: error
       type(increment_data_type) :: data
-      type(increment_workspace_type) :: workspace
+      type(increment_workspace_type) :: workspace, fresh_workspace
+      type(solution_state_type) :: fresh
+      type(strain_heat_type) :: strain_heat
+      logical :: is_settled
       real(dp) :: since
 
       call self%loads%move_to(stage%clock, model)
       call check_prescribed_ties(model, self%bodies, self%loads, self%control%step, error)
       call begin_record(self, model, clock, record)
       if (allocated(error)) return
-      workspace%record%increment = record%increment
       next = before
       next%increment_size = stage%size
       ! (3.4) asks for them at the start of the next increment, whether this one solves heat or not.
@@ -343,9 +349,56 @@ contains
       end if
       next%force_load = self%loads%nodal_forces()
       associate (step => model%steps(self%control%step), bodies => self%bodies)
+         if (step%dilates) then
+            fresh = next
+            call strain_heat%begin(bodies, stage)
+         end if
+         do
+            call solve_fields(self, model, stage, strain_heat, before, data, workspace, next, &
+               record, error)
+            if (allocated(error)) return
+            if (.not. step%dilates) exit
+            call strain_heat%correct(bodies, stage, next, is_settled, error)
+            if (allocated(error)) return
+            if (is_settled) exit
+            next = fresh
+            workspace = fresh_workspace
+         end do
+         if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
+         if (.not. stage%is_last) then
+            call move_alloc(workspace%known, self%known)
+            return
+         end if
+         since = wall_seconds()
+         call complete_record(bodies, model, self%recovery, self%loads, data, next, record)
+         self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
+         call check_record(record, step%analysis, error)
+         if (allocated(error)) return
+         call move_alloc(workspace%known, self%known)
+      end associate
+   end subroutine solve_stage
+
+   !> Solves the fields of a stage, with the heat that strains take up given.
+   subroutine solve_fields(self, model, stage, strain_heat, before, data, workspace, next, record, &
+      error)
+      class(simulation_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage
+      type(strain_heat_type), intent(in) :: strain_heat
+      type(solution_state_type), intent(in) :: before
+      type(increment_data_type), intent(out) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
+      type(solution_state_type), intent(inout) :: next
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: since
+
+      workspace%record%increment = record%increment
+      associate (step => model%steps(self%control%step), bodies => self%bodies)
          call begin_increment(bodies, step, before, next, data)
          if (step%is_transient) call data%equation%hold_heat(bodies%capacity, stage%duration, &
             stage%temperature, before%stored)
+         if (allocated(strain_heat%taken_up)) data%equation%taken_up = strain_heat%taken_up
          if (solves_heat(step%analysis)) then
             call self%heat%reduce(model, bodies, data%equation%left_film(bodies%capacity), error)
             if (allocated(error)) return
@@ -373,17 +426,9 @@ contains
          call recover_fields(bodies, self%heat, self%loads, data, workspace, next)
          if (step%is_transient) next%stored = data%equation%stored_rate(bodies%capacity, &
             next%temperature)
-         if (.not. stage%is_last) then
-            call move_alloc(workspace%known, self%known)
-            return
-         end if
-         call complete_record(bodies, model, self%recovery, self%loads, data, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
-         call check_record(record, step%analysis, error)
-         if (allocated(error)) return
-         call move_alloc(workspace%known, self%known)
       end associate
-   end subroutine solve_stage
+   end subroutine solve_fields
 
    !> Which increment a record is of.
    subroutine begin_record(self, model, clock, record)

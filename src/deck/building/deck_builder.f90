@@ -29,6 +29,7 @@ module deck_builder
    use quantity_types, only: quantity_type
    use order_reduction, only: side_corners
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
+   use storage_checks, only: check_storage
    use text, only: to_text
    use touch_checks, only: check_touches
    implicit none
@@ -125,6 +126,7 @@ contains
       call check_folds(context, model%mesh, report)
       call check_touches(context, model, report)
       do s = 1, first_heat(context, model) - 1
+         if (model%steps(s)%is_transient) exit
          if (model%steps(s)%analysis /= analysis_coupled) cycle
          model%steps(s)%analysis = analysis_static
          call report%suspect(context%step_place(s), 'step '//to_text(s)//' solves no heat: '// &
@@ -140,6 +142,7 @@ contains
       call apply_requests(model)
       call check_amplitudes(context, model, report)
       call check_starts(context, model, report)
+      if (context%analyses_sound) call check_storage(context, model, report)
       if (.not. report%has_errors()) then
          call check_usage(cards, context, model, report)
          call check_heat_paths(cards, model, report)

@@ -50,7 +50,8 @@ contains
                call take_parameter(card, 'ABSOLUTE ZERO', report, model%constants%absolute_zero)
                if (has_parameter(card, 'STEFAN BOLTZMANN')) call take_positive(card, &
                   'STEFAN BOLTZMANN', report, model%constants%stefan_boltzmann)
-               model%constants%has_radiation = has_parameter(card, 'ABSOLUTE ZERO') .and. &
+               model%constants%has_absolute_zero = has_parameter(card, 'ABSOLUTE ZERO')
+               model%constants%has_radiation = model%constants%has_absolute_zero .and. &
                   has_parameter(card, 'STEFAN BOLTZMANN')
             case ('SOLVER')
                call need_choice(card, 'TYPE', 'SKYLINE/MUMPS', report, solver)

@@ -56,7 +56,7 @@ contains
       context%analyses_sound = .not. report%has_lost('*STEP')
       context%boundaries_sound = context%analyses_sound
       n = card_count(cards, 'STEP')
-      allocate(model%steps(n), context%step_place(n))
+      allocate(model%steps(n), context%step_place(n), context%analysis_place(n))
       n = 0
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
@@ -74,6 +74,7 @@ contains
                   'a second analysis in one step')
                counts%is_uncoupled = card%name(1:2) == 'UN'
                if (n == 0) cycle
+               context%analysis_place(n) = card%place
                call build_analysis(cards, card, n, context, report, model%steps(n))
                if (model%steps(n)%is_transient .and. .not. counts%says_course) then
                   model%steps(n)%ramped = .false.

@@ -47,6 +47,7 @@ module deck_context
       type(place_list_type), allocatable :: face_places(:)   !! (surfaces) where each face is named
       type(place_type), allocatable :: material_place(:)  !! (materials) where the material is
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step is
+      type(place_type), allocatable :: analysis_place(:)  !! (steps) where its analysis is
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element
       integer :: order = 2                                !! ORDER= of the elements, 1 or 2
