@@ -107,6 +107,7 @@ contains
                variation%increments)
             step%smallest_increment = min(step%smallest_increment, step%first_increment)
             step%largest_increment = max(step%largest_increment, step%first_increment)
+            step%local_error = step%local_error*variation%increments**2
             step%max_increments = ceiling(step%max_increments/min(variation%increments, 1.0_dp))
          end associate
       end do

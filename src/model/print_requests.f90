@@ -1,5 +1,6 @@
 !> Tables of nodes and of integration points that the deck asks for (*NODE PRINT, *EL PRINT).
 module print_requests
+   use time_points, only: time_points_type
    implicit none
    private
    public :: print_request_type
@@ -19,6 +20,7 @@ module print_requests
    type :: print_request_type
       integer :: set = 0                     !! index into the node or element sets of the mesh
       integer :: frequency = 1               !! every n-th increment and the last; 0 never
+      type(time_points_type) :: points       !! and at these instants
       integer, allocatable :: quantities(:)  !! constants above, each once, as on the card
       logical :: each_node = .true.          !! print_force and print_heat of every node
       logical :: totals = .false.            !! sums of them over the set

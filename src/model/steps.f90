@@ -4,6 +4,7 @@ module steps
    use controls, only: fixed_point_type, start_type, thermal_scheme_type, implicit_scheme
    use kinds, only: dp
    use print_requests, only: print_request_type
+   use time_points, only: time_points_type
    implicit none
    private
    public :: step_type, step_controls_type, boundary_type
@@ -98,7 +99,9 @@ module steps
       logical :: ends_boundaries = .false.   !! *BOUNDARY, OP=NEW: former prescribed values end
       type(contact_changes_type) :: changes                  !! what it changes of contact
       integer :: field_frequency = 1                 !! fields at every n-th increment and the last
+      type(time_points_type) :: field_points         !! and at these instants
       integer :: contact_print_frequency = 0         !! *CONTACT PRINT likewise; 0 never
+      type(time_points_type) :: contact_print_points
       type(print_request_type), allocatable :: node_prints(:)     !! *NODE PRINT; or unallocated
       type(print_request_type), allocatable :: element_prints(:)  !! *EL PRINT; or unallocated
    end type step_type

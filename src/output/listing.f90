@@ -150,7 +150,8 @@ contains
          end do
       end if
       call print_requested(self%text%unit, record, model)
-      if (table_is_due(model%steps(record%step)%contact_print_frequency, record)) then
+      if (table_is_due(model%steps(record%step)%contact_print_frequency, &
+         model%steps(record%step)%contact_print_points, record, model)) then
          do i = 1, size(interfaces)
             call print_contact_table(self%text%unit, interfaces(i), record%contacts(i), &
                model%mesh%node_number)

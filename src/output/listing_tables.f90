@@ -140,13 +140,15 @@ contains
       associate (step => model%steps(record%step))
          if (allocated(step%node_prints)) then
             do i = 1, size(step%node_prints)
-               if (table_is_due(step%node_prints(i)%frequency, record)) call print_nodes(unit, &
+               if (table_is_due(step%node_prints(i)%frequency, &
+                  step%node_prints(i)%points, record, model)) call print_nodes(unit, &
                   step%node_prints(i), model, record%fields)
             end do
          end if
          if (allocated(step%element_prints)) then
             do i = 1, size(step%element_prints)
-               if (table_is_due(step%element_prints(i)%frequency, record)) call print_points( &
+               if (table_is_due(step%element_prints(i)%frequency, &
+                  step%element_prints(i)%points, record, model)) call print_points( &
                   unit, step%element_prints(i), model, record%element_points(i))
             end do
          end if

@@ -4,6 +4,7 @@ module due_output
    use kinds, only: dp
    use model, only: model_type, verify_type
    use records, only: increment_record_type
+   use time_points, only: time_points_type
    implicit none
    private
    public :: fields_are_due, is_judged, needs_recovery, table_is_due
@@ -18,19 +19,38 @@ contains
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
 
-      fields_are_due = record%last_of_step .or. &
-         table_is_due(model%steps(record%step)%field_frequency, record)
+      associate (step => model%steps(record%step))
+         fields_are_due = record%last_of_step .or. table_is_due(step%field_frequency, &
+            step%field_points, record, model)
+      end associate
    end function fields_are_due
 
-   !> Whether a table of the listing is due: at every n-th increment of a step and its last.
-   pure logical function table_is_due(frequency, record)
+   !> Whether a table of the listing is due: at every n-th increment of a step, at instants of
+   !> *TIME POINTS, and at its last increment.
+   pure logical function table_is_due(frequency, points, record, model)
       integer, intent(in) :: frequency                    !! n; 0 never
+      type(time_points_type), intent(in) :: points
       type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
 
       table_is_due = frequency > 0
       if (table_is_due) table_is_due = record%last_of_step .or. &
          modulo(record%increment_in_step, frequency) == 0
+      if (table_is_due .or. .not. allocated(points%times)) return
+      associate (start => sum(model%steps(:record%step - 1)%period))
+         table_is_due = any(abs(points%in_step(start) + start - record%time) <= &
+            tolerance(record, model))
+      end associate
    end function table_is_due
+
+   !> How near the end of an increment meets an instant.
+   pure real(dp) function tolerance(record, model)
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+
+      tolerance = 1.0e-12_dp*abs(record%time) + landing*min( &
+         model%steps(record%step)%first_increment, model%steps(record%step)%smallest_increment)
+   end function tolerance
 
    !> Whether a check is judged on an increment.
    pure logical function is_judged(check, record, model)

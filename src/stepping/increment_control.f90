@@ -35,6 +35,7 @@ module increment_control
       procedure :: step_is_over
       procedure :: next_instant
       procedure :: start_of_step
+      procedure :: end_at
       procedure :: goes_too_far
       procedure :: shorten
       procedure :: planned
@@ -60,7 +61,8 @@ contains
       self%landings = landing_times(model, model%steps(self%step), self%step_start)
    end subroutine enter_step
 
-   !> Times of *VERIFY cards and corners of amplitudes; with DIRECT increments land on neither.
+   !> Times of *VERIFY cards, corners of amplitudes and instants of *TIME POINTS; with DIRECT
+   !> increments land on none of them.
    pure function landing_times(model, step, step_start) result(times)
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
@@ -75,6 +77,12 @@ contains
             times = [times, model%verifications(i)%when - step_start]
          end if
       end do
+      times = [times, step%field_points%in_step(step_start), &
+         step%contact_print_points%in_step(step_start)]
+      if (allocated(step%node_prints)) times = [times, &
+         (step%node_prints(i)%points%in_step(step_start), i=1, size(step%node_prints))]
+      if (allocated(step%element_prints)) times = [times, &
+         (step%element_prints(i)%points%in_step(step_start), i=1, size(step%element_prints))]
       do i = 1, size(model%amplitudes)
          associate (curve => model%amplitudes(i))
             times = [times, curve%times - merge(step_start, 0.0_dp, curve%total_time)]
@@ -115,6 +123,16 @@ contains
       clock = step_clock_type(0.0_dp, model%steps(self%step)%period, self%step_start, &
          model%steps(self%step)%ramped)
    end function start_of_step
+
+   !> Makes an instant end at another time of the step.
+   pure subroutine end_at(self, step_time, clock)
+      class(increment_control_type), intent(in) :: self   !! position in the steps
+      real(dp), intent(in) :: step_time                   !! from the start of the step [time]
+      type(step_clock_type), intent(inout) :: clock
+
+      clock%step_time = step_time
+      clock%total_time = self%step_start + step_time
+   end subroutine end_at
 
    !> Whether an increment of a transient errs or changes temperatures by more than the step allows,
    !> and may be shorter.

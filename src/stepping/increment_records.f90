@@ -197,7 +197,8 @@ contains
 
       allocate (records(size(step%element_prints)))
       do i = 1, size(records)
-         if (.not. table_is_due(step%element_prints(i)%frequency, increment)) cycle
+         if (.not. table_is_due(step%element_prints(i)%frequency, &
+            step%element_prints(i)%points, increment, model)) cycle
          records(i) = points_of_set(model, step%element_prints(i), solves_heat(step%analysis), &
             state)
       end do

@@ -26,9 +26,10 @@ module increments
    use run_sizes, only: measure_factors, measure_steps, run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
-   use steps, only: solves_heat, solves_mechanics
+   use steps, only: adapts_increments, solves_heat, solves_mechanics
    use text, only: counted, to_text
    use thermal_matrix, only: heat_equation_type
+   use touch_instants, only: touch_search_type
    use constraint_checks, only: check_prescribed_ties
    use unconstrained_bodies, only: unconstrained_now
    implicit none
@@ -174,6 +175,7 @@ contains
       type(increment_record_type) :: before
       type(solution_state_type) :: next
       type(step_clock_type) :: clock
+      type(touch_search_type) :: touch
       real(dp) :: increment_size
 
       if (self%control%step_is_over(model)) then
@@ -192,16 +194,16 @@ contains
       if (allocated(error)) return
       do
          clock = self%control%next_instant(model)
+         if (touch%interface > 0) call self%control%end_at(touch%ending, clock)
          increment_size = clock%step_time - self%control%step_time
          call attempt(self, model, clock, next, record, error)
          call add_attempts(before, record)
          if (.not. allocated(error)) then
-            if (.not. self%control%goes_too_far(model, increment_size, record)) exit
-            call note_failure(record, increment_size, self%control%shorten(model, &
-               increment_size, record))
+            if (keeps(self, model, clock, next, touch, record)) exit
             before = record
             cycle
          end if
+         touch = touch_search_type()
          if (error%status == status_no_convergence) then
             call note_failure(record, increment_size, error%message)
             if (allocated(record%runaway)) then
@@ -225,6 +227,34 @@ contains
       call accept_increment(next, model, self%state, record)
       call self%control%accept(model, clock, record)
    end subroutine advance
+
+   !> Whether an attempt that was solved is the increment: in a transient whose increments are free
+   !> it is not where it errs too much, or an interface first touches or parts within it; the next
+   !> attempt is shorter.
+   logical function keeps(self, model, clock, next, touch, record)
+      type(simulation_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(step_clock_type), intent(in) :: clock            ! its end
+      type(solution_state_type), intent(in) :: next         ! state there
+      type(touch_search_type), intent(inout) :: touch
+      type(increment_record_type), intent(inout) :: record
+      real(dp) :: increment_size
+
+      keeps = .true.
+      if (.not. adapts_increments(model%steps(self%control%step))) return
+      increment_size = clock%step_time - self%control%step_time
+      if (self%control%goes_too_far(model, increment_size, record)) then
+         keeps = .false.
+         touch = touch_search_type()
+         call note_failure(record, increment_size, self%control%shorten(model, increment_size, &
+            record))
+      else if (self%bodies%is_coupled) then
+         keeps = touch%ends_behind(self%bodies, self%state, next, [self%control%step_time, &
+            clock%step_time])
+         if (.not. keeps) call note_failure(record, increment_size, 'contact pair '// &
+            self%bodies%interfaces(touch%interface)%name//' touches or parts within it')
+      end if
+   end function keeps
 
    !> Makes the end of an increment the state of a run, the only place where that changes. A
    !> companion run, of which nothing is reported, has no record.

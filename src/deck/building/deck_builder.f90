@@ -8,7 +8,8 @@ module deck_builder
       heatless
    use deck_builder_contact, only: build_contacts, build_ties
    use deck_builder_equations, only: build_couplings, build_equations, build_transforms
-   use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures
+   use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures, &
+      build_time_points
    use deck_builder_interactions, only: build_interactions
    use deck_builder_lines, only: build_lines, split_line_sets
    use deck_builder_materials, only: build_materials, build_orientations, build_sections
@@ -64,6 +65,7 @@ contains
       call build_orientations(cards, model, report)
       call build_sections(cards, context, model, report)
       call build_amplitudes(cards, model, report)
+      call build_time_points(cards, context, report)
       call build_temperatures(cards, context, model, report)
       call build_initial_stresses(cards, context, model%mesh, report)
       call build_interactions(cards, context, model, report)
@@ -73,6 +75,9 @@ contains
       call build_couplings(cards, context, model, report)
       call build_transforms(cards, model, report)
       call build_steps(cards, context, model, report)
+      if (any(model%steps%is_transient) .and. model%estimates_errors .and. &
+         size(model%contacts) > 0) call context%note('no bounds of errors: a step stores heat')
+      model%estimates_errors = model%estimates_errors .and. .not. any(model%steps%is_transient)
       call build_verifications(cards, context, model, report)
       call build_accuracy(cards, estimated, model, report)
       call build_load_axis(cards%last, context, model, report)

@@ -9,7 +9,8 @@ module deck_builder_controls
    use controls, only: crank_nicolson_scheme, explicit_scheme, fixed_point_type, galerkin_scheme, &
       implicit_scheme, method_names, start_both, start_closed, start_given, start_open, &
       start_previous, start_type, thermal_scheme_type
-   use deck_context, only: deck_context_type, need_element_set, need_named, report_unknown
+   use deck_context, only: deck_context_type, need_element_set, need_named, report_unknown, &
+      take_named
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use mesh, only: mesh_type, set_type
@@ -19,6 +20,7 @@ module deck_builder_controls
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
    use spelling, only: known_choices
    use text, only: append, string_type, to_text, to_upper
+   use time_points, only: time_points_type
    implicit none
    private
    public :: build_fixed_point, build_thermal_scheme, build_start, build_print, read_frequency
@@ -236,7 +238,7 @@ contains
       end if
       call choose(card, 'GLOBAL', 'YES/NO', report, choice)
       request%local_axes = choice == 'NO'
-      call read_frequency(card, report, request%frequency)
+      call read_frequency(card, context, report, request%frequency, request%points)
       allocate(request%quantities(0))
       do j = card%first_data, card%last_data
          do i = 1, size(cards%data(j)%fields)
@@ -307,12 +309,21 @@ contains
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.
-   subroutine read_frequency(card, report, frequency)
+   subroutine read_frequency(card, context, report, frequency, points)
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context    !! *TIME POINTS
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: frequency                 !! n, at least 0
+      type(time_points_type), intent(out) :: points     !! those that the card names
+      integer :: i
 
       frequency = 1
+      i = 0
+      call take_named(card, 'TIME POINTS', 'time points', context%time_points, report, i)
+      if (i > 0) then
+         points = context%time_points(i)
+         frequency = huge(frequency)   ! the last increment is written besides
+      end if
       call take_from(0, card, 'FREQUENCY', report, frequency)
    end subroutine read_frequency
 

@@ -18,7 +18,7 @@ module deck_builder_histories
    use text, only: read_integer, read_real, to_text, to_upper
    implicit none
    private
-   public :: build_amplitudes, build_temperatures, build_initial_stresses
+   public :: build_amplitudes, build_time_points, build_temperatures, build_initial_stresses
 
    !> Points of CalculiX's solid element, by the kind of the plane one.
    integer, parameter :: solid_points(kind_count) = [27, 8, 8, 9, 2]
@@ -49,6 +49,51 @@ contains
          call build_amplitude(cards, cards%keywords(places(n)), report, model%amplitudes(n))
       end do
    end subroutine build_amplitudes
+
+   !> Builds all *TIME POINTS: times, any number of them a card, or start, end and interval.
+   subroutine build_time_points(cards, context, report)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(inout) :: context    !! receives them
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, allocatable :: places(:)
+      character(:), allocatable :: kind
+      integer :: i, j, n
+      logical :: repeated, valid
+      real(dp) :: values(3)
+
+      places = cards_of(cards, 'TIME POINTS')
+      allocate (context%time_points(size(places)))
+      do n = 1, size(places)
+         call name_last(cards, places(n), 'time points', context%time_points(:n), report, repeated)
+         associate (card => cards%keywords(places(n)), points => context%time_points(n))
+            kind = 'STEP TIME'
+            call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)
+            points%total_time = kind == 'TOTAL TIME'
+            allocate (points%times(0))
+            do j = card%first_data, card%last_data
+               valid = .true.
+               if (has_parameter(card, 'GENERATE')) then
+                  call need_field(cards%data(j), 1, 'start', report, values(1), valid)
+                  call need_field(cards%data(j), 2, 'end', report, values(2), valid)
+                  call need_field(cards%data(j), 3, 'interval', report, values(3), valid)
+                  call check_extra(cards%data(j), 3, 'start, end, interval', report)
+                  if (valid .and. .not. (values(3) > 0.0_dp .and. values(2) >= values(1))) call &
+                     report%error(field_place(cards%data(j), 3), 'time points go up from the '// &
+                     'start to the end by a positive interval')
+                  if (valid .and. values(3) > 0.0_dp) points%times = [points%times, (values(1) + &
+                     i*values(3), i=0, floor((values(2) - values(1))/values(3) + 1.0e-6_dp))]
+                  cycle
+               end if
+               do i = 1, size(cards%data(j)%fields)
+                  call need_field(cards%data(j), i, 'time', report, values(1), valid)
+                  if (valid) points%times = [points%times, values(1)]
+               end do
+            end do
+            if (any(points%times(2:) <= points%times(:size(points%times) - 1))) call &
+               report%error(card%place, 'time points must ascend')
+         end associate
+      end do
+   end subroutine build_time_points
 
    !> Parameters of the card, then its points.
    subroutine build_amplitude(cards, card, report, amplitude)

@@ -19,6 +19,7 @@ module deck_builder_steps
       least_increment, planned_increments, solves_heat, solves_mechanics, step_controls_type, &
       step_type
    use text, only: percent, to_text
+   use time_points, only: time_points_type
    implicit none
    private
    public :: build_steps, increment_rounding, build_increments
@@ -155,7 +156,8 @@ contains
          call build_print(cards, card, counts%element_prints == 1, context, mesh, report, &
             step%element_prints)
       case ('CONTACT PRINT')
-         call read_frequency(card, report, step%contact_print_frequency)
+         call read_frequency(card, context, report, step%contact_print_frequency, &
+            step%contact_print_points)
       case default   ! of the model, or not known
       end select
    end subroutine build_output
@@ -180,7 +182,9 @@ contains
       call choose(card, 'AMPLITUDE', 'RAMP/STEP', report, history)
       step%ramped = history == 'RAMP'
       step%field_frequency = before%field_frequency
+      step%field_points = before%field_points
       step%contact_print_frequency = before%contact_print_frequency
+      step%contact_print_points = before%contact_print_points
       if (allocated(before%node_prints)) step%node_prints = before%node_prints
       if (allocated(before%element_prints)) step%element_prints = before%element_prints
       step%nlgeom = is_on(card, 'NLGEOM', report)
@@ -305,9 +309,12 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
+      type(time_points_type) :: points
       integer :: frequency
 
-      call read_frequency(card, report, frequency)
+      call read_frequency(card, context, report, frequency, points)
+      if (files == 0) step%field_points = time_points_type()
+      if (allocated(points%times)) step%field_points = points
       if (frequency == 0) then
          call context%note('*'//card%name// &
             ', FREQUENCY=0: the last increment of the step is written')

@@ -313,6 +313,11 @@ contains
 
       if (size(model%contacts) == 0) call report%missing(card%place, 'the deck has no *CONTACT '// &
          'PAIR: there is no quantity that *ACCURACY could name')
+      if (any(model%steps%is_transient)) then
+         call report%error(card%place, '*ACCURACY needs bounds of errors, which steps that '// &
+            'store heat do not have; refine by *REFINE and LOCAL ERROR=, or give STEADY STATE')
+         return
+      end if
       if (.not. model%estimates_errors) call report%error(card%place, '*ACCURACY needs '// &
          'estimated errors; leave ERRORS=NO out of *OPTIONS')
    end subroutine check_deck

@@ -15,6 +15,7 @@ module deck_context
    use sorting, only: number_index_type
    use spelling, only: is_slip, nearest_known
    use text, only: read_integer, string_type, to_upper
+   use time_points, only: time_points_type
    implicit none
    private
    public :: deck_context_type, place_list_type, plane_by_element
@@ -47,6 +48,7 @@ module deck_context
       type(place_list_type), allocatable :: face_places(:)   !! (surfaces) where each face is named
       type(place_type), allocatable :: material_place(:)  !! (materials) where the material is
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step is
+      type(time_points_type), allocatable :: time_points(:)   !! *TIME POINTS
       type(place_type), allocatable :: analysis_place(:)  !! (steps) where its analysis is
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element

@@ -61,10 +61,10 @@ module keywords
    character(*), parameter :: stabilization = '~STABILIZE?/~FACTOR=/~ALLSDTOL=/~CONTINUE=/'
 
    !> Parameters of the cards that write fields.
-   character(*), parameter :: file_parameters = 'FREQUENCY=/~FREQUENCYF=/~NSET=/~GLOBAL=/'// &
+   character(*), parameter :: file_parameters = 'FREQUENCY=/TIME POINTS=/~FREQUENCYF=/~NSET=/~GLOBAL=/'// &
       '~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/~DIRECTIONS=/~VARIABLE='
 
-   type(keyword_type), parameter :: known_keywords(77) = [ &
+   type(keyword_type), parameter :: known_keywords(78) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -124,6 +124,7 @@ module keywords
       keyword_type('STEP', built, in_both, 0, 0, &
          'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM=/~EXTRAPOLATION='), &
       keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
+      keyword_type('TIME POINTS', built, in_model, 1, many, 'NAME=/TIME=/GENERATE'), &
       keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
          'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR='), &
       keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, 'CREEP=/'// &
@@ -152,16 +153,16 @@ module keywords
       keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
       keyword_type('RESTART', not_needed, in_both, 0, 0, 'STEP=/WRITE/FREQUENCY=/OVERLAY'), &
       keyword_type('NODE PRINT', built, in_step, 1, many, &
-         'NSET=/FREQUENCY=/TOTALS=/GLOBAL=/~FREQUENCYF='), &
+         'NSET=/FREQUENCY=/TIME POINTS=/TOTALS=/GLOBAL=/~FREQUENCYF='), &
       keyword_type('EL PRINT', built, in_step, 1, many, &
-         'ELSET=/FREQUENCY=/GLOBAL=/~TOTALS=/~FREQUENCYF='), &
+         'ELSET=/FREQUENCY=/TIME POINTS=/GLOBAL=/~TOTALS=/~FREQUENCYF='), &
       keyword_type('CONTACT PRINT', built, in_step, 0, many, &
-         'FREQUENCY=/~SLAVE=/~MASTER=/~NSET=/~SET=/~GLOBAL=/~TOTALS='), &
+         'FREQUENCY=/TIME POINTS=/~SLAVE=/~MASTER=/~NSET=/~SET=/~GLOBAL=/~TOTALS='), &
       keyword_type('END STEP', built, in_step, 0, 0, ''), &
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(87) = [ &
+   type(advice_type), parameter :: advice(85) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -211,9 +212,6 @@ module keywords
          'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
       advice_type(refused, 'STATIC', 'NO ANALYSIS', &
          'thercon check DECK reads a deck without solving it'), &
-      advice_type(refused, '', 'TIME POINTS', &
-         'FREQUENCY= selects the increments that are printed; increments end at the times of '// &
-         '*VERIFY'), &
       advice_type(of_parameter, 'EQUATION', 'REMOVE', 'equations hold in all steps'), &
       advice_type(of_parameter, 'EQUATION', 'INPUT', 'take *INCLUDE behind the keyword'), &
       advice_type(of_parameter, 'INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &
@@ -248,8 +246,6 @@ module keywords
          'steps go on from the one before; leave it out'), &
       advice_type(of_parameter, 'FRICTION', 'LAGRANGE', &
          'friction is Coulomb''s with one coefficient; leave it out'), &
-      advice_type(of_parameter, '', 'TIME POINTS', &
-         'FREQUENCY= selects the increments that are printed'), &
       advice_type(of_parameter, '', 'TIME DELAY/FILM TIME DELAY', &
          'shift the times of the *AMPLITUDE'), &
       advice_type(of_parameter, '', 'USER', 'no routine of the user is called; give the values'), &
