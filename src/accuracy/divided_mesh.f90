@@ -162,7 +162,7 @@ contains
       call keep_to_equations(self%division, self%model)
       self%run = fresh_run
       self%heat = fresh_heat
-      self%run%heat%forms_on_demand = .true.
+      self%run%heats(1)%forms_on_demand = .true.
       self%heat%forms_on_demand = .true.
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) then
@@ -271,11 +271,11 @@ contains
          guess%sources%film = run%loads%film_matrix()
          guess%force_load = run%loads%nodal_forces()
          step = implicit_step(self%model%steps(number))
-         if (run%heat%forms_on_demand) step%fixed_point%method = method_anderson
+         if (run%heats(1)%forms_on_demand) step%fixed_point%method = method_anderson
          next = guess
          call implicit_state(run, self%heat, self%model, step, before, next, error)
-         if (allocated(error) .and. run%heat%forms_on_demand .and. run%bodies%is_coupled) then
-            run%heat%forms_on_demand = .false.
+         if (allocated(error) .and. run%heats(1)%forms_on_demand .and. run%bodies%is_coupled) then
+            run%heats(1)%forms_on_demand = .false.
             self%heat%forms_on_demand = .false.
             step = implicit_step(self%model%steps(number))
             next = guess
@@ -309,7 +309,7 @@ contains
          end do
       end associate
       where (node_rank == huge(1)) node_rank = maxval([1, bodies%equilibrium%rank])
-      call self%run%heat%set_node_rank(self%run%bodies, node_rank)
+      call self%run%heats(1)%set_node_rank(self%run%bodies, node_rank)
    end subroutine order_as_run
 
    !> Enters a step as the run did. The run's state at the start of steps shows in loads that ramp

@@ -104,10 +104,10 @@ contains
       next%force_load = run%state%force_load
       call begin_increment(run%bodies, step, before, next, data)
       film = data%equation%left_film(run%bodies%capacity)
-      if (run%heat%serves(run%bodies, film) .or. .not. solves_heat(step%analysis)) then
-         call solve_with(run%heat)
+      if (run%heats(1)%serves(run%bodies, film) .or. .not. solves_heat(step%analysis)) then
+         call solve_with(run%heats(1))
       else
-         call self%heat%share_order(run%heat, run%bodies)
+         call self%heat%share_order(run%heats(1), run%bodies)
          call self%heat%reduce(model, run%bodies, film, error)
          if (.not. allocated(error)) call solve_with(self%heat)
       end if
@@ -168,11 +168,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (bodies => simulation%bodies)
-         if (simulation%heat%serves(bodies, state%sources%film) .or. &
+         if (simulation%heats(1)%serves(bodies, state%sources%film) .or. &
             .not. solves_heat(step%analysis)) then
-            call solve_end(simulation%heat)
+            call solve_end(simulation%heats(1))
          else
-            call own%share_order(simulation%heat, bodies)
+            call own%share_order(simulation%heats(1), bodies)
             call own%reduce(model, bodies, state%sources%film, error)
             if (.not. allocated(error)) call solve_end(own)
          end if

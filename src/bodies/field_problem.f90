@@ -55,6 +55,7 @@ module field_problem
       !> (leading) the order in which solvers eliminate the unknowns of this numbering, once made
       integer, allocatable :: rank(:)
       class(linear_solver_type), allocatable :: solver        !! pattern and factors
+      integer :: factored = 0                                 !! how often
       logical, private :: is_factored = .false.
    contains
       procedure :: renumber
@@ -165,6 +166,7 @@ contains
       if (.not. allocated(error)) call self%solver%factor(lower, error)
       if (.not. allocated(error)) call check_finite([self%solver%schur], 'factors of the bodies', &
          status_deck, error)
+      self%factored = self%factored + 1
       self%is_factored = .not. allocated(error)
       if (allocated(error)) call self%release()
    end subroutine factor

@@ -268,6 +268,9 @@ contains
       write (self%text%unit, '(3x, *(a12))') (entries(i)%label, i=findloc(is_time, .true., dim=1), &
          findloc(is_time, .true., dim=1, back=.true.))
       write (self%text%unit, '(3x, *(f12.4))') pack(entries%number, is_time)
+      if (any(model%steps%is_transient)) write (self%text%unit, '(/, 3x, a)') &
+         'The matrix of heat was factored '//counted(run%sizes%heat_factored, 'time')//' in '// &
+         counted(self%summary%increment, 'increment')//'.'
       call print_deck(self%text%unit, cards)
       call write_text(self, error)
       if (allocated(error)) return

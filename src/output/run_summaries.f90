@@ -148,6 +148,8 @@ contains
       call add(entries, nowhere, '', or_blank(model%units%stress), 'unit_stress')
       call add(entries, nowhere, '', or_blank(model%units%power), 'unit_power')
       call add(entries, nowhere, '', or_blank(model%units%temperature), 'unit_temperature')
+      if (any(model%steps%is_transient)) call add(entries, nowhere, '', &
+         run%sizes%heat_factored, 'factorisations_thermal')
       call add(entries, nowhere, '', run%verify_passed, 'verify_passed')
       call add(entries, nowhere, '', run%verify_failed, 'verify_failed')
    end subroutine add_end

@@ -16,6 +16,7 @@ module increment_control
    real(dp), parameter :: cut = 0.25_dp           !! part of a failed increment that is tried next
    real(dp), parameter :: growth = 2.0_dp         !! of increments after one that did not fail
    real(dp), parameter :: hardly_longer = 1.001_dp !! factor that makes no longer increment
+   real(dp), parameter :: alike = 1.0e-9_dp        !! relative difference of sizes that is none
    real(dp), parameter :: allowance = 1.2_dp       !! of what a step allows its increments
    real(dp), parameter :: aim = 0.7_dp             !! part of it that they are made for
 
@@ -36,6 +37,7 @@ module increment_control
       procedure :: next_instant
       procedure :: start_of_step
       procedure :: end_at
+      procedure :: size_to
       procedure :: goes_too_far
       procedure :: shorten
       procedure :: planned
@@ -123,6 +125,16 @@ contains
       clock = step_clock_type(0.0_dp, model%steps(self%step)%period, self%step_start, &
          model%steps(self%step)%ramped)
    end function start_of_step
+
+   !> Size of an increment that ends at an instant: what differs from the size that is set by the
+   !> rounding of times alone is that size, so that its factors serve again.
+   pure real(dp) function size_to(self, clock)
+      class(increment_control_type), intent(in) :: self   !! position in the steps
+      type(step_clock_type), intent(in) :: clock          !! its end
+
+      size_to = clock%step_time - self%step_time
+      if (abs(size_to - self%largest) <= alike*self%largest) size_to = self%largest
+   end function size_to
 
    !> Makes an instant end at another time of the step.
    pure subroutine end_at(self, step_time, clock)

@@ -36,12 +36,15 @@ module increments
    private
    public :: simulation_type, accept_increment, make_initial_state
 
+   integer, parameter :: kept_reductions = 3     !! of heat, by films and increment sizes
    real(dp), parameter :: doubtful = 1.0e-9_dp   !! pivot over its diagonal entry; 1e-6 is left
 
    !> A run: the reduced bodies, the loads and the state, moved on by advance.
    type :: simulation_type
       type(reduced_bodies_type) :: bodies   !! the bodies reduced to their contact unknowns
-      type(heat_reduction_type) :: heat     !! their heat likewise, for the films of the increment
+      !> Their heat likewise, for films and increment sizes; where no heat is stored the first alone
+      type(heat_reduction_type) :: heats(kept_reductions)
+      integer :: in_use = 1                 !! which of them the increment has
       type(recovery_type) :: recovery               !! stress and flux with their errors
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
@@ -124,7 +127,7 @@ contains
       call self%assemble(model)
       since = wall_seconds()
       associate (analysis => model%steps(self%control%step)%analysis, bodies => self%bodies, &
-         heat => self%heat)
+         heat => self%heats(self%in_use))
          film = heat%added
          if (solves_heat(analysis) .and. (heat%numbering /= bodies%thermal%numbering .or. &
             .not. allocated(heat%solver))) then
@@ -135,8 +138,7 @@ contains
             clock = self%control%next_instant(model)
             associate (step => model%steps(self%control%step))
                if (step%is_transient) equation%duration = equation%scheme%a(1)* &
-                  (clock%step_time - self%control%step_time)*merge(stage_part, 1.0_dp, &
-                  step%scheme%stages == 2)
+                  self%control%size_to(clock)*merge(stage_part, 1.0_dp, step%scheme%stages == 2)
             end associate
             film = equation%left_film(bodies%capacity)
          end if
@@ -151,7 +153,7 @@ contains
             film, error)
       end associate
       self%seconds%reduce = self%seconds%reduce + (wall_seconds() - since)
-      call measure_factors(self%bodies, self%heat, self%sizes)
+      call measure_factors(self%bodies, self%heats, self%sizes)
    end subroutine reduce
 
    !> Whether all steps are solved.
@@ -311,9 +313,10 @@ contains
       before = self%state
       stage%clock = clock
       stage%size = clock%step_time - self%control%step_time
-      stage%duration = stage%size
       associate (step => model%steps(self%control%step))
          if (step%is_transient) then
+            stage%size = self%control%size_to(clock)
+            stage%duration = stage%size
             if (self%control%increments_of_step == 0) call begin_storage(model, self%bodies, &
                self%loads, self%control%start_of_step(model), before)
             stage%temperature = before%temperature
@@ -344,7 +347,7 @@ contains
          if (of_first%increment > 0) call add_attempts(of_first, record)
          if (.not. step%is_transient .or. allocated(error)) return
          if (of_first%increment > 0) before%temperature = self%state%temperature
-         call measure_changes(self%bodies, self%heat, self%loads%temperature%active, step, before, &
+         call measure_changes(self%bodies, self%heats(self%in_use), self%loads%temperature%active, step, before, &
             next, record)
       end associate
    end subroutine attempt
@@ -430,14 +433,13 @@ contains
             stage%temperature, before%stored)
          if (allocated(strain_heat%taken_up)) data%equation%taken_up = strain_heat%taken_up
          if (solves_heat(step%analysis)) then
-            call self%heat%reduce(model, bodies, data%equation%left_film(bodies%capacity), error)
+            call reduce_heat(self, model, data%equation%left_film(bodies%capacity), error)
             if (allocated(error)) return
-            call measure_factors(bodies, self%heat, self%sizes)
          end if
          since = wall_seconds()
          ! An increment that fails leaves nothing behind, not even in the last digits.
          if (allocated(self%known)) workspace%known = self%known
-         call solve_points(bodies, self%heat, self%loads, data, workspace, next, error)
+         call solve_points(bodies, self%heats(self%in_use), self%loads, data, workspace, next, error)
          record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
@@ -453,12 +455,37 @@ contains
          if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &
             workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
-         call recover_fields(bodies, self%heat, self%loads, data, workspace, next)
+         call recover_fields(bodies, self%heats(self%in_use), self%loads, data, workspace, next)
          if (step%is_transient) next%stored = data%equation%stored_rate(bodies%capacity, &
             next%temperature)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
       end associate
    end subroutine solve_fields
+
+   !> Reduces heat, unless a reduction of a former increment serves; a new one takes the place of
+   !> the oldest.
+   !> Errors: as heat_reduction's reduce.
+   subroutine reduce_heat(self, model, film, error)
+      type(simulation_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(sparse_matrix_type), intent(in) :: film          ! and C/(a1 dt), beside K
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      if (.not. self%heats(self%in_use)%serves(self%bodies, film) .and. &
+         model%steps(self%control%step)%is_transient) then
+         do i = 1, size(self%heats)
+            if (self%heats(i)%serves(self%bodies, film)) exit
+         end do
+         if (i > size(self%heats)) then
+            i = 1 + modulo(self%in_use, size(self%heats))
+            call self%heats(i)%share_order(self%heats(self%in_use), self%bodies)
+         end if
+         self%in_use = i
+      end if
+      call self%heats(self%in_use)%reduce(model, self%bodies, film, error)
+      if (.not. allocated(error)) call measure_factors(self%bodies, self%heats, self%sizes)
+   end subroutine reduce_heat
 
    !> Which increment a record is of.
    subroutine begin_record(self, model, clock, record)
@@ -479,9 +506,12 @@ contains
    !> Frees the factors.
    subroutine release(self)
       class(simulation_type), intent(inout) :: self   !! the run
+      integer :: i
 
       call self%bodies%equilibrium%release()
-      call self%heat%release()
+      do i = 1, size(self%heats)
+         call self%heats(i)%release()
+      end do
    end subroutine release
 
    !> State before the first increment.

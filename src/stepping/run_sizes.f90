@@ -31,6 +31,7 @@ module run_sizes
       integer :: equations_mechanical = 0   !! unknown displacements, largest of the steps
       integer :: contact_unknowns = 0       !! unknowns on the contact points, largest of the steps
       integer(long) :: factor_bytes = 0     !! bytes of factors, largest so far
+      integer :: heat_factored = 0          !! how often the matrix of heat was factored
       real(dp) :: smallest_pivot = 1.0_dp   !! over its diagonal entry, smallest so far [-]
    end type run_size_type
 
@@ -82,15 +83,19 @@ contains
    end subroutine measure_steps
 
    !> Notes the memory of the factors that are, and their smallest pivot.
-   subroutine measure_factors(bodies, heat, sizes)
+   subroutine measure_factors(bodies, heats, sizes)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
+      type(heat_reduction_type), intent(in) :: heats(:)         !! those that are kept
       type(run_size_type), intent(inout) :: sizes               !! receives both
       integer(long) :: bytes
+      integer :: i
 
       bytes = 0
       if (allocated(bodies%equilibrium%solver)) call measure(bodies%equilibrium%solver)
-      if (allocated(heat%solver)) call measure(heat%solver)
+      do i = 1, size(heats)
+         if (allocated(heats(i)%solver)) call measure(heats(i)%solver)
+      end do
+      sizes%heat_factored = sum(heats%factored)
       sizes%factor_bytes = max(sizes%factor_bytes, bytes)
    contains
       subroutine measure(solver)
