@@ -47,7 +47,9 @@ def parser():
     added = {}
     for name, (help_, epilog) in one.items():
         added[name] = add_picture(pictures, name, help_, epilog)
-        added[name].add_argument("results", nargs=1, metavar="RESULT", help="result file")
+        several = name == "zones"
+        words = "result file; several are drawn side by side" if several else "result file"
+        added[name].add_argument("results", nargs="+" if several else 1, metavar="RESULT", help=words)
     several = add_picture(pictures, "convergence", "residuals, iterations and g of each increment")
     several.add_argument(
         "results", nargs="+", metavar="RESULT", help="result file; several are compared"
@@ -194,9 +196,9 @@ def run(arguments):
         return trade.draw(options.table, options)
     with ExitStack() as stack:
         results = [stack.enter_context(Result(path)) for path in options.results]
-        if options.picture == "convergence":
-            return convergence.draw(results, options)
-        picture = {"mesh": mesh, "profiles": profiles, "zones": zones, "fields": fields}
+        if options.picture in ("convergence", "zones"):
+            return {"convergence": convergence, "zones": zones}[options.picture].draw(results, options)
+        picture = {"mesh": mesh, "profiles": profiles, "fields": fields}
         picture |= {"accuracy": accuracy, "courses": courses}
         return picture[options.picture].draw(results[0], options)
 

@@ -303,6 +303,21 @@ def test_zone_curves_are_the_sharpened_edges_on_the_axis_of_the_picture(draw, re
         np.testing.assert_array_equal(numbers(pairs["status"]), contact["status"][()].ravel())
 
 
+def test_zones_of_several_results_have_one_scale_of_places_and_one_legend(kept, tmp_path):
+    paths = [tmp_path / "cold.vtkhdf", tmp_path / "hot.vtkhdf"]
+    for path, loads in zip(paths, ((60.0, 120.0, 180.0), (300.0, 600.0, 900.0))):
+        write_result(path, loads=loads)
+    (figure,) = kept("zones", *paths)
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a) cold", "(b) hot"]
+    assert figure.axes[0].get_ylim() == figure.axes[1].get_ylim()
+    assert figure.axes[0].get_xlim() != figure.axes[1].get_xlim()
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert len(labels) == len(set(labels)) and "edge of stick" in labels
+    drawn = table(tmp_path, "cold.zones-hot.csv")
+    assert list(drawn["result"]) == 3 * ["cold"] + 3 * ["hot"]
+    np.testing.assert_array_equal(numbers(drawn["load"]), [60.0, 120.0, 180.0, 300.0, 600.0, 900.0])
+
+
 def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(tabulate, tmp_path):
     path = tmp_path / "case.vtkhdf"
     write_result(path, loads=(2.0, 300.0, 600.0))
