@@ -165,6 +165,21 @@ def shrink_shock():
         ("U1", "HUB.RIGHT", "LAST"): lame.displacement(40.0, *hoop, *steel, "stress", 280 * 1.2e-5)}
 
 
+def brake_disc():
+    """Half-spaces until the heat comes back from the disc's middle, and the heat of braking."""
+    effusivities = (0.045 * 7.5e-6 * 480.0) ** 0.5, (1e-3 * 2e-6 * 1000.0) ** 0.5
+    found = {}
+    for when, time in (("0.051", 0.05), ("0.101", 0.1), ("0.501", 0.5)):
+        disc, lining = transient.braking(0.005, effusivities, 4.0, time)
+        found |= {("slave_temperature", "TRACK@20.", when): 25.0 + 3.0 * disc,
+                  ("master_temperature", "TRACK@20.", when): 25.0 + 3.0 * lining}
+    area = pi * (120.0**2 - 80.0**2)
+    capacity = area * 10.0 * 2e-3 + pi * (130.0**2 - 60.0**2) * 6.0 * 3.6e-3
+    warm = 25.0 + 3.0 * 4.0 / 2 * area / capacity
+    return found | {("heat_in", "", "2.001"): 1.5 * area, ("NT", "MAX", "LAST"): warm,
+                    ("NT", "MIN", "LAST"): warm, ("normal_force", "TRACK", "LAST"): 2.0 * area}
+
+
 def brake_pad():
     """Balances."""
     return {("normal_force", "TRACK", "LAST"): 2.0 * 40, ("shear_force", "TRACK", "LAST"): 0.4 * 80,
