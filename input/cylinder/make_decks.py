@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, beside this file; with
-`--calculix FILE` write only FILE, the cylinder with a conductance that CalculiX knows too, for both programs.
+"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, and those of the cylinder that is
+heated in finite time, beside this file; with `--calculix FILE` write only FILE, the cylinder with a conductance that
+CalculiX knows too, for both programs.
 
 The paper (Zaitsev, 1987) gives 92 eight-node elements, 326 nodes and 21 contact pairs; layout and grading are ours.
 Each body has six strips, seen from the contact: two layers of 10 elements, a 3-to-1 transition from 10 to 4 columns
@@ -328,6 +329,45 @@ heat_rate, FACE, 480., 0.18426, 5.E-3
 gap, FACE@0., 480., 0.017404, 1.E-3
 """
 
+# The cylinder heated in finite time: the end of each deck's name and the Fourier number of the heating.
+TRANSIENTS = {"fast": 0.01, "medium": 1.0, "slow": 100.0}
+CONDUCTIVITY, DENSITY, SPECIFIC_HEAT = 0.18, 7.5e-3, 480.0    # W/(cm K), kg/cm^3, J/(kg K)
+STORED = "*CONDUCTIVITY\n0.18\n*DENSITY\n7.5E-3\n*SPECIFIC HEAT\n480.\n"
+QUASI_STEADY = "*STEP, INC=100\n*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT\n20., 900.\n"
+
+STORES = """\
+** Changed against the paper: both bodies store heat, 3.6 J/(cm^3 K), and the
+** temperature of the top grows to 900 in {period:g} s. The Fourier number of this
+** time, k t/(rho c 60^2), is {fourier:g}. The elements below the top are refined,
+** to resolve the heat that enters there."""
+
+BALANCE = """\
+*VERIFY, KIND=ANALYTIC, SOURCE="balance of heat and forces"
+heat_imbalance, , LAST, 0., 1.E-9, ABS
+force_imbalance, , LAST, 0., 1.E-9, ABS
+"""
+
+# Until the heat reaches the contact, as it goes into a half-space, of which 30 cm^2 are heated.
+RAMPED = """\
+*VERIFY, KIND=ANALYTIC, SOURCE="half-space whose face warms at an even rate"
+heat_in, , {time}, {heat:.6f}, {tolerance}
+"""
+
+COLD_CONTACT = """\
+** The heat is some 12 deep, 2 sqrt(k t/(rho c)), the cylinder 60 high.
+*VERIFY, KIND=ANALYTIC, SOURCE="no heat reaches the contact"
+heat_rate, FACE, LAST, 0., 1.E-3, ABS
+"""
+
+# Heated evenly for t, a slab of 120 has a mean temperature that is 120^2/(12 k t/(rho c)) of itself below the steady
+# one: 0.6 % at 540, 0.3 % at 900.
+LAGGING = """\
+** The mean temperature lags behind by 0.6 and 0.3 % of itself; the mesh has the
+** rest.
+*VERIFY, KIND=EXTERNAL, SOURCE="converged quasi-steady values of the cylinder"
+{reference}
+"""
+
 CALCULIX_HEAD = """\
 *HEADING
 Cylinder on a base, for CalculiX and thercon
@@ -400,6 +440,59 @@ def write_deck(path, heading, first_touch, base_expansion, lift, method, checks)
     path.write_text("\n".join(cards) + "\n")
 
 
+def write_transient_deck(path, fourier, checks):
+    """Write the cylinder whose top is heated in finite time."""
+    period = heating_time(fourier)
+    heading = f"Cylinder on a base, heated in {period:g} s"
+    opening = OPENING.format(heading=heading, first_touch="\n".join([TOUCH, STORES.format(
+        period=period, fourier=fourier)]))
+    text = opening + "\n".join(reading_cards()) + "\n" + checks
+    transient = ("*STEP, INC=100, AMPLITUDE=RAMP\n*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT\n"
+                 f"{period / 45:g}, {period:g}\n")
+    heated = "\n".join(["*SURFACE, NAME=HEATED", *top_faces(), "*REFINE, LEVELS=2, SURFACE=HEATED, DISTANCE=10."])
+    for old, new, count in ((QUASI_STEADY, transient, 1), ("*CONDUCTIVITY\n0.18\n", STORED, 2),
+                            ("*MATERIAL, NAME=UPPER", f"{heated}\n*MATERIAL, NAME=UPPER", 1)):
+        assert text.count(old) == count
+        text = text.replace(old, new)
+    assert max(map(len, text.splitlines())) <= 80
+    path.write_text(text)
+
+
+def heating_time(fourier):
+    """Seconds in which the top is heated."""
+    return fourier * HEIGHT**2 * DENSITY * SPECIFIC_HEAT / CONDUCTIVITY
+
+
+def ramped_heat(fourier, top):
+    """Heat rate into the top when it has a temperature and the heat has not reached the contact."""
+    rate = 900.0 / heating_time(fourier)
+    diffusivity = CONDUCTIVITY / (DENSITY * SPECIFIC_HEAT)
+    return WIDTH * 2 * CONDUCTIVITY * rate * (top / rate / (np.pi * diffusivity))**0.5
+
+
+def top_faces():
+    """Data cards of the faces of the top."""
+    nodes, elements = make_body(True)
+    return [f"{number}, S{k + 1}" for number, e in enumerate(elements, start=1) for k in range(4)
+            if nodes[e[k]][1] == nodes[e[(k + 1) % 4]][1] == HEIGHT]
+
+
+def transient_checks(name, fourier):
+    """*VERIFY cards of a deck of the cylinder that is heated in finite time."""
+    end = heating_time(fourier)
+    if name == "fast":
+        return BALANCE + RAMPED.format(time="LAST", heat=ramped_heat(fourier, 900.0), tolerance="1.E-3") + COLD_CONTACT
+    if name == "medium":
+        return BALANCE + RAMPED.format(time=f"{end / 5:g}", heat=ramped_heat(fourier, 180.0), tolerance="5.E-3")
+    cards = []
+    for top, force, heat, pressure, edge in REFERENCE[1:]:
+        when = f"{end * top / 900:g}"
+        cards += [f"normal_force, FACE, {when}, {force}, 1.E-2", f"heat_rate, FACE, {when}, {heat}, 2.5E-2",
+                  f"pressure, MAX, {when}, {pressure}, 2.E-2",
+                  f"edge_contact, FACE, {when}, {edge}, {EDGE_TOLERANCE}, ABS"]
+    return BALANCE + LAGGING.format(reference="\n".join(cards))
+
+
 def write_calculix_deck(path):
     """Write the deck for both programs: bodies, supports and steps that either of them takes."""
     bodies, rest = "\n".join(reading_cards()).split("*SURFACE INTERACTION")
@@ -439,6 +532,8 @@ def main():
                "ZAITSEV", CHECKS.format(reference=reference_cards(), same_mesh=same_mesh_cards()))
     write_deck(folder / "cylinder-coupled.inp", "Cylinder above a base that does not expand, strongly coupled",
                APART, "0.", LIFT, "NEWTON", COUPLED_CHECKS)
+    for name, fourier in TRANSIENTS.items():
+        write_transient_deck(folder / f"cylinder-{name}.inp", fourier, transient_checks(name, fourier))
 
 
 if __name__ == "__main__":

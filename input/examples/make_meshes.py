@@ -133,8 +133,33 @@ def thermal_cycling():
         "BASE", xs, spaced(-4.0, 0.0, 2, 0.5), 1001, "CPS8", "TOP")
 
 
+def warm_blocks():
+    """Two blocks 20 long and 8 high, 0.036 apart."""
+    heights = spaced(0.0, 8.0, 2)
+    return block("HOT", spaced(-20.0, 0.0, 10), heights, 1, "CPE8", "RIGHT") + block(
+        "COLD", spaced(0.036, 20.036, 10), heights, 1001, "CPE8", "LEFT")
+
+
+def shrink_shock():
+    """A shaft of radius 20 and a hub of radii 20 and 40, the upper half of a joint 40 high."""
+    heights = spaced(0.0, 20.0, 10, 0.4)
+    return block("SHAFT", spaced(0.0, 20.0, 8, 0.4), heights, 1, "CAX8", "RIGHT") + block(
+        "HUB", spaced(20.0, 40.0, 10, 0.4), heights, 1001, "CAX8", "LEFT RIGHT")
+
+
+def brake_disc():
+    """Half of a disc of radii 60 and 130, 6 thick, and a lining of radii 80 and 120, 10 thick."""
+    across = spaced(80.0, 120.0, 16)
+    disc_xs = spaced(60.0, 80.0, 6, 0.5)[:-1] + across + spaced(120.0, 130.0, 4, 1.5)[1:]
+    disc_ys = spaced(-6.0, 0.0, 8, 0.2)
+    cards = block("LINING", across, spaced(0.0, 10.0, 12, 30.0), 1, "CAX8", "BOTTOM TOP")
+    cards += block("DISC", disc_xs, disc_ys, 1001, "CAX8", "")
+    return cards + part("TRACK", disc_xs, disc_ys, 1001, 80.0, 120.0)
+
+
 def main():
-    makers = press_fit, fuel_pellet, brake_pad, cracked_plate, turbine_joint, thermal_cycling
+    makers = (press_fit, fuel_pellet, brake_pad, cracked_plate, turbine_joint, thermal_cycling, warm_blocks,
+              shrink_shock, brake_disc)
     for make in makers:
         cards = [f"** Written by make_meshes.py. {make.__doc__}", *make()]
         assert max(map(len, cards[1:])) <= 80

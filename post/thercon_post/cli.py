@@ -4,7 +4,7 @@ import argparse
 from contextlib import ExitStack
 from itertools import chain
 
-from . import accuracy, convergence, fields, mesh, profiles, style, trade, zones
+from . import accuracy, convergence, courses, fields, mesh, profiles, style, trade, zones
 from .errors import UserError, program
 from .result import FIELD_SOURCES, Result
 
@@ -41,12 +41,15 @@ def parser():
         "profiles": ("pressure, friction, mu p and heat flux along the contact", WITH_PROFILES),
         "zones": ("open, slip and stick against the load", WITH_ZONES),
         "fields": ("temperature and stress on the deformed mesh", None),
+        "courses": ("pressure, gap, temperatures and heat over time", None),
         "accuracy": ("bounds of a requested accuracy against the cost of its rounds", None),
     }
     added = {}
     for name, (help_, epilog) in one.items():
         added[name] = add_picture(pictures, name, help_, epilog)
-        added[name].add_argument("results", nargs=1, metavar="RESULT", help="result file")
+        several = name == "zones"
+        words = "result file; several are drawn side by side" if several else "result file"
+        added[name].add_argument("results", nargs="+" if several else 1, metavar="RESULT", help=words)
     several = add_picture(pictures, "convergence", "residuals, iterations and g of each increment")
     several.add_argument(
         "results", nargs="+", metavar="RESULT", help="result file; several are compared"
@@ -61,6 +64,8 @@ def parser():
         "--range", nargs=2, type=float, metavar=("FROM", "TO"), help="range of the abscissa"
     )
     add_fields(added["fields"])
+    add_name(added["courses"])
+    added["courses"].add_argument("--log", action="store_true", help="logarithmic time")
     return top
 
 
@@ -95,9 +100,7 @@ def add_loads(picture):
 
 def add_contact(picture):
     """Add the choice of contact and axis, and digitised figures."""
-    picture.add_argument(
-        "--contact", metavar="NAME", help="interface (default: all, a picture each)"
-    )
+    add_name(picture)
     picture.add_argument(
         "--along",
         choices=("x", "s"),
@@ -110,6 +113,13 @@ def add_contact(picture):
         dest="figures",
         metavar="FIGURE.csv",
         help="overlay a digitised figure",
+    )
+
+
+def add_name(picture):
+    """Add the choice of contact."""
+    picture.add_argument(
+        "--contact", metavar="NAME", help="interface (default: all, a picture each)"
     )
 
 
@@ -186,10 +196,10 @@ def run(arguments):
         return trade.draw(options.table, options)
     with ExitStack() as stack:
         results = [stack.enter_context(Result(path)) for path in options.results]
-        if options.picture == "convergence":
-            return convergence.draw(results, options)
-        picture = {"mesh": mesh, "profiles": profiles, "zones": zones, "fields": fields}
-        picture["accuracy"] = accuracy
+        if options.picture in ("convergence", "zones"):
+            return {"convergence": convergence, "zones": zones}[options.picture].draw(results, options)
+        picture = {"mesh": mesh, "profiles": profiles, "fields": fields}
+        picture |= {"accuracy": accuracy, "courses": courses}
         return picture[options.picture].draw(results[0], options)
 
 

@@ -1,6 +1,7 @@
 """The zone diagram (Fig. 3 of the paper): open, slip and stick against the load."""
 
 from pathlib import Path
+from string import ascii_lowercase
 
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -11,7 +12,7 @@ from .errors import UserError
 from .overlay import axis_words, file_parts, read_overlays
 from .result import OPEN, SLIP, STICK
 from .style import plt
-from .tables import write_table
+from .tables import stack_tables, write_table
 from .zone_names import CURVES, name_regions
 
 PASSED_OVER = ("increment", "time", "s_edge_contact", "s_edge_stick")
@@ -24,22 +25,65 @@ FURTHER_FILLS = {"edge_contact": style.BLACK, "edge_stick": "white"}
 TINTS = ("#FFFFFF", "#DCE8F2", "#FBE9C8")  # of open, slip, stick
 
 
-def draw(result, options):
-    """Draw the zone diagram of every contact asked for; return the files written."""
+def draw(results, options):
+    """Draw the zone diagram of every contact asked for, of several results side by side; return the
+    files written."""
     written = []
     overlays = read_overlays(options.figures, "load", CURVES, PASSED_OVER)
-    for contact in result.contacts(options.contact):
-        along, coordinate = contact.axis(options.along)
-        picture = Picture(result, contact, along, coordinate)
-        figure = picture.draw(overlays)
-        parts = [contact.name] if len(result.contact_names) > 1 else []
-        parts += axis_words(options.along) + file_parts(options.figures)
-        name = style.file_name(result, "zones", *parts)
-        written += style.write(figure, picture.table(), options.out, name)
-        pairs = Path(options.out) / f"{style.file_name(result, 'zones', *parts, 'pairs')}.csv"
-        write_table(pairs, picture.pair_table())
+    first, further = results[0], [result.name for result in results[1:]]
+    for contact in first.contacts(options.contact):
+        pictures = [picture_of(result, contact.name, options) for result in results]
+        figure = pictures[0].draw(overlays) if not further else draw_beside(pictures, overlays)
+        parts = [contact.name] if len(first.contact_names) > 1 else []
+        parts += axis_words(options.along) + file_parts(options.figures) + further
+        name = style.file_name(first, "zones", *parts)
+        written += style.write(figure, tables_of(pictures, "table"), options.out, name)
+        pairs = Path(options.out) / f"{style.file_name(first, 'zones', *parts, 'pairs')}.csv"
+        write_table(pairs, tables_of(pictures, "pair_table"))
         written.append(pairs)
     return written
+
+
+def picture_of(result, name, options):
+    """Return the diagram of one contact of a result."""
+    contact = result.contact(name)
+    return Picture(result, contact, *contact.axis(options.along))
+
+
+def tables_of(pictures, kind):
+    """Return the columns of one diagram, or of several with the names of their results."""
+    tables = [getattr(picture, kind)() for picture in pictures]
+    if len(tables) == 1:
+        return tables[0]
+    names = [np.full(len(table["load"]), picture.result.name, dtype=object)
+             for picture, table in zip(pictures, tables)]
+    return stack_tables([{"result": name} | table for name, table in zip(names, tables)])
+
+
+def draw_beside(pictures, overlays):
+    """Return a figure with a panel for each result, on one scale of places."""
+    figure, panels = plt.subplots(
+        1, len(pictures), sharey=True, layout="constrained", squeeze=False,
+        figsize=(0.9 + 2.05 * len(pictures), style.SINGLE_COLUMN),
+    )
+    handles = {}
+    drawn = [picture.draw_panel(axes, overlays) for picture, axes in zip(pictures, panels[0])]
+    low, high = np.transpose([picture.window(each) for picture, each in zip(pictures, drawn)])
+    window = low.min(), high.max()
+    parts = {picture.settle(axes, window) for picture, axes in zip(pictures, panels[0])}
+    for picture, axes, letter in zip(pictures, panels[0], ascii_lowercase):
+        style.panel_title(axes, style.plain(picture.result.name), letter)
+        for handle in picture.legend_handles(overlays):
+            handles.setdefault(handle.get_label(), handle)
+        axes.label_outer()
+        if len(parts) == 1 and axes is not panels[0][len(pictures) // 2]:
+            axes.set_xlabel(picture.abscissa_label)  # one panel says for all what they leave out
+        axes.set_xlabel(axes.get_xlabel().replace("; ", ";\n"))
+    figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=3,
+                  columnspacing=1.4)
+    for picture, axes in zip(pictures, panels[0]):
+        name_regions(picture, axes)
+    return figure
 
 
 class Picture:
@@ -70,6 +114,18 @@ class Picture:
         figure, axes = plt.subplots(
             layout="constrained", figsize=(style.SINGLE_COLUMN * 1.25, style.SINGLE_COLUMN)
         )
+        self.settle(axes, self.window(self.draw_panel(axes, overlays)))
+        figure.legend(
+            handles=self.legend_handles(overlays),
+            loc="outside lower center",
+            ncols=3,
+            columnspacing=1.4,
+        )
+        name_regions(self, axes)
+        return figure
+
+    def draw_panel(self, axes, overlays):
+        """Draw zones, states and curves; return the places of the digitised figures laid over."""
         if overlays and not self.rising:
             raise UserError(
                 f"{self.result.path}: the load turns: no digitised figure fits over time"
@@ -81,23 +137,19 @@ class Picture:
         drawn = [
             overlay.plot(axes, "load", key, LINES[key]) for overlay in overlays for key in CURVES
         ]
+        return np.concatenate([[], *drawn])
+
+    def settle(self, axes, window):
+        """Set ranges and labels of the axes; return what the label says of the rest of the face."""
         axes.set_ylabel(self.result.units.label(f"${self.along}$", "length"))
         axes.set_xlim(self.limits(self.abscissa))
         if len(self.abscissa) == 1:
             axes.set_xticks(self.abscissa)
-        window = self.window(np.concatenate([[], *drawn]))
         axes.set_ylim(window)
         unit = self.result.units.names.get("length", "")
         part = self.contact.part_words(self.coordinate, window, unit)
         axes.set_xlabel(f"{self.abscissa_label}\n{part}".rstrip())
-        figure.legend(
-            handles=self.legend_handles(overlays),
-            loc="outside lower center",
-            ncols=3,
-            columnspacing=1.4,
-        )
-        name_regions(self, axes)
-        return figure
+        return part
 
     @staticmethod
     def limits(values):

@@ -15,6 +15,7 @@ import crack
 import friction_strip
 import hot_tubes
 import lame
+import transient
 from rods import Rods, gas, power, solve
 
 EXAMPLES = INPUT / "examples"
@@ -127,6 +128,58 @@ def thermal_cycling_zones():
     return friction_strip.strip_zones(40.0, 1.0, 1e5, 1e-5, 0.3, 10.0, rises, 40)
 
 
+def warm_blocks():
+    """A wall after a shock until the blocks touch, and the steady state of two rods."""
+    stretch, scale = 1.2e-5 * 300.0 * 20.0, 0.045 / (7.5e-6 * 480.0) / 20.0**2
+    gap = {when: stretch * (0.5 - transient.mean_of_shocked_wall(when * scale))
+           for when in (2.0, 4.0, 6.0, 6.29, 6.3)}
+    assert gap[6.29] > 0.0 > gap[6.3]   # between these two the deck sees the faces touch
+    found = {("gap", "GAP", f"{when:g}."): gap[when] for when in (2.0, 4.0, 6.0)}
+    for when in (4.0, 6.0):
+        rise = 300.0 * transient.shocked_wall(1.0, when * scale)
+        found["slave_temperature", "GAP", f"{when:g}."] = rise
+    rods = Rods((20.0, 20.0), (0.045, 0.045), (1.2e-5, 1.2e-5), (2.1e5, 2.1e5), (300.0, 0.0),
+                stretch / 2)
+    state = solve(rods, None, power(0.0, 1e-4, 1.0))
+    slave, master = state.face_temperature
+    last = {"pressure": state.pressure, "heat_flux": state.flux, "slave_temperature": slave,
+            "master_temperature": master}
+    return found | {(name, "GAP", "LAST"): value for name, value in last.items()}
+
+
+def shrink_shock():
+    """Lame before and long after the shock, and a half-space with a film at its beginning."""
+    steel, radii = (2.1e5, 0.3), (0.0, 20.0, 40.0)
+    found = {}
+    for when, overlap in (("0.01", 0.02), ("LAST", 0.02 - 1e-6 * 280 * 20)):
+        p = lame.press_fit(*radii, steel, steel, overlap, "stress")
+        found |= {("pressure", "SEAT", when): p,
+                  ("normal_force", "SEAT", when): p * 2 * pi * 20 * 20}
+    hoop = lame.cylinder(40.0, 20.0, 40.0, p)
+    cold = lame.press_fit(*radii, steel, steel, 0.02, "stress")
+    scale = 0.01 * (0.045 * 0.1 / (7.5e-6 * 480.0)) ** 0.5 / 0.045
+    return found | {
+        ("S33", "HUB.RIGHT", "0.01"): lame.cylinder(40.0, 20.0, 40.0, cold)[1],
+        ("S11", "SHAFT.RIGHT", "0.01"): -cold,
+        ("NT", "HUB.RIGHT", "0.11"): 20 + 280 * transient.half_space_with_film(scale),
+        ("U1", "HUB.RIGHT", "LAST"): lame.displacement(40.0, *hoop, *steel, "stress", 280 * 1.2e-5)}
+
+
+def brake_disc():
+    """Half-spaces until the heat comes back from the disc's middle, and the heat of braking."""
+    effusivities = (0.045 * 7.5e-6 * 480.0) ** 0.5, (1e-3 * 2e-6 * 1000.0) ** 0.5
+    found = {}
+    for when, time in (("0.051", 0.05), ("0.101", 0.1), ("0.501", 0.5)):
+        disc, lining = transient.braking(0.005, effusivities, 4.0, time)
+        found |= {("slave_temperature", "TRACK@20.", when): 25.0 + 3.0 * disc,
+                  ("master_temperature", "TRACK@20.", when): 25.0 + 3.0 * lining}
+    area = pi * (120.0**2 - 80.0**2)
+    capacity = area * 10.0 * 2e-3 + pi * (130.0**2 - 60.0**2) * 6.0 * 3.6e-3
+    warm = 25.0 + 3.0 * 4.0 / 2 * area / capacity
+    return found | {("heat_in", "", "2.001"): 1.5 * area, ("NT", "MAX", "LAST"): warm,
+                    ("NT", "MIN", "LAST"): warm, ("normal_force", "TRACK", "LAST"): 2.0 * area}
+
+
 def brake_pad():
     """Balances."""
     return {("normal_force", "TRACK", "LAST"): 2.0 * 40, ("shear_force", "TRACK", "LAST"): 0.4 * 80,
@@ -141,6 +194,16 @@ def test_example_passes_its_checks(tmp_path, name):
     with h5py.File(tmp_path / f"{name}.vtkhdf") as file:
         # Rounding of sums over some hundred nodes; the shrink fit's radial sums are no imbalance.
         assert (file["history/force_imbalance"][()] < 1e-9).all()
+
+
+def test_heat_that_enters_the_shocked_fit_warms_it(tmp_path):
+    """The heat rate is a curve: the trapezoidal rule gives it to 0.1 % with these increments."""
+    process = run("run", "--quiet", EXAMPLES / "shrink_shock.inp", "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    with h5py.File(tmp_path / "shrink_shock.vtkhdf") as file:
+        time, rate = file["history/time"][1:], file["history/heat_in"][1:]
+    heat = np.sum(np.diff(time) * (rate[1:] + rate[:-1]) / 2) + (time[0] - 0.01) * rate[0]
+    assert heat == pytest.approx(7.5e-6 * 480.0 * 280.0 * pi * 40**2 * 20, rel=2e-3)
 
 
 def test_zones_of_the_cycled_strip_are_those_of_the_independent_solution(tmp_path):

@@ -60,3 +60,35 @@ def test_deck_is_the_one_that_the_script_writes(tmp_path):
     subprocess.run([sys.executable, folder / "make_decks.py"], check=True, timeout=60)
     for deck in CYLINDER.parent.glob("*.inp"):
         assert (folder / deck.name).read_text() == deck.read_text(), deck.name
+
+
+@pytest.fixture(scope="module")
+def heated(tmp_path_factory):
+    """Return force and heat rate of the cylinder at every increment, by the deck's name."""
+    folder = tmp_path_factory.mktemp("heated")
+    found = {}
+    for name in ("cylinder", *(f"cylinder-{name}" for name in make_decks.TRANSIENTS)):
+        deck = folder / f"{name}.inp"
+        deck.write_text((CYLINDER.parent / deck.name).read_text())
+        with h5py.File(solve(deck)) as file:   # which ends with all checks passed
+            found[name] = file["contact/FACE/normal_force"][()], file["contact/FACE/heat_rate"][()]
+    return found
+
+
+def test_the_slower_the_cylinder_is_heated_the_nearer_it_is_to_its_quasi_steady_course(heated):
+    steady = np.array(heated["cylinder"])
+    lags = [1 - np.array(heated[f"cylinder-{name}"]) / steady for name in make_decks.TRANSIENTS]
+    assert (lags[0] > lags[1]).all() and (lags[1] > lags[2]).all()
+    # The heat rate of one mesh depends on where between two nodes the edge of contact is.
+    assert (lags[2][0] > 0.0).all() and (lags[2][1] > -0.01).all()
+
+
+def test_the_slowly_heated_cylinder_lags_by_a_time_that_does_not_grow(heated):
+    """The mean temperature of a slab of 120 lags by 120^2/(12 k/(rho c)) = 24000 s, in which the top
+    warms by 3. Where the edge of contact passes a node, the force as a function of the top's
+    temperature has a kink, which the interpolation between increments of 20 cuts."""
+    top = np.linspace(20.0, 900.0, 45)
+    force, slow = heated["cylinder"][0], heated["cylinder-slow"][0]
+    lag = top - np.interp(slow, force, top)
+    assert lag[1:] == pytest.approx(3.0, rel=0.1)
+    assert np.median(lag) == pytest.approx(3.0, rel=0.01)

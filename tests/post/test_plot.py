@@ -246,6 +246,27 @@ def test_a_face_of_one_or_two_contact_points_is_drawn(tabulate, tmp_path, points
     np.testing.assert_array_equal(numbers(drawn["pressure"]), pressure)
 
 
+def test_courses_are_means_and_ranges_over_the_face_and_the_rates_of_the_model(draw, result, tmp_path):
+    with h5py.File(result, "r+") as file:
+        contact, history = file["contact/CYLINDER"], file["history"]
+        count = len(history["time"])
+        history["heat_in"] = np.linspace(5.0, 1.0, count)
+        history["heat_stored"] = np.where(np.arange(count) < 1, np.nan, 0.5)  # a step stores none
+        history["heat_out"] = np.full(count, 1e-9)  # rounding, which has no curve
+        pressure, weight = contact["pressure"][()], contact["weight"][()]
+        gap = contact["gap"][()]
+    assert draw("courses", result) == three("case.courses")
+    assert draw("courses", result, "--log") == three("case.courses-log")
+    drawn = table(tmp_path, "case.courses.csv")
+    assert not {"heat_out_of_it", "temperature_slave"} & set(drawn)
+    mean = (pressure * weight).sum(axis=1) / weight.sum()
+    np.testing.assert_allclose(numbers(drawn["pressure"]), mean, rtol=1e-12)
+    np.testing.assert_array_equal(numbers(drawn["pressure_max"]), pressure.max(axis=1))
+    np.testing.assert_array_equal(numbers(drawn["gap_min"]), gap.min(axis=1))
+    np.testing.assert_allclose(numbers(drawn["heat_into_the_model"]), np.linspace(5.0, 1.0, count))
+    assert np.isnan(numbers(drawn["heat_stored"])[0])
+
+
 def test_of_a_load_that_occurs_twice_the_last_increment_is_drawn(tabulate, tmp_path):
     """Loading and unloading pass it; here unloading has other pressures and temperatures."""
     path = tmp_path / "case.vtkhdf"
@@ -280,6 +301,21 @@ def test_zone_curves_are_the_sharpened_edges_on_the_axis_of_the_picture(draw, re
         np.testing.assert_array_equal(numbers(drawn["s_edge_stick"]), contact["edge_stick"][()])
         pairs = table(tmp_path, "case.zones-pairs.csv")
         np.testing.assert_array_equal(numbers(pairs["status"]), contact["status"][()].ravel())
+
+
+def test_zones_of_several_results_have_one_scale_of_places_and_one_legend(kept, tmp_path):
+    paths = [tmp_path / "cold.vtkhdf", tmp_path / "hot.vtkhdf"]
+    for path, loads in zip(paths, ((60.0, 120.0, 180.0), (300.0, 600.0, 900.0))):
+        write_result(path, loads=loads)
+    (figure,) = kept("zones", *paths)
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a) cold", "(b) hot"]
+    assert figure.axes[0].get_ylim() == figure.axes[1].get_ylim()
+    assert figure.axes[0].get_xlim() != figure.axes[1].get_xlim()
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert len(labels) == len(set(labels)) and "edge of stick" in labels
+    drawn = table(tmp_path, "cold.zones-hot.csv")
+    assert list(drawn["result"]) == 3 * ["cold"] + 3 * ["hot"]
+    np.testing.assert_array_equal(numbers(drawn["load"]), [60.0, 120.0, 180.0, 300.0, 600.0, 900.0])
 
 
 def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(tabulate, tmp_path):
@@ -879,7 +915,7 @@ def test_mistakes_on_the_command_line_have_status_1(fail, result):
 
 def test_help_of_every_picture(capsys):
     for picture in ([], ["mesh"], ["profiles"], ["zones"], ["fields"], ["convergence"], ["trade"],
-                    ["accuracy"]):
+                    ["accuracy"], ["courses"]):
         with pytest.raises(SystemExit) as ended:
             main([*picture, "--help"])
         assert ended.value.code == 0

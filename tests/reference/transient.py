@@ -5,6 +5,7 @@ H. S. Carslaw, J. C. Jaeger: Conduction of Heat in Solids, 2nd ed., Oxford 1959.
 """
 
 import numpy as np
+from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import erfcx, j0, j1
 
@@ -52,6 +53,28 @@ def sudden_contact(conductance, effusivities, drop, time):
     """Heat flux between two half-spaces that meet at time 0, their temperatures drop apart."""
     scale = conductance * (1 / effusivities[0] + 1 / effusivities[1]) * np.sqrt(time)
     return conductance * drop * erfcx(scale)
+
+
+def rubbing(conductance, effusivities, time):
+    """Rises of the faces of two half-spaces in contact, the first heated at its face by a unit flux
+    from time 0 on.
+
+    Transformed: the jump D = 1/(s e1 (sqrt s + H)), H = h (1/e1 + 1/e2); the second face rises by
+    h D/(e2 sqrt s), the first by D more.
+    """
+    first, second = effusivities
+    rate = conductance * (1 / first + 1 / second)
+    jump = (1 - erfcx(rate * np.sqrt(time))) / (first * rate)
+    rise = conductance / second * (2 * np.sqrt(time / np.pi) / (first * rate) - jump / rate)
+    return rise + jump, rise
+
+
+def braking(conductance, effusivities, duration, time):
+    """Rises of the same faces while the flux falls linearly from 1 to 0 over the duration."""
+    def of_face(k):
+        return (rubbing(conductance, effusivities, time)[k]
+                - quad(lambda t: rubbing(conductance, effusivities, t)[k], 0, time)[0] / duration)
+    return of_face(0), of_face(1)
 
 
 def nafems_t3(place, time, length=0.1, conductivity=35.0, capacity=3.1716e6, period=40.0):

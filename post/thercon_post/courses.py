@@ -1,0 +1,133 @@
+"""Courses over time: pressure, gap and temperatures of the faces, heat of the whole model."""
+
+import numpy as np
+
+from . import style
+from .errors import UserError
+from .style import plt
+
+LABELS = {
+    "pressure": ("Pressure $p$", "stress"),
+    "gap": ("Gap", "length"),
+    "temperature": ("Temperature of the faces", "temperature"),
+    "heat": ("Heat rate", "power"),
+}
+HEAT = {"heat_in": "into the model", "heat_out": "out of it", "heat_stored": "stored"}
+FACES = {"slave_temperature": "slave", "master_temperature": "master"}
+DECADES = 1e-3  # of the largest heat rate, the smallest that a logarithmic axis shows
+ORDER = {"master": 1, "out of it": 1, "stored": 2, "through the contact": 3}
+NOTHING = 1e-6  # of the largest of a panel: curves below it are not drawn
+LOOKS = [  # dashes show what lies below them
+    (style.BLACK, "-"),
+    (style.BLUE, (0, (4, 1.5))),
+    (style.VERMILION, (0, (2, 2))),
+    (style.GREEN, "-."),
+]
+
+
+def draw(result, options):
+    """Draw the courses of every contact asked for; return the files written."""
+    written = []
+    for contact in result.contacts(options.contact):
+        picture = Picture(result, contact, options.log)
+        parts = [contact.name] if len(result.contact_names) > 1 else []
+        name = style.file_name(result, "courses", *parts, *(["log"] if options.log else []))
+        written += style.write(picture.draw(), picture.table(), options.out, name)
+    return written
+
+
+class Picture:
+    """The courses of one contact and of the model."""
+
+    def __init__(self, result, contact, log=False):
+        if result.increments == 0:
+            raise UserError(f"{result.path}: holds no accepted increment")
+        self.result, self.contact, self.log = result, contact, log
+        self.time = result.history["time"]
+        self.panels = self.present()
+
+    def present(self):
+        """Return the curves of each panel that has some: panel -> [(label, values)], values (n) or,
+        over the points of the face, (n, m)."""
+        panels = {name: [("", self.contact.get(name))] for name in ("pressure", "gap")}
+        panels["temperature"] = [(words, self.contact.get(key)) for key, words in FACES.items()]
+        heat = [(words, self.result.history.get(key)) for key, words in HEAT.items()]
+        panels["heat"] = [*heat, ("through the contact", self.contact.get("heat_rate"))]
+        panels = {name: seen(curves) for name, curves in panels.items()}
+        return {name: curves for name, curves in panels.items() if curves}
+
+    def draw(self):
+        """Return the finished figure: two panels a row, one time axis."""
+        rows = -(-len(self.panels) // 2)
+        columns = min(2, len(self.panels))
+        figure, grid = plt.subplots(
+            rows, columns, sharex=True, layout="constrained", squeeze=False,
+            figsize=(style.DOUBLE_COLUMN * 0.5 * columns, 0.4 + 2.1 * rows),
+        )
+        for axes, (name, curves), letter in zip(grid.flat, self.panels.items(), "abcd"):
+            self.draw_panel(axes, curves)
+            if name == "heat" and self.log:
+                self.spread(axes, curves)
+            words, quantity = LABELS[name]
+            axes.set_ylabel(self.result.units.label(words, quantity))
+            style.panel_title(axes, "", letter)
+        for axes in grid.flat[len(self.panels):]:
+            axes.set_visible(False)
+        for column in range(columns):
+            lowest = [row for row in range(rows) if grid[row, column].get_visible()][-1]
+            grid[lowest, column].set_xlabel("Time")
+            grid[lowest, column].tick_params(labelbottom=True)
+        first = self.time[self.time > 0.0].min(initial=self.time[-1])
+        if self.log and first < self.time[-1]:
+            grid[0, 0].set(xscale="log", xlim=(first, self.time[-1]))
+            style.log_ticks(grid[0, 0].xaxis, first, self.time[-1])
+        return figure
+
+    def draw_panel(self, axes, curves):
+        """Draw curves: the mean over the face and a band of its range."""
+        for words, values in curves:
+            colour, line = LOOKS[ORDER.get(words, 0)]
+            if values.ndim == 2:
+                axes.fill_between(self.time, values.min(axis=1), values.max(axis=1), color=colour,
+                                  alpha=0.15, linewidth=0)
+            axes.plot(self.time, self.mean(values), color=colour, ls=line, label=words or None)
+        if len(curves) > 1:
+            axes.legend(loc="best", handlelength=1.8)
+        low, high = axes.get_ylim()
+        if low < 0.0 and all(np.nanmin(values) >= -1e-6 * high for _, values in curves):
+            axes.set_ylim(0.0, high)
+
+    @staticmethod
+    def spread(axes, curves):
+        """Show rates by their logarithm: a shock begins with a power of time."""
+        high = max(np.nanmax(values) for _, values in curves)
+        if high > 0.0:
+            axes.set(yscale="log", ylim=(DECADES * high, 1.5 * high))
+            style.log_ticks(axes.yaxis, DECADES * high, 1.5 * high)
+
+    def mean(self, values):
+        """Return the mean of values over the face, by the areas of its contact points."""
+        if values.ndim == 1:
+            return values
+        weight = self.contact["weight"]
+        return values @ weight / np.sum(weight)
+
+    def table(self):
+        """Return the curves as columns, means and ranges over the face."""
+        columns = {"increment": np.arange(1, len(self.time) + 1), "time": self.time}
+        for name, curves in self.panels.items():
+            for words, values in curves:
+                key = "_".join([name, *words.split()])
+                columns[key] = self.mean(values)
+                if values.ndim == 2:
+                    columns |= {f"{key}_min": values.min(axis=1), f"{key}_max": values.max(axis=1)}
+        return columns
+
+
+def seen(curves):
+    """Return the curves that are in the file and differ from zero beside the others."""
+    curves = [(words, np.asarray(values, float)) for words, values in curves
+              if values is not None and np.isfinite(values).any()]
+    sizes = [np.nanmax(np.abs(values)) for _, values in curves]
+    least = NOTHING * max(sizes, default=0.0)
+    return [curve for curve, size in zip(curves, sizes) if size > least]
