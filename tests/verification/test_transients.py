@@ -16,7 +16,7 @@ TEXT = """Bodies that store heat, with increments of one length and the default 
 row halves the elements and the increments of the row before.
 
 The tolerance is 0.1 (dt/t)^2 of the jump that the case is about, at the time t with increments dt.
-The scheme replaces exp(z) by exp(z) - 0.0404 z^3 for one increment, so that at t a mode that decays
+The scheme replaces exp(z) by exp(z) + 0.0404 z^3 for one increment, so that at t a mode that decays
 at the rate r has lost 0.0404 (r dt)^2 (r t) exp(-r t) of its start, at most 0.054 (dt/t)^2, where
 r t = 3. The modes of a half-space after a jump of its face add up to at most 0.026 (dt/t)^2. The
 elements, of eight nodes, have the rest."""
