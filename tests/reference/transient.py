@@ -91,6 +91,33 @@ def nafems_t3(place, time, length=0.1, conductivity=35.0, capacity=3.1716e6, per
     return 100 * np.sin(rate * time) * place / length + np.sum(modes)
 
 
+def largest_rate(conductivity, capacity, length, conductance, closing):
+    """Return the largest rate s of exp(s t) of two equal rods between walls of constant temperature.
+
+    The first does not expand. closing is the change of the conductance by a unit mean rise of the
+    second rod, times the difference of the temperatures of the faces. With T = sinh(m x),
+    m^2 = s c/k, in the second rod and its negative in the first, the heat at the faces gives
+
+        k m cosh(m L) = -2 omega sinh(m L) + closing (cosh(m L) - 1)/(m L).
+
+    Where cosh(m L) = 0 no heat crosses the faces, and both rods have shares of their own.
+    """
+    def excess(rate):
+        m = np.sqrt(complex(rate * capacity / conductivity)) * length
+        return float(np.real(conductivity / length * np.cosh(m) + 2 * conductance * np.sinh(m) / m
+                             - closing * (np.cosh(m) - 1) / m**2))
+
+    unit = conductivity / capacity / length**2
+    apart = -np.pi**2 / 4 * unit
+    # Above 100 the first term is the largest; the others keep the spacing below that of the roots.
+    rates = np.linspace(100 * unit, apart, 20000)
+    signs = np.sign([excess(rate) for rate in rates])
+    changes = np.flatnonzero(signs[:-1] * signs[1:] < 0)
+    if not changes.size:
+        return apart
+    return brentq(excess, rates[changes[0] + 1], rates[changes[0]], xtol=1e-18, rtol=1e-14)
+
+
 def main():
     """Print the values of published tables."""
     print("NAFEMS T3     ", nafems_t3(0.08, 32.0), nafems_t3(0.08, 20.0), nafems_t3(0.04, 32.0))

@@ -27,13 +27,14 @@ message.
 | [Values at the extremes](#values-at-the-extremes) | conductances and conductivities over 30 decades, lengths over 60, friction up to 10, slender elements | closed forms are met; what rounding would spoil is refused |
 | [Invariance](#invariance) | other units, positions, numbers, exchanged faces | the same results to 1e-11 |
 | [Time steps](#time-steps) | friction along paths, schemes of (3.4) | the orders of theory; straight paths are exact |
+| [Stored heat](#stored-heat) | orders in time, long and short increments, rods with three steady states | the orders of theory; steady states in the limit; a course never ends in the unstable state if increments resolve its growth |
 
 In the tables a verdict is `pass`, or `refused` where the program says clearly that it cannot solve
 the case. The script `tests/stability/report.py` writes this document from runs of the program; the
 tests `stability_*` repeat them, the longest ones in part.
 """
 DOCUMENT = Document("stability.md", HERE, ("fixed_point", "contact", "extremes", "invariance",
-                                           "time_steps"), PREFACE)
+                                           "time_steps", "stored_heat"), PREFACE)
 check, check_parts, check_rows = DOCUMENT.check, DOCUMENT.check_parts, DOCUMENT.check_rows
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ module keywords
    !> One keyword. Its parameters are separated by slashes; `=` marks one that needs a value and `?`
    !> one that may have one; `~` is before one that is not needed.
    type :: keyword_type
-      character(32) :: name          !! without the star
+      character(34) :: name          !! without the star
       integer :: status              !! built or not_needed
       integer :: section             !! in_model, in_step or in_both
       integer :: least_data          !! fewest data cards

@@ -1,0 +1,321 @@
+"""Heat that is stored: orders of the schemes in time, limits of long and short increments, and what
+of several states a course ends in."""
+
+import math
+import re
+import shutil
+
+import h5py
+import numpy as np
+from blocks import write
+from deck_runs import COUPLED, CYLINDER, INPUT, solve
+from physics import material, mesh
+from report import Table, check_rows, verdict
+from test_known_rods import BRANCH, RODS
+
+import rods
+import transient
+
+TITLE = "Stored heat"
+TEXT = """
+Steps without STEADY STATE, in which bodies store heat: the schemes converge with the orders of
+theory whatever the conductance depends on, long increments give the steady states, short ones
+pass a sudden change of a face without more than 1 % beyond its ends if elements and increments fit,
+and of several steady states a course ends in a stable one.
+"""
+
+# Orders in time
+
+SCHEMES = {"L-STABLE": 2, "CRANK-NICOLSON": 2, "GALERKIN": 1, "IMPLICIT": 1, "EXPLICIT": 1}
+COUNTS = [10, 20, 40, 80]
+FINEST = 16 * COUNTS[-1]
+CORNERS = 4096   # of the amplitude, so that its kinks are far below the errors
+HOT, CONDUCTIVITY, YOUNG = 80.0, 2.0, 1000.0
+XS = [0.0, 0.5, 1.0]
+
+
+def course():
+    """Return the cards of an amplitude that begins and ends at rest."""
+    times = np.arange(CORNERS + 1) / CORNERS
+    points = [f"{float(t)!r}, {math.sin(math.pi * t / 2) ** 2!r}" for t in times]
+    return ["*AMPLITUDE, NAME=COURSE", *(", ".join(points[k:k + 4])
+                                         for k in range(0, len(points), 4))]
+
+
+def blocks(law, gap=0.0, press=0.0, expansion=1e-4, xs=XS, to=None):
+    """Return a block above another one, heated from its top."""
+    cards = [*mesh("UPPER", xs, [0.0, 0.1, 0.25, 0.5], to=to or (lambda x, y: (x, y + gap))),
+             *mesh("LOWER", xs, [-1.0, -0.6, -0.3, -0.1, 0.0], first=1001)]
+    for name, growth in (("UPPER", expansion), ("LOWER", 0.0)):
+        cards += material(name, (YOUNG, 0.0), growth, CONDUCTIVITY, 1.0, 1.0)
+    return [*cards, *course(), "*SURFACE INTERACTION, NAME=FACES", *law,
+            "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "UPPER.BOTTOM, LOWER.TOP",
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UPPER, 0.", "LOWER, 0.",
+            "*FIXED POINT, METHOD=NEWTON, TOL=1.E-12",
+            "*BOUNDARY", f"UPPER.TOP, 2, 2, {-press!r}", "LOWER.BOTTOM, 2", "UPPER.LEFT, 1",
+            "LOWER.LEFT, 1"]
+
+
+def curved(x, y):
+    """Return a place in a block with a round lower side."""
+    return x, y + (0.5 - y) * x * x / 15
+
+
+CASES = {
+    "constant conductance": blocks(["*GAP LAW, TYPE=GAS", "0.7e9, 1.e9"], gap=0.01),
+    "gas in an open gap": blocks(["*GAP LAW, TYPE=GAS", "0.01, 0.005"], gap=0.01),
+    "gas in a gap that closes": blocks(["*GAP LAW, TYPE=GAS", "0.01, 0.005"], gap=0.01,
+                                       expansion=3e-4),
+    "pressure": blocks(["*GAP LAW, TYPE=POWER", "0.2, 0.5, 1."], press=0.001),
+    "moving edge": blocks(["*GAP LAW, TYPE=GAS", "0.01, 0.005", "*GAP LAW, TYPE=POWER",
+                           "2., 0.5, 1."], gap=None, expansion=3e-4, to=curved,
+                          xs=np.linspace(0.0, 1.0, 17)),
+}
+
+
+def scheme_cards(scheme):
+    """Return the card of a scheme; L-STABLE is that of steps that store heat, without a card."""
+    return [] if scheme == "L-STABLE" else [f"*THERMAL SCHEME, TYPE={scheme}"]
+
+
+def slave_temperatures(folder, case, scheme, count):
+    """Return temperatures of the slave face at the end of a course in so many increments."""
+    deck = write(folder / f"{scheme}{count}.inp", ["*OPTIONS, ERRORS=NO, WIDTH=200"], CASES[case],
+                 scheme_cards(scheme), ["*STEP, INC=100000",
+                 "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", f"{1 / count!r}, 1.",
+                 "*BOUNDARY", "LOWER.BOTTOM, 11", "*BOUNDARY, AMPLITUDE=COURSE",
+                 f"UPPER.TOP, 11, 11, {HOT!r}", "*NODE FILE, FREQUENCY=0", "NT", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        return file["contact/FACE/slave_temperature"][-1]
+
+
+def orders(folder, cases=tuple(CASES)):
+    """Return the table of the orders of the schemes in time."""
+    table = Table("Order of the schemes in time", [
+        "conductance", "scheme", *(f"{n} increments" for n in COUNTS), "order", "expected",
+        "verdict"], text=f"""A block that is heated from its top, smoothly from rest to rest, expands towards another one that is held at 0 below. Both store heat; the course lasts as long as heat takes through the lower one.
+Largest error of the temperatures of the upper face at the end, relative to the largest of them, against {FINEST} increments of L-STABLE on the same mesh; the order is that from {COUNTS[-2]} to {COUNTS[-1]} increments.
+The laws are continuous where contact points close, so that an increment in which some do has a kink and no jump, and keeps the order. EXPLICIT is IMPLICIT where the conductance is constant.""")
+    for case in cases:
+        best = slave_temperatures(folder, case, "L-STABLE", FINEST)
+        for scheme, should in SCHEMES.items():
+            errors = [float(abs(slave_temperatures(folder, case, scheme, count) - best).max()
+                            / abs(best).max()) for count in COUNTS]
+            found = math.log2(errors[-2] / errors[-1])
+            # Closing points keep the last digit of it from settling.
+            table.rows.append([case, scheme, *errors, f"{found:.2f}", str(should),
+                               verdict(abs(found - should) < 0.2)])
+    return table
+
+
+# Long increments
+
+COMPARED = "normal_force", "shear_force", "heat_rate", "edge_contact", "edge_stick", "pressure"
+LENGTHS = [1e3, 1e4, 1e5, 1e6]
+ACROSS, DIFFUSIVITY = 120.0, 0.18 / 3.6   # cm, cm^2/s
+INCREMENTS = 45
+
+
+def cylinder_course(folder, deck, length):
+    """Return quantities of the interface of a cylinder in all increments, which are `length` times
+    L^2/kappa long; steady ones, where that is 0."""
+    text = deck.read_text()
+    text = re.sub(r"(\*\w+ FILE|\*CONTACT PRINT)", r"\1, FREQUENCY=0", text[:text.index("*VERIFY")])
+    changes = {"METHOD=ZAITSEV" if deck == CYLINDER else "METHOD=NEWTON":
+               "METHOD=NEWTON, TOL=1.E-11"}
+    if length:
+        increment = length * ACROSS**2 / DIFFUSIVITY
+        changes |= {"*CONDUCTIVITY\n0.18\n": "*CONDUCTIVITY\n0.18\n*DENSITY\n1.\n"
+                    "*SPECIFIC HEAT\n3.6\n",
+                    "STEADY STATE, DIRECT\n20., 900.":
+                    f"DIRECT\n{increment!r}, {INCREMENTS * increment!r}",
+                    "*STEP, INC=100": "*THERMAL SCHEME, TYPE=IMPLICIT\n"
+                    "*STEP, INC=100, AMPLITUDE=RAMP"}
+    for old, new in changes.items():
+        assert old in text, old
+        text = text.replace(old, new)
+    path = write(folder / f"{deck.stem}.inp", ["*OPTIONS, ERRORS=NO"], text)
+    with h5py.File(solve(path)) as file:
+        return [file[f"contact/FACE/{name}"][()] for name in COMPARED]
+
+
+def long_increments(folder):
+    """Return the table of the cylinders, whose increments are far longer than heat takes."""
+    table = Table("Long increments", ["case", "increments, L^2/kappa", "deviation", "allowed",
+                                      "verdict"],
+                  text=f"""The cylinder and its coupled twin (input/cylinder) with a capacity of 3.6 J/(cm3 K), TYPE=IMPLICIT and {INCREMENTS} increments that are so many times L^2/kappa long, L the height of both bodies: largest deviation from the steady run in any increment, of {", ".join(name.replace("_", " ") for name in COMPARED)}, relative to the largest value of each.
+Temperatures lag behind a ramp by its rate over the rates of the modes. The slowest one has pi^2 kappa/L^2, so that about a tenth of the inverse length is left.""")
+    for name, deck in (("cylinder", CYLINDER), ("coupled twin", COUPLED)):
+        steady = cylinder_course(folder, deck, 0)
+        for length in LENGTHS:
+            found = cylinder_course(folder, deck, length)
+            deviation = max(float(np.nanmax(abs(one - other)) / np.nanmax(abs(other)))
+                            for one, other in zip(found, steady, strict=True))
+            allowed = 0.1 / length
+            table.rows.append([name, f"{length:.0e}", deviation, allowed,
+                               verdict(deviation < allowed)])
+    return table
+
+
+# Short increments
+
+KINDS = "CPE3", "CPE4", "CPE6", "CPE8", "CAX8"
+FOURIER, SHORT = 1e-4, 25   # of the body's size; increments until then
+FIT = 4                     # h^2/(kappa dt) that elements of all kinds pass
+MOST = 0.01
+
+
+def beyond(folder, kind, ratio):
+    """Return how far temperatures go below 0 and above 1 in any increment, and at the end, where two
+    sides of a square are at 1 from the start on; the smallest elements have h^2 = ratio kappa dt."""
+    spacings = math.sqrt(ratio * FOURIER / SHORT) * 1.3 ** np.arange(60)
+    places = np.concatenate([[0.0], np.cumsum(spacings)])
+    places = places[: np.searchsorted(places, 1.0) + 1] / places[np.searchsorted(places, 1.0)]
+    xs = 1.0 + places if kind.startswith("CAX") else places
+    deck = write(folder / "shock.inp", ["*OPTIONS, ERRORS=NO"], mesh("BODY", list(xs), list(places),
+                                                                    kind),
+                 material("BODY", None, None, 1.0, 1.0, 1.0),
+                 ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", "*STEP, INC=1000",
+                  "*HEAT TRANSFER, DIRECT", f"{FOURIER / SHORT!r}, {FOURIER!r}",
+                  "*BOUNDARY", "BODY.LEFT, 11, 11, 1.", "BODY.BOTTOM, 11, 11, 1.",
+                  "*NODE FILE", "NT", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        found = file["VTKHDF/PointData/temperature"][()].reshape(SHORT, -1)
+    return [float(max(part, 0.0)) for part in (-found.min(), found.max() - 1,
+                                               -found[-1].min(), found[-1].max() - 1)]
+
+
+def short_increments(folder):
+    """Return the table of what a sudden change of a face leaves beyond its ends."""
+    table = Table("A face that changes at once", [
+        "element", "h^2/(kappa dt)", "below", "above", "below at the end", "above at the end",
+        "verdict"], text=f"""Two sides of a square, at 0, are at 1 from the start on. {SHORT} increments of L-STABLE until a Fourier number of {FOURIER:g} of its size; elements grow by 1.3 from one to the next, the smallest ones as given. How far temperatures lie below 0 or above 1 in any increment, and at the end.
+Three- and four-node elements, whose capacities are lumped, stay above 0 always. Those with nodes between corners fall below it beside the face while heat has not crossed an element. L-STABLE replaces exp(-z) by (1 - 0.41 z)/(1 + 0.29 z)^2, which is negative for long increments, down to -0.2, and so goes above 1 in the first ones; TYPE=IMPLICIT does not.
+Required are {100 * MOST:g} % in any increment where h^2 = {FIT} kappa dt, and at the end always.""")
+    for kind in KINDS:
+        for ratio in (1 / 4, 1, FIT, 16):
+            parts = beyond(folder, kind, ratio)
+            judged = parts if ratio == FIT else parts[2:]
+            if kind[-1] in "34":
+                judged = [*judged, 0.0 if parts[0] < ROUNDING else 1.0]
+            table.rows.append([kind, f"{ratio:g}", *(shown_part(part) for part in parts),
+                               verdict(max(judged) < MOST)])
+    return table
+
+
+ROUNDING = 1e-9   # of a temperature
+
+
+def shown_part(part):
+    """Return a part of the jump as text."""
+    return "0" if part < ROUNDING else f"{part:.1e}"
+
+
+# Rods with three steady states
+
+CAPACITY, LENGTH, HOT_END, CONDUCTING = 3.6e6, 0.1, 500.0, 20.0
+LAW = 0.005, 1e-5, 500.0, 1e-4   # a, b of the gas; conductance of faces that touch, and by pressure
+SETTLED = 4e4                    # s
+
+
+def states():
+    """Return the steady states of R3, by the names of their decks."""
+    found = rods.exact_solutions(RODS["r3-open"][0], *LAW)
+    return {name: found[BRANCH.get(name, 0)] for name in RODS if name.startswith("r3")}
+
+
+def rod_course(folder, name, scheme, increment, pulse, period, cards=()):
+    """Return times, separations (gaps, or what presses, negative) and temperatures of the slave in a
+    course that begins in a steady state and with a pulse: its part of the hot end's temperature, and
+    how long it lasts."""
+    copy = folder / "rods"
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(INPUT / "rods", copy)
+    model = (copy / "rods.inc").read_text()
+    stored = "*CONDUCTIVITY\n20.\n"
+    assert stored in model
+    (copy / "rods.inc").write_text(model.replace(
+        stored, f"{stored}*DENSITY\n1.\n*SPECIFIC HEAT\n{CAPACITY!r}\n"))
+    text = (copy / f"{name}.inp").read_text()
+    text = text[:text.index("*VERIFY")].replace("*STEP", "".join(f"{c}\n" for c in cards) + "*STEP", 1)
+    steps = []
+    for part, seconds in (pulse, (0.0, period)):
+        steps += ["*STEP, INC=100000", *scheme_cards(scheme),
+                  "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT",
+                  f"{min(increment, seconds)!r}, {seconds!r}", "*START, FROM=PREVIOUS",
+                  "*BOUNDARY", f"HOT, 11, 11, {HOT_END * (1 + part)!r}",
+                  "*NODE FILE, FREQUENCY=0", "NT", "*END STEP"]
+    deck = write(copy / "course.inp", ["*OPTIONS, ERRORS=NO"], text, steps)
+    with h5py.File(solve(deck)) as file:
+        contact = file["contact/FACE"]
+        apart = contact["gap"][:, 0] - contact["pressure"][:, 0] * 2 * LENGTH / 2e11
+        return file["history/time"][()], apart, contact["slave_temperature"][:, 0]
+
+
+def end_states(folder):
+    """Return the table of the states that a course from beside the unstable one ends in."""
+    known = states()
+    both, nearest = RODS["r3-open"][0], ["r3-open", "r3-middle", "r3-closed"]
+    middle = known["r3-middle"]
+    rate = growth(both, middle)
+    table = Table("Rods with three steady states", [
+        "scheme", "increment, s", "rate times increment", "hot end by", "ends", "expected",
+        "deviation", "verdict"], text=f"""The rods R3 of input/rods with {CAPACITY:g} J/(m3 K), from their middle state, which is unstable, with the hot end 1e-3 off for 10 s; the state after {SETTLED:g} s.
+A hotter hot end leads to one stable state and a colder one to the other, if the increments are short. The middle state is left at the rate {rate:.4g}/s. IMPLICIT multiplies what grows by 1/(1 - z), z the rate times the increment: beyond 2 that is below 1, and the run stays. L-STABLE has (1 + 0.41 z)/(1 - 0.29 z)^2 and stays beyond 11.7.""")
+    for scheme, increment, hidden in (
+            ("L-STABLE", 20.0, False), ("L-STABLE", 100.0, False), ("L-STABLE", 5000.0, True),
+            ("IMPLICIT", 20.0, False), ("IMPLICIT", 100.0, False), ("IMPLICIT", 850.0, True),
+            ("EXPLICIT", 100.0, False), ("GALERKIN", 20.0, False)):
+        for part, leads_to in ((1e-3, "r3-closed"), (-1e-3, "r3-open")):
+            _, apart, _ = rod_course(folder, "r3-middle", scheme, increment, (part, 10.0), SETTLED)
+            deviations = {name: abs(float(apart[-1]) / known[name].separation - 1)
+                          for name in nearest}
+            ends = min(deviations, key=deviations.get)
+            should = "r3-middle" if hidden else leads_to
+            table.rows.append([scheme, f"{increment:g}", f"{rate * increment:.3f}", f"{part:+g}",
+                               ends[3:], should[3:], deviations[ends],
+                               verdict(ends == should and deviations[ends] < 1e-4)])
+    return table
+
+
+def growth(both, state):
+    """Return the rate of a steady state in closed form."""
+    drop = both.flux(state.conductance) / state.conductance
+    closing = -state.slope * both.expansion[1] * LENGTH * drop
+    return transient.largest_rate(CONDUCTING, CAPACITY, LENGTH, state.conductance, closing)
+
+
+# Increment, pulse, and two times between which other modes are gone and the course is still linear.
+WINDOWS = {"r3-open": (20.0, (0.01, 2000.0), 16000.0, 18000.0),
+           "r3-middle": (20.0, (1e-7, 20.0), 2500.0, 3500.0),
+           "r3-closed": (20.0, (0.01, 2000.0), 6000.0, 8000.0)}
+
+
+def rates(folder):
+    """Return the table of the rates of the three states."""
+    table = Table("Rates of the three steady states", ["state", "rate, 1/s", "closed form",
+                                                       "deviation", "allowed", "verdict"],
+                  text="""The same rods after a small pulse of the hot end, refined twice, in increments of 20 s: the rate at which temperatures of the slave leave a state or come back to it, against tests/reference/transient.py. L-STABLE errs by 0.04 (rate dt)^2 of the rate, 1e-4, the mesh by 3e-5, and what other modes leave of the rest is below 1e-3.""")
+    for name, (increment, pulse, first, last) in WINDOWS.items():
+        time, _, temperature = rod_course(folder, name, "L-STABLE", increment, pulse, last,
+                                          ["*REFINE, LEVELS=2"])
+        start = time[0]   # the end of the steady step
+        parts = [float(np.interp(start + at, time, temperature - temperature[0]))
+                 for at in (first, last)]
+        found = math.log(parts[1] / parts[0]) / (last - first)
+        exact = growth(RODS["r3-open"][0], states()[name])
+        table.rows.append([name[3:], f"{found:.6g}", f"{exact:.6g}", abs(found / exact - 1), 1e-3,
+                           verdict(abs(found / exact - 1) < 1e-3)])
+    return table
+
+
+def tables(folder):
+    """Run the cases; return their tables."""
+    return [orders(folder), long_increments(folder), short_increments(folder), end_states(folder),
+            rates(folder)]
+
+
+def test_stored_heat(tmp_path):
+    """Of the orders those of two cases."""
+    check_rows([orders(tmp_path, ("constant conductance", "moving edge")), long_increments(tmp_path),
+                short_increments(tmp_path), end_states(tmp_path), rates(tmp_path)])
