@@ -3,8 +3,8 @@
 !>
 !>    C_e T' + T0 beta:eps' = rho c_p T' + (T0 B^T u - C_alpha T)',
 !>
-!> where B are the nodal forces of nodal temperatures and C_alpha has the coefficient T0 beta:alpha. A
-!> body that expands freely takes up nothing. T0 is the initial temperature from absolute zero.
+!> where B are the nodal forces of nodal temperatures and C_alpha has the coefficient T0 beta:alpha.
+!> A body that expands freely takes up nothing. T0 is the initial temperature from absolute zero.
 module dilatation
    use element_kinds, only: plane_stress
    use kinds, only: dp

@@ -205,7 +205,7 @@ contains
       type(sparse_matrix_type), intent(in) :: capacity  !! C [energy/temperature]
       real(dp), intent(in) :: duration                  !! dt of the increment or stage [time]
       real(dp), intent(in) :: temperature(:)            !! (nodes) T* [temperature]
-      real(dp), intent(in) :: stored(:)                 !! (nodes) rate of stored heat at t_i [power]
+      real(dp), intent(in) :: stored(:)                 !! (nodes) rate of stored heat at t_i
 
       self%duration = self%scheme%a(1)*duration
       self%content_old = capacity%multiply(temperature)

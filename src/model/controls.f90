@@ -74,8 +74,9 @@ module controls
       thermal_scheme_type([1.0_dp, 1.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
       'EXPLICIT')
 
-   !> The singly diagonally implicit scheme of two stages, L-stable and of second order (R. Alexander,
-   !> SIAM J. Numer. Anal. 14 (1977) 1006): both stages are implicit ones of a part of the increment.
+   !> The singly diagonally implicit scheme of two stages, L-stable and of second order (R.
+   !> Alexander, SIAM J. Numer. Anal. 14 (1977) 1006): both stages are implicit ones of a part of
+   !> the increment.
    type(thermal_scheme_type), parameter :: l_stable_scheme = &
       thermal_scheme_type([1.0_dp, 0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
       'L-STABLE', 2)

@@ -153,8 +153,9 @@ contains
       if (solves_heat(analysis)) write (unit, '(a)') history_line(needs_heat, record)
       if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_stored)) write (unit, '(a)') &
          history_line(needs_storage, record)
-      if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_dilatation)) &
+      if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_dilatation)) then
          write (unit, '(a)') history_line(needs_dilatation, record)
+      end if
       if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
       associate (work => record%work)
          if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &

@@ -73,11 +73,20 @@ contains
          case (analysis_static)
             analysis = 'mechanics'
          case (analysis_heat)
-            analysis = 'heat, scheme '//trim(model%steps(step)%scheme%name)
+            analysis = 'heat'//storage(step)//', scheme '//trim(model%steps(step)%scheme%name)
          case default
-            analysis = 'heat and mechanics, scheme '//trim(model%steps(step)%scheme%name)
+            analysis = 'heat and mechanics'//storage(step)//', scheme '// &
+               trim(model%steps(step)%scheme%name)
          end select
       end function analysis_of
+
+      pure function storage(step) result(words)
+         integer, intent(in) :: step
+         character(:), allocatable :: words
+
+         words = ''
+         if (model%steps(step)%is_transient) words = ', transient'
+      end function storage
    end function step_words
 
    !> The ends of a range.

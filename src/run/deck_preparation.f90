@@ -111,8 +111,8 @@ contains
       if (command%accuracy <= 0.0_dp .or. deck%report%has_errors()) return
       ! Targets of --accuracy replace those of the deck.
       if (any(deck%model%steps%is_transient)) call deck%report%error(deck%cards%last, &
-         'a requested accuracy needs bounds of errors, which steps that store heat do not have; '// &
-         'refine by *REFINE and LOCAL ERROR=, or give STEADY STATE')
+         'a requested accuracy needs bounds of errors, which steps that store heat do not '// &
+         'have; refine by *REFINE and LOCAL ERROR=, or give STEADY STATE')
       deck%model%estimates_errors = .true.
       deck%model%accuracy%targets = whole_request(command%accuracy)
       if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &

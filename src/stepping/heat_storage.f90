@@ -3,12 +3,12 @@
 !>
 !> The error of an increment is that of its scheme beside one of first order, smoothed by the
 !> matrix that is factored anyway, as Hosea and Shampine do: with the rates of stored heat S_1 and
-!> S_2 of both stages, (K + C/(gamma dt)) e = S_2 - S_1. A scheme of one stage has S_i and S_i+1, and
-!> half of their difference. E is no error of the result, which is of second order; it says how fast
-!> temperatures change their course.
+!> S_2 of both stages, (K + C/(gamma dt)) e = S_2 - S_1. A scheme of one stage has S_i and S_i+1,
+!> and half of their difference. E is no error of the result, which is of second order; it says how
+!> fast temperatures change their course.
 !>
-!> R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; M. E. Hosea, L. F. Shampine, Appl. Numer. Math.
-!> 20 (1996) 21.
+!> R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; M. E. Hosea, L. F. Shampine, Appl. Numer.
+!> Math. 20 (1996) 21.
 module heat_storage
    use edge_heat, only: supplied_heat
    use errors, only: error_type, set_error, status_no_convergence
@@ -100,8 +100,8 @@ contains
       call move_alloc(rest, self%rest)
    end subroutine correct
 
-   !> Rate of the heat that strains take up, T0 beta:eps' over all bodies, over the stage. Loads that
-   !> act at once strain bodies within the first one.
+   !> Rate of the heat that strains take up, T0 beta:eps' over all bodies, over the stage. Loads
+   !> that act at once strain bodies within the first one.
    pure real(dp) function strain_rate(bodies, stage, before, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(stage_type), intent(in) :: stage
@@ -111,8 +111,8 @@ contains
          before%displacement))/stage%size
    end function strain_rate
 
-   !> The state as its first increment finds it: temperatures that the step prescribes, its loads and
-   !> its films act as at its start, jumps included, and what they leave over is stored.
+   !> The state as its first increment finds it: temperatures that the step prescribes, its loads
+   !> and its films act as at its start, jumps included, and what they leave over is stored.
    subroutine begin_storage(model, bodies, loads, start, state)
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies

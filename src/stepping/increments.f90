@@ -347,8 +347,8 @@ contains
          if (of_first%increment > 0) call add_attempts(of_first, record)
          if (.not. step%is_transient .or. allocated(error)) return
          if (of_first%increment > 0) before%temperature = self%state%temperature
-         call measure_changes(self%bodies, self%heats(self%in_use), self%loads%temperature%active, step, before, &
-            next, record)
+         call measure_changes(self%bodies, self%heats(self%in_use), &
+            self%loads%temperature%active, step, before, next, record)
       end associate
    end subroutine attempt
 
@@ -439,7 +439,8 @@ contains
          since = wall_seconds()
          ! An increment that fails leaves nothing behind, not even in the last digits.
          if (allocated(self%known)) workspace%known = self%known
-         call solve_points(bodies, self%heats(self%in_use), self%loads, data, workspace, next, error)
+         call solve_points(bodies, self%heats(self%in_use), self%loads, data, workspace, next, &
+            error)
          record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then

@@ -7,8 +7,8 @@ module deck_builder_controls
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
    use controls, only: crank_nicolson_scheme, explicit_scheme, fixed_point_type, galerkin_scheme, &
-      implicit_scheme, method_names, start_both, start_closed, start_given, start_open, &
-      start_previous, start_type, thermal_scheme_type
+      implicit_scheme, l_stable_scheme, method_names, start_both, start_closed, start_given, &
+      start_open, start_previous, start_type, thermal_scheme_type
    use deck_context, only: deck_context_type, need_element_set, need_named, report_unknown, &
       take_named
    use deck_report, only: deck_report_type
@@ -85,8 +85,8 @@ contains
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
       character(:), allocatable :: kind
 
-      call need_choice(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/FREE', report, &
-         kind)
+      call need_choice(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', &
+         report, kind)
       if (kind == 'FREE') then
          if (card%last_data < card%first_data) then
             call report%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
@@ -98,6 +98,7 @@ contains
             'extra data card; *THERMAL SCHEME has one with TYPE=FREE only')
       end if
       if (kind == 'IMPLICIT') scheme = implicit_scheme
+      if (kind == 'L-STABLE') scheme = l_stable_scheme
       if (kind == 'GALERKIN') scheme = galerkin_scheme
       if (kind == 'CRANK-NICOLSON') scheme = crank_nicolson_scheme
       if (kind == 'EXPLICIT') scheme = explicit_scheme

@@ -15,9 +15,9 @@ module deck_builder_steps
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, increment_growth, &
-      least_increment, planned_increments, solves_heat, solves_mechanics, step_controls_type, &
-      step_type
+   use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
+      increment_growth, least_increment, planned_increments, solves_heat, solves_mechanics, &
+      step_controls_type, step_type
    use text, only: percent, to_text
    use time_points, only: time_points_type
    implicit none

@@ -61,8 +61,9 @@ module keywords
    character(*), parameter :: stabilization = '~STABILIZE?/~FACTOR=/~ALLSDTOL=/~CONTINUE=/'
 
    !> Parameters of the cards that write fields.
-   character(*), parameter :: file_parameters = 'FREQUENCY=/TIME POINTS=/~FREQUENCYF=/~NSET=/~GLOBAL=/'// &
-      '~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/~DIRECTIONS=/~VARIABLE='
+   character(*), parameter :: file_parameters = 'FREQUENCY=/TIME POINTS=/~FREQUENCYF=/'// &
+      '~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/'// &
+      '~DIRECTIONS=/~VARIABLE='
 
    type(keyword_type), parameter :: known_keywords(78) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
