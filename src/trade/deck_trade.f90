@@ -97,7 +97,7 @@ contains
       type(row_run_type) :: runs(command%jobs)
       type(trade_type) :: trade
       type(error_type), allocatable :: error
-      character(:), allocatable :: ended_early, table
+      character(:), allocatable :: table
       integer :: i
 
       status = 0
@@ -120,7 +120,7 @@ contains
          simulation%bodies%interfaces%pairing, runs, trade, error)
       if (allocated(error)) status = error%status
       if (status == status_interrupted .and. size(trade%rows) > 0) then
-         ended_early = error%message//': the table contains only the '// &
+         trade%ended_early = error%message//': the table contains only the '// &
             counted(size(trade%rows), 'row')//' measured before'
          deallocate (error)
       end if
@@ -136,8 +136,10 @@ contains
       if (imbalanced_rows(trade) /= '') call print_line(error_unit, path//': warning: at the '// &
          'end of an increment heat is out of balance by more than 1 % of the largest rate '// &
          '(heat_imbalance_pointwise), left by the thermal scheme: '//imbalanced_rows(trade))
-      if (allocated(ended_early)) call print_error(path, ended_early)
-      if (allocated(ended_early)) return
+      if (allocated(trade%ended_early)) then
+         call print_error(path, trade%ended_early)
+         return
+      end if
       i = findloc(trade%rows%is_default, .true., dim=1)
       status = trade%rows(i)%status
       if (status /= 0) call print_error(path, 'the deck as written fails: '// &
@@ -368,8 +370,8 @@ contains
          if (allocated(record%iterations)) counts(2) = counts(2) + size(record%iterations)
          if (allocated(error)) return
          counts(1) = counts(1) + 1
-         if (record%heat_imbalance_pointwise > counts(3)) counts(3) = &
-            record%heat_imbalance_pointwise
+         if (ieee_is_finite(record%heat_imbalance_pointwise)) counts(3) = max(counts(3), &
+            record%heat_imbalance_pointwise)
       end associate
       instant = instant_at(self%instants, record%time)
       if (instant == 0) return
