@@ -92,7 +92,7 @@ def nafems_t3(place, time, length=0.1, conductivity=35.0, capacity=3.1716e6, per
 
 
 def largest_rate(conductivity, capacity, length, conductance, closing):
-    """Return the largest rate s of exp(s t) of two equal rods between walls of constant temperature.
+    """Return the largest rate s of exp(s t) of two equal rods between walls at given temperatures.
 
     The first does not expand. closing is the change of the conductance by a unit mean rise of the
     second rod, times the difference of the temperatures of the faces. With T = sinh(m x),

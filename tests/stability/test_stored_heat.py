@@ -166,8 +166,10 @@ MOST = 0.01
 
 
 def beyond(folder, kind, ratio):
-    """Return how far temperatures go below 0 and above 1 in any increment, and at the end, where two
-    sides of a square are at 1 from the start on; the smallest elements have h^2 = ratio kappa dt."""
+    """Return how far temperatures go below 0 and above 1 in any increment, and at the end.
+
+    Two sides of a square are at 1 from the start on; the smallest elements have h^2 = ratio kappa dt.
+    """
     spacings = math.sqrt(ratio * FOURIER / SHORT) * 1.3 ** np.arange(60)
     places = np.concatenate([[0.0], np.cumsum(spacings)])
     places = places[: np.searchsorted(places, 1.0) + 1] / places[np.searchsorted(places, 1.0)]
@@ -225,9 +227,11 @@ def states():
 
 
 def rod_course(folder, name, scheme, increment, pulse, period, cards=()):
-    """Return times, separations (gaps, or what presses, negative) and temperatures of the slave in a
-    course that begins in a steady state and with a pulse: its part of the hot end's temperature, and
-    how long it lasts."""
+    """Return times, separations and temperatures of the slave in a course from a steady state.
+
+    The course begins with a pulse: its part of the hot end's temperature, and how long it lasts.
+    Separations are gaps, or, where the rods press, by how much they are shortened, negative.
+    """
     copy = folder / "rods"
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(INPUT / "rods", copy)
@@ -237,7 +241,8 @@ def rod_course(folder, name, scheme, increment, pulse, period, cards=()):
     (copy / "rods.inc").write_text(model.replace(
         stored, f"{stored}*DENSITY\n1.\n*SPECIFIC HEAT\n{CAPACITY!r}\n"))
     text = (copy / f"{name}.inp").read_text()
-    text = text[:text.index("*VERIFY")].replace("*STEP", "".join(f"{c}\n" for c in cards) + "*STEP", 1)
+    more = "".join(f"{card}\n" for card in cards)
+    text = text[:text.index("*VERIFY")].replace("*STEP", more + "*STEP", 1)
     steps = []
     for part, seconds in (pulse, (0.0, period)):
         steps += ["*STEP, INC=100000", *scheme_cards(scheme),
@@ -317,5 +322,6 @@ def tables(folder):
 
 def test_stored_heat(tmp_path):
     """Of the orders those of two cases."""
-    check_rows([orders(tmp_path, ("constant conductance", "moving edge")), long_increments(tmp_path),
-                short_increments(tmp_path), end_states(tmp_path), rates(tmp_path)])
+    check_rows([orders(tmp_path, ("constant conductance", "moving edge")),
+                long_increments(tmp_path), short_increments(tmp_path), end_states(tmp_path),
+                rates(tmp_path)])

@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 import transient
 
 TITLE = "Transients"
-TEXT = """Bodies that store heat, with increments of one length and the default scheme, L-STABLE. Every
-row halves the elements and the increments of the row before.
+TEXT = """Bodies that store heat, with increments of one length and the default scheme, L-STABLE.
+Every row halves the elements and the increments of the row before.
 
 The tolerance is 0.1 (dt/t)^2 of the jump that the case is about, at the time t with increments dt.
 The scheme replaces exp(z) by exp(z) + 0.0404 z^3 for one increment, so that at t a mode that decays
@@ -26,7 +26,7 @@ FINENESS = [1, 2, 4]
 
 
 def allowed(part, level=1):
-    """Return the tolerance of the jump, where increments of fineness 1 are this part of the time."""
+    """Return the tolerance of a unit jump; increments of fineness 1 are this part of the time."""
     return 0.1 * (part / level) ** 2
 
 
