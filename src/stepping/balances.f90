@@ -30,6 +30,9 @@ module balances
    !> collects that of all nodes, for which the norm of T is.
    real(dp), parameter :: noise = 1.0e-6_dp
 
+   !> Part of the heat that bodies hold, over an increment, below which a rate is no scale.
+   real(dp), parameter :: content_noise = 1.0e-9_dp
+
    !> Displacement, in the extent of the model, below which it is no scale.
    real(dp), parameter :: least_strain = 1.0e-12_dp
 
@@ -80,7 +83,8 @@ contains
          scale = max(record%heat_in, record%heat_out, abs(sum(rates%crossing)), &
             maxval(abs(residual), mask=held), maxval(abs(rates%entering)), &
             noise*bodies%thermal%largest_entry*norm2(next%temperature), tiny(1.0_dp))
-         if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)))
+         if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)), &
+            content_noise*maxval(abs(data%equation%content_old))/data%equation%duration)
          if (allocated(data%equation%taken_up)) scale = max(scale, &
             maxval(abs(data%equation%taken_up))/data%equation%duration)
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)

@@ -315,15 +315,54 @@ def test_every_dataset_says_what_it_is_and_the_document_says_the_same(results):
                                  re.MULTILINE), path
 
 
+# A step that stores heat, of which strains take up a part.
+STRETCHED = """*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15
+*NODE, NSET=ALL
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPE4, ELSET=BODY
+1, 1, 2, 3, 4
+*MATERIAL, NAME=STEEL
+*ELASTIC
+2.1E11, 0.3
+*EXPANSION
+1.2E-5
+*CONDUCTIVITY
+50.
+*DENSITY
+7800.
+*SPECIFIC HEAT
+460.
+*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+ALL, 20.
+*STEP
+*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, DILATATION=YES
+0.5, 1.
+*BOUNDARY
+1, 1, 2
+2, 2
+4, 1
+*CLOAD
+3, 2, 1.E6
+*END STEP
+"""
+
+
 def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     """Names in the first columns of its tables are datasets, or attributes of /run."""
     shutil.copy(EXAMPLES / "press_fit.inp", tmp_path)
     shutil.copy(EXAMPLES / "press_fit.mesh", tmp_path)
     status, said = run(tmp_path / "press_fit.inp", "--accuracy", "1%")
     assert status == 0, said
+    (tmp_path / "stretched.inp").write_text(STRETCHED)
+    status, said = run(tmp_path / "stretched.inp")
+    assert status == 0, said
     names = set()
     for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
-                 tmp_path / "press_fit.vtkhdf"):
+                 tmp_path / "press_fit.vtkhdf", tmp_path / "stretched.vtkhdf"):
         with h5py.File(path) as file:
             names |= {name.rpartition("/")[2] for name in every_dataset(file)}
             names |= set(file["run"].attrs) if "run" in file else set()

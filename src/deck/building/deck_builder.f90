@@ -196,9 +196,14 @@ contains
       else if (.not. all(model%materials%has_expansion)) then
          call context%note('a material without *EXPANSION: coefficient 0')
       end if
+      if (any(model%materials%has_specific_heat) .and. .not. any(model%steps%is_transient)) call &
+         context%note('*SPECIFIC HEAT is ignored: no step stores heat')
       if (.not. any(solves_heat(model%steps%analysis))) return
       if (card_count(cards, 'THERMAL SCHEME') == 0) then
-         call context%note('no *THERMAL SCHEME: IMPLICIT')
+         if (any(model%steps%is_transient)) call context%note( &
+            'no *THERMAL SCHEME: L-STABLE where heat is stored')
+         if (any(solves_heat(model%steps%analysis) .and. .not. model%steps%is_transient)) call &
+            context%note('no *THERMAL SCHEME: IMPLICIT')
       end if
       if (size(model%contacts) == 0) return
       if (.not. any(model%steps%analysis == analysis_coupled)) return
