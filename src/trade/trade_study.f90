@@ -52,6 +52,7 @@ module trade_study
    type :: trade_type
       type(trade_row_type), allocatable :: rows(:)
       type(trade_row_type), allocatable :: left_out(:)  !! by --limit, with the reason
+      character(:), allocatable :: ended_early          !! why rows are missing; else unallocated
       real(dp), allocatable :: instants(:)              !! total times of comparison [time]
       integer, allocatable :: items(:)                  !! as from item_quantities
       real(dp) :: uncertainty(quantity_count) = absent  !! of the reference; absent: not judged

@@ -84,6 +84,7 @@ contains
          call say('left out by --limit: '//described(trade%left_out(i))//': '// &
             trade%left_out(i)%reason)
       end do
+      if (allocated(trade%ended_early)) call say(trade%ended_early)
       call say('')
       do i = 1, target_count
          call print_target(trade, i)
