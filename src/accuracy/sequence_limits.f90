@@ -4,7 +4,7 @@ module sequence_limits
    use kinds, only: dp
    implicit none
    private
-   public :: limit_type, extrapolate
+   public :: limit_type, extrapolate, halved
 
    real(dp), parameter :: rounding = 1.0e-11_dp   !! relative differences that are none
    real(dp), parameter :: slowest = 1.25_dp       !! ratio of differences; below it none is trusted
@@ -68,6 +68,19 @@ contains
          end associate
       end if
    end function extrapolate
+
+   !> The last of some entries, as far as each has half the size of the one before.
+   pure function halved(list, sizes) result(last)
+      integer, intent(in) :: list(:)       !! entries, the smallest size last
+      real(dp), intent(in) :: sizes(:)     !! of all entries
+      integer, allocatable :: last(:)
+      integer :: first
+
+      do first = size(list), 2, -1
+         if (abs(sizes(list(first - 1)) - 2.0_dp*sizes(list(first))) > 0.0_dp) exit
+      end do
+      last = list(max(first, 1):)
+   end function halved
 
    !> By which ratio the last differences fall; 0 where that is not steady.
    pure real(dp) function steady_ratio(differences) result(ratio)

@@ -2,7 +2,7 @@
 module trade_reference
    use kinds, only: dp
    use reported_quantities, only: traded
-   use sequence_limits, only: extrapolate, limit_type
+   use sequence_limits, only: extrapolate, halved, limit_type
    use trade_study, only: closed_length, is_there, quantity_count, trade_row_type, trade_type
    implicit none
    private
@@ -44,10 +44,8 @@ contains
       do q = 1, quantity_count
          is_of = spread(trade%items == q, 2, size(limits, 2)) .and. scales > 0.0_dp
          if (.not. any(is_of)) cycle
-         trade%uncertainty(q) = maxval(pack(limits%uncertainty, is_of)/pack(scales, is_of))
-         if (any(limits%differs .and. spread(trade%items == q, 2, size(limits, 2)))) then
-            trade%uncertainty(q) = whole
-         end if
+         trade%uncertainty(q) = merge(whole, maxval(pack(limits%uncertainty, is_of)/pack(scales, &
+            is_of)), any(limits%differs .and. spread(trade%items == q, 2, size(limits, 2))))
          do i = 1, size(trade%rows)
             if (trade%rows(i)%status == 0) trade%rows(i)%errors(q) = trade%uncertainty(q) + &
                maxval(distance(pack(trade%rows(i)%values, is_of), pack(limits%value, is_of), &
@@ -139,19 +137,6 @@ contains
       sequences = [meshes, increments, &
          merge([default, tight], [finest, finest], min(default, tight) > 0)]
    end subroutine find_sequences
-
-   !> The last of some rows, as far as each has half the size of the one before.
-   pure function halved(list, sizes) result(last)
-      integer, intent(in) :: list(:)       !! rows, the smallest size last
-      real(dp), intent(in) :: sizes(:)     !! of all rows
-      integer, allocatable :: last(:)
-      integer :: first
-
-      do first = size(list), 2, -1
-         if (abs(sizes(list(first - 1)) - 2.0_dp*sizes(list(first))) > 0.0_dp) exit
-      end do
-      last = list(max(first, 1):)
-   end function halved
 
    !> The limit of one number.
    pure function limit_of(values, m, base, quantity) result(limit)
