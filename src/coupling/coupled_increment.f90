@@ -216,9 +216,15 @@ contains
          end if
          ! Where all gains are below 1 in modulus, det(I - U') is positive.
          if (any(next%resting) .or. abs(gains%largest) >= 1.0_dp) then
-            if (is_unstable(bodies, heat, data, workspace, next)) call record%warn( &
-               'det(I - U'') is negative: the branch is unstable, and there are at least two '// &
-               'other solutions')
+            if (is_unstable(bodies, heat, data, workspace, next)) then
+               if (data%equation%duration > 0.0_dp) then
+                  call record%warn('det(I - U'') is negative: the increment is too long to '// &
+                     'show a mode that grows, the state does not last; take shorter increments')
+               else
+                  call record%warn('det(I - U'') is negative: the branch is unstable, and '// &
+                     'there are at least two other solutions')
+               end if
+            end if
          end if
       end associate
    end subroutine judge

@@ -111,6 +111,8 @@ contains
       type(increment_record_type), intent(inout) :: record
       real(dp) :: at_start
 
+      ! What a step that stores heat leaves over it stores.
+      if (data%equation%duration > 0.0_dp) return
       at_start = 0.0_dp
       if (data%equation%never_damps() .and. .not. data%before%keeps_imbalance) at_start = &
          start_imbalance(bodies, held, data%equation)

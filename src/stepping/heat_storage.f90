@@ -37,6 +37,7 @@ module heat_storage
       real(dp) :: duration = 0.0_dp                        !! dt of its equation [time]
       real(dp), allocatable :: temperature(:)              !! (nodes) T* of its equation
       real(dp), allocatable :: displacement(:)             !! (2 nodes) u* likewise
+      real(dp), allocatable :: jump(:)   !! (nodes) of temperatures where the step begins
       logical :: is_last = .true.                          !! whether the increment ends with it
    end type stage_type
 
