@@ -209,8 +209,8 @@ contains
          end if
          if (allocated(error)) then
             if (error%status == status_deck) then
-               ! A failure that only an increment shows is no mistake of the deck's cards; one without a
-               ! number failed as it was set up.
+               ! A failure that only an increment shows is no mistake of the deck's cards; one that
+               ! has no number yet failed as it was set up.
                if (record%increment == 0) call say_when(self, error)
                error%status = status_no_convergence
             end if
