@@ -131,7 +131,7 @@ contains
       rhs(self%link_force) = -stiffness*stretch
    end function load
 
-   !> What scales the links, k: the smallest stiffness of the nodes that they join.
+   !> Scale of the links, k: the smallest stiffness of the nodes that they join.
    pure function link_stiffness(self, matrix) result(stiffness)
       class(linear_constraints_type), intent(in) :: self
       type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) of the bodies

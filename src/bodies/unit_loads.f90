@@ -238,7 +238,7 @@ contains
       end select
    end function turning_forces
 
-   !> What an integral over a side of an element, or over all of it, needs.
+   !> Data of an integral over a side of an element, or over all of it.
    pure subroutine find_domain(model, element, side, nodes, x, thickness, round)
       type(model_type), intent(in) :: model
       integer, intent(in) :: element, side                 !! side 0 for the whole element

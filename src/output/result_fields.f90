@@ -46,7 +46,7 @@ module result_fields
       'first row of the cell data of the time']
    integer, parameter :: step_widths(6) = [0, 0, 1, 0, 0, 0]
 
-   !> What grows in a grid.
+   !> Growing parts of a grid.
    type :: vtk_grid_type
       type(quantity_type), allocatable :: point_data(:)
       type(quantity_type), allocatable :: cell_data(:)

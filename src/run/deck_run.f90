@@ -94,7 +94,7 @@ contains
          output => self%output)
          if (allocated(rounds%variation)) output%kept_round = size(rounds%accuracy%rounds)
          outcome%keeps_round = output%kept_round > 0
-         ! What the round before left to be desired counts no longer.
+         ! Shortcomings of the round before count no longer.
          outcome%known_to = 0.0_dp
          if (allocated(outcome%reason)) deallocate (outcome%reason)
          if (outcome%keeps_round .and. .not. self%command%quiet) call self%end%prepare_summary( &
@@ -209,8 +209,8 @@ contains
          end if
          if (allocated(error)) then
             if (error%status == status_deck) then
-               ! What only an increment shows is no mistake of the deck's cards; one that has no
-               ! number yet failed as it was set up.
+               ! A failure that only an increment shows is no mistake of the deck's cards; one that
+               ! has no number yet failed as it was set up.
                if (record%increment == 0) call say_when(self, error)
                error%status = status_no_convergence
             end if

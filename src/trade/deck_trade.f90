@@ -50,7 +50,7 @@ module deck_trade
    real(dp), parameter :: patience = 5.0_dp        !! a run may take so many times the limit
    real(dp), parameter :: least_patience = 20.0_dp !! and this [s]
 
-   !> What is known of a row, in memory that its process shares, taken as its increments come.
+   !> Values of a row, in memory that its process shares, taken as its increments come.
    type, extends(increment_taker_type) :: row_values_type
       real(dp), allocatable :: instants(:)   !! total times of comparison [time]
       integer, allocatable :: nodes(:)       !! indexes of nodes whose temperature is compared
