@@ -136,7 +136,7 @@ def thermal_cycling():
 def warm_blocks():
     """Two blocks 20 long and 8 high, 0.036 apart."""
     heights = spaced(0.0, 8.0, 2)
-    return block("HOT", spaced(-20.0, 0.0, 10), heights, 1, "CPE8", "RIGHT") + block(
+    return block("HOT", spaced(-20.0, 0.0, 14, 20.0), heights, 1, "CPE8", "RIGHT") + block(
         "COLD", spaced(0.036, 20.036, 10), heights, 1001, "CPE8", "LEFT")
 
 

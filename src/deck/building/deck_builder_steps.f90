@@ -70,18 +70,7 @@ contains
                call begin_step(card, before, context, report, model%steps(n))
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
-               counts%analyses = counts%analyses + 1
-               if (counts%analyses > 1) call report%error(card%place, &
-                  'a second analysis in one step')
-               counts%is_uncoupled = card%name(1:2) == 'UN'
-               if (n == 0) cycle
-               context%analysis_place(n) = card%place
-               call build_analysis(cards, card, n, context, report, model%steps(n))
-               if (model%steps(n)%is_transient .and. .not. counts%says_course) then
-                  model%steps(n)%ramped = .false.
-                  call context%note('*'//card%name//' without STEADY STATE: loads without an '// &
-                     'amplitude act at once; *STEP, AMPLITUDE=RAMP ramps them')
-               end if
+               call begin_analysis(cards, card, n, counts, context, report, model%steps)
             case ('END STEP')
                if (counts%analyses > 0) cycle
                context%analyses_sound = .false.
@@ -110,15 +99,23 @@ contains
                end if
             end select
          end associate
-         if (n > 0) then
-            model%steps(n)%step_controls_type = controls
-            if (model%steps(n)%is_transient .and. .not. has_scheme) model%steps(n)%scheme = &
-               l_stable_scheme
-            if (counts%is_uncoupled .and. .not. has_scheme) model%steps(n)%scheme = explicit_scheme
-         end if
+         if (n > 0) call take_controls(controls, has_scheme, counts%is_uncoupled, model%steps(n))
       end do
       call warn_of_nlgeom(cards, report, model%steps)
    end subroutine build_steps
+
+   !> Controls stay from step to step; transients have a scheme of their own until the deck names one.
+   subroutine take_controls(controls, has_scheme, is_uncoupled, step)
+      type(step_controls_type), intent(in) :: controls
+      logical, intent(in) :: has_scheme     !! whether *THERMAL SCHEME was there
+      logical, intent(in) :: is_uncoupled   !! *UNCOUPLED TEMPERATURE-DISPLACEMENT
+      type(step_type), intent(inout) :: step
+
+      step%step_controls_type = controls
+      if (has_scheme) return
+      if (step%is_transient) step%scheme = l_stable_scheme
+      if (is_uncoupled) step%scheme = explicit_scheme
+   end subroutine take_controls
 
    !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
    subroutine warn_of_nlgeom(cards, report, steps)
@@ -189,6 +186,29 @@ contains
       if (allocated(before%element_prints)) step%element_prints = before%element_prints
       step%nlgeom = is_on(card, 'NLGEOM', report)
    end subroutine begin_step
+
+   !> Reads the analysis of step n, the only one that it may have.
+   subroutine begin_analysis(cards, card, n, counts, context, report, steps)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: n   !! number of the step, 0 before the first
+      type(card_counts_type), intent(inout) :: counts
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      type(step_type), intent(inout) :: steps(:)
+
+      counts%analyses = counts%analyses + 1
+      if (counts%analyses > 1) call report%error(card%place, 'a second analysis in one step')
+      counts%is_uncoupled = card%name(1:2) == 'UN'
+      if (n == 0) return
+      context%analysis_place(n) = card%place
+      call build_analysis(cards, card, n, context, report, steps(n))
+      if (steps(n)%is_transient .and. .not. counts%says_course) then
+         steps(n)%ramped = .false.
+         call context%note('*'//card%name//' without STEADY STATE: loads without an amplitude '// &
+            'act at once; *STEP, AMPLITUDE=RAMP ramps them')
+      end if
+   end subroutine begin_analysis
 
    !> Reads *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
    subroutine build_analysis(cards, card, n, context, report, step)
