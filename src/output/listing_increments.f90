@@ -49,7 +49,7 @@ contains
          history_line(needs_coupling, record)
    end subroutine print_increment
 
-   !> Prints the attempts at an increment that failed.
+   !> Prints the attempts at an increment that are not kept.
    subroutine print_attempts(unit, attempts)
       integer, intent(in) :: unit                            !! unit of the listing
       type(attempt_record_type), intent(in) :: attempts(:)   !! these, in their order
@@ -58,7 +58,7 @@ contains
       do i = 1, size(attempts)
          call print_wrapped(unit, '   ', 'attempt '//to_text(i)//' of size '// &
             to_text(attempts(i)%increment_size)//', to time '//to_text(attempts(i)%time)// &
-            ', failed: '//attempts(i)%reason)
+            ', not kept: '//attempts(i)%reason)
       end do
    end subroutine print_attempts
 

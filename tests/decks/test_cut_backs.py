@@ -84,7 +84,7 @@ def test_every_attempt_is_on_record(deck):
     assert [int(row[7]) for row in rows] == passes["cut_backs"].tolist()
     assert [int(row[0]) for row in rows] == passes["increment"].tolist()
     listing = result.with_suffix(".lst").read_text()
-    assert len(re.findall(r"^ +attempt \d+ of size .* failed: the conductance", listing, re.M)) \
+    assert len(re.findall(r"^ +attempt \d+ of size .* not kept: the conductance", listing, re.M)) \
         == cuts.sum()
     assert "attempt 1 of size 1, to time 1, failed" in listing
     blocks = re.findall(r"iterations (\d+) +cut-backs (\d+)", listing)
