@@ -14,9 +14,11 @@ module reduced_bodies
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use loads, only: loads_type
-   use materials, only: heat_capacity
+   use materials, only: follows_temperature, heat_capacity, properties_type
    use model, only: model_type
    use held_points, only: held_directions
+   use point_materials, only: point_material_type, point_materials_type
+   use point_rules, only: integration_rules
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
@@ -46,6 +48,10 @@ module reduced_bodies
       real(dp), allocatable :: initial_force(:)               !! (2 nodes) of stresses, or none
       type(equilibrium_reduction_type) :: equilibrium         !! the partial solution of (2.4)
       real(dp) :: largest_expansion = 0.0_dp !! of all bodies [1/temperature]
+      ! Where properties follow temperatures: those that the operators were formed with.
+      real(dp), allocatable :: operators_at(:)                   !! (nodes) [temperature]
+      type(point_material_type), allocatable :: materials(:)     !! at integration points
+      real(dp), allocatable :: heat_capacity(:)                  !! (elements) rho c
       real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
@@ -61,6 +67,7 @@ module reduced_bodies
       procedure :: number
       procedure :: assemble_steps
       procedure :: assemble
+      procedure :: form_operators
       procedure :: reduce
    end type reduced_bodies_type
 
@@ -253,18 +260,63 @@ contains
       logical, intent(in) :: with_heat                       !! whether any step solves heat
       logical, intent(in) :: with_strain !! whether temperatures strain the bodies in any step
 
-      if (with_mechanics) call self%mechanical%set_matrix(assemble_stiffness(model%mesh, &
-         model%sections, model%materials, model%orientations))
       if (with_mechanics .and. allocated(model%mesh%initial_stress)) self%initial_force = &
          assemble_initial_force(model%mesh, model%sections)
-      if (with_strain) self%thermal_load = assemble_thermal_load(model%mesh, model%sections, &
-         model%materials, model%orientations)
-      if (with_heat) call self%thermal%set_matrix(assemble_conduction(model%mesh, model%sections, &
-         model%materials, model%orientations))
-      if (any(model%steps%is_transient)) self%capacity = assemble_capacity(model%mesh, &
-         model%sections, heat_capacity(model%materials(model%sections(model%mesh% &
-         element_section)%material)))
+      call self%form_operators(model, model%initial_temperature, with_mechanics, with_heat, &
+         with_strain)
       if (any(model%steps%dilates)) call self%dilatation%prepare(model)
    end subroutine assemble
+
+   !> Forms the operators with the properties at given temperatures. Their reductions do not serve
+   !> any more.
+   subroutine form_operators(self, model, temperature, with_mechanics, with_heat, with_strain)
+      class(reduced_bodies_type), intent(inout) :: self !! prepared
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      logical, intent(in) :: with_mechanics, with_heat, with_strain   !! as in assemble
+      type(point_materials_type) :: points
+      logical :: follows
+
+      associate (mesh => model%mesh, sections => model%sections, materials => model%materials)
+         points%has_inverses = .false.
+         call points%place(mesh, sections, materials, model%orientations, integration_rules())
+         follows = any(follows_temperature(materials(sections%material)))
+         if (follows) then
+            call points%set_temperature(mesh, sections, materials, model%orientations, &
+               temperature, model%initial_temperature)
+            self%operators_at = temperature
+         end if
+         if (with_mechanics) call self%mechanical%set_matrix(assemble_stiffness(mesh, sections, &
+            points))
+         if (with_strain) self%thermal_load = assemble_thermal_load(mesh, sections, points)
+         if (with_heat) call self%thermal%set_matrix(assemble_conduction(mesh, sections, points))
+         if (any(model%steps%is_transient)) then
+            self%heat_capacity = capacities(model, temperature)
+            self%capacity = assemble_capacity(mesh, sections, self%heat_capacity)
+         end if
+         if (follows) call move_alloc(points%materials, self%materials)
+      end associate
+   end subroutine form_operators
+
+   !> rho c of the elements at the means of temperatures of their nodes.
+   pure function capacities(model, temperature) result(capacity)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)
+      real(dp) :: capacity(size(model%mesh%element_kind))
+      type(properties_type) :: properties
+      integer :: e
+
+      do e = 1, size(capacity)
+         associate (material => model%materials(model%sections(model%mesh%element_section(e))% &
+            material), nodes => model%mesh%element_nodes(:element_node_count( &
+            model%mesh%element_kind(e)), e))
+            capacity(e) = heat_capacity(material)
+            if (.not. follows_temperature(material)) cycle
+            properties = material%properties_type
+            call material%set_to(sum(temperature(nodes))/size(nodes), properties)
+            capacity(e) = heat_capacity(properties)
+         end associate
+      end do
+   end function capacities
 
 end module reduced_bodies

@@ -122,10 +122,11 @@ contains
    end function kept_contact
 
    !> Nodal forces of the stresses that the bodies have without strains: of temperatures, and the
-   !> initial ones.
-   pure function unstrained_forces(bodies, warming) result(forces)
+   !> initial ones; and what the stiffness has beyond the bodies.
+   pure function unstrained_forces(bodies, warming, excess) result(forces)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: warming(:)         !! (nodes) since the initial state [temperature]
+      real(dp), allocatable, intent(in) :: excess(:)            !! (2 nodes), or none [force]
       real(dp) :: forces(2*size(warming))                       !! (2 nodes) [force]
 
       forces = 0.0_dp
@@ -133,6 +134,7 @@ contains
          forces = bodies%thermal_load%multiply(warming)
       end if
       if (allocated(bodies%initial_force)) forces = forces + bodies%initial_force
+      if (allocated(excess)) forces = forces + excess
    end function unstrained_forces
 
    !> Relative change of omega by a few units in the last place of the displacements, and at

@@ -52,7 +52,10 @@ contains
       workspace%resolves_edge = any(bodies%points%resolves_edge) .and. &
          .not. data%equation%takes_past_conductance()
       next%omega_before = data%equation%omega_old
-      if (data%start%kind == start_both) then
+      if (allocated(data%omega_start)) then
+         next%omega = data%omega_start
+         call iterate(bodies, heat, data%fixed_point, data, workspace, next, error)
+      else if (data%start%kind == start_both) then
          call solve_from_both(bodies, heat, data, workspace, next, error)
       else
          next%omega = starting_conductance(bodies, heat, data%start%kind, data)

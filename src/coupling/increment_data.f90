@@ -7,6 +7,7 @@ module increment_data
    use field_problem, only: field_load_type, solved_loads_type
    use fixed_point, only: pass_type
    use kinds, only: dp
+   use load_histories, only: step_clock_type
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use dense, only: tail_factors_type
@@ -14,7 +15,7 @@ module increment_data
    use thermal_matrix, only: heat_equation_type
    implicit none
    private
-   public :: contact_scales_type, increment_data_type, increment_workspace_type
+   public :: contact_scales_type, increment_data_type, increment_workspace_type, stage_type
 
    !> Largest values of an increment, by which gaps and pressures are small.
    type :: contact_scales_type
@@ -35,6 +36,8 @@ module increment_data
       logical, allocatable :: resting(:)             !! (m) contact points that rest
       type(edge_heat_type) :: edge   !! heat at edges; none where (3.4) takes past conductances
       real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
+      !> (m) omega*^0 where the increment was solved before with other corrections of its operators
+      real(dp), allocatable :: omega_start(:)
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
       real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
@@ -42,6 +45,20 @@ module increment_data
       real(dp), allocatable :: welded_mean(:)
       type(contact_scales_type) :: scales            !! set where heat and mechanics are coupled
    end type increment_data_type
+
+   !> A stage of an increment.
+   type :: stage_type
+      type(step_clock_type) :: clock = step_clock_type()   !! its end
+      real(dp) :: size = 0.0_dp                            !! from the end of the one before [time]
+      real(dp) :: duration = 0.0_dp                        !! dt of its equation [time]
+      real(dp), allocatable :: temperature(:)              !! (nodes) T* of its equation
+      real(dp), allocatable :: displacement(:)             !! (2 nodes) u* likewise
+      !> (nodes) heat contents likewise, where properties follow temperatures [energy]
+      real(dp), allocatable :: content(:)
+      real(dp), allocatable :: jump(:)   !! (nodes) of temperatures where the step begins
+      logical :: dilates = .false.                         !! whether strains take up heat
+      logical :: is_last = .true.                          !! whether the increment ends with it
+   end type stage_type
 
    !> Workspace of a trial solution; only its own increment changes it.
    type :: increment_workspace_type

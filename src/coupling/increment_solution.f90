@@ -299,7 +299,8 @@ contains
       real(dp), allocatable, intent(out) :: welded_load(:)
       real(dp) :: thermal(2*size(next%temperature))
 
-      thermal = unstrained_forces(bodies, next%temperature - loads%temperature%rest)
+      thermal = unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
+         next%force_excess)
       workspace%force = bodies%equilibrium%load_of(bodies%mechanical, &
          next%force_load + thermal, loads%displacement%value)
       call bodies%equilibrium%condense_load(bodies%mechanical, workspace%force, &
@@ -333,7 +334,8 @@ contains
       if (bodies%is_coupled) then
          call add_jumps(bodies, heat, workspace, next%temperature)
          workspace%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
-            unstrained_forces(bodies, next%temperature - loads%temperature%rest), &
+            unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
+            next%force_excess), &
             loads%displacement%value)
       end if
       allocate (on_tail(bodies%mechanical%map%tail))

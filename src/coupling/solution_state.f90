@@ -32,6 +32,12 @@ module solution_state
       !> Lowest and highest temperature of the transient step so far [temperature]
       real(dp), allocatable :: extremes(:)
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
+      !> (2 nodes) what the stiffness has beyond the bodies; none where it follows them [force]
+      real(dp), allocatable :: force_excess(:)
+      ! The next three where properties follow temperatures.
+      real(dp), allocatable :: operators_at(:)      !! (nodes) temperatures of the operators
+      !> (4 nodes) corrections of the operators by corrections_type, now and an increment earlier
+      real(dp), allocatable :: corrections(:), corrections_before(:)
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
       logical :: has_mechanics = .false.            !! whether mechanics was ever solved
       !> Whether the last increment solved heat by a scheme that keeps an imbalance for ever.
@@ -110,6 +116,9 @@ contains
       call reals(self, 'jump', state%jump)
       call reals(self, 'temperature', state%temperature)
       call reals(self, 'stored', state%stored)
+      call reals(self, 'operators_at', state%operators_at)
+      call reals(self, 'corrections', state%corrections)
+      call reals(self, 'corrections_before', state%corrections_before)
       call reals(self, 'extremes', state%extremes)
       call reals(self, 'displacement', state%displacement)
       call reals(self, 'stress_temperature', state%stress_temperature)

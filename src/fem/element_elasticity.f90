@@ -12,7 +12,7 @@ module element_elasticity
    use field_recovery, only: recovery_rules
    use kinds, only: dp
    use mesh, only: mesh_type
-   use point_fields, only: point_rule_type
+   use point_rules, only: point_rule_type
    use quadrature, only: integration_rule, point_count
    use shape_functions, only: element_gradients, element_shape
    implicit none

@@ -14,10 +14,10 @@ module field_recovery
    use kinds, only: dp
    use materials, only: material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
-   use point_fields, only: integration_rules, most => most_field_points, point_fields_type, &
-      point_rule, point_rule_type
-   use quadrature, only: load_point_count, load_rule, recovery_count, recovery_points, &
-      recovery_weights
+   use point_fields, only: point_fields_type
+   use point_rules, only: integration_rules, load_rules, most => most_points_of_rule, point_rule, &
+      point_rule_type
+   use quadrature, only: recovery_count, recovery_points, recovery_weights
    use shape_functions, only: node_position
    implicit none
    private
@@ -199,16 +199,11 @@ contains
    pure function error_rules() result(rules)
       type(point_rule_type) :: rules(kind_count)   !! by kind; weights sum to 4 (square) or 1/2
       integer, parameter :: higher(3) = [quad8, quad8_reduced, triangle6]
-      real(dp) :: points(2, most), weights(most)
-      integer :: i
+      type(point_rule_type) :: of_loads(kind_count)
 
       rules = integration_rules()
-      do i = 1, size(higher)
-         associate (n => load_point_count(higher(i)))
-            call load_rule(higher(i), points(:, :n), weights(:n))
-            rules(higher(i)) = point_rule(higher(i), points(:, :n), weights(:n))
-         end associate
-      end do
+      of_loads = load_rules()
+      rules(higher) = of_loads(higher)
    end function error_rules
 
    !> The integrals of stress over two points of an element.

@@ -5,56 +5,29 @@
 !> weight.
 module point_fields
    use element_integrals, only: area_factor
-   use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain, &
-      plane_stress, quad4
+   use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4
    use kinds, only: dp
-   use materials, only: material_axes, material_type, orientation_type, section_type
+   use materials, only: material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
-   use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
-   use quadrature, only: integration_rule, point_count
-   use shape_functions, only: element_gradients, element_shape, node_position
+   use point_materials, only: point_material_type, point_materials_type
+   use point_rules, only: most => most_points_of_rule, point_rule_type
    implicit none
    private
-   public :: point_fields_type, point_rule_type, point_rule, point_material_type
-   public :: integration_rules, most_field_points
-
-   integer, parameter :: most_field_points = 10  !! of an element, made even
-   integer, parameter :: most = most_field_points
-
-   !> Points of a kind of element, with what its shape functions are there.
-   type :: point_rule_type
-      integer :: count = 0                         !! number of points
-      integer :: nodes = 0                         !! nodes of the kind
-      real(dp) :: weight(most) = 0.0_dp            !! sum 4 (square) or 1/2 (triangle)
-      real(dp) :: shape(most, nodes_per_element) = 0.0_dp      !! (points, nodes) psi
-      real(dp) :: slope_xi(most, nodes_per_element) = 0.0_dp   !! d psi/d xi
-      real(dp) :: slope_eta(most, nodes_per_element) = 0.0_dp  !! d psi/d eta
-   end type point_rule_type
-
-   !> A material at a point, along x, y and z.
-   type :: point_material_type
-      real(dp) :: elasticity(4, 4) = 0.0_dp        !! condensed in plane stress [stress]
-      real(dp) :: thermal_modulus(4) = 0.0_dp      !! [stress/temperature]
-      real(dp) :: compliance(4, 4) = 0.0_dp        !! inverse of all of E; 0 without it [1/stress]
-      real(dp) :: conductivity(2, 2) = 0.0_dp      !! [power/(length temperature)]
-      real(dp) :: resistivity(2, 2) = 0.0_dp       !! its inverse; 0 without it
-   end type point_material_type
+   public :: point_fields_type
 
    !> The points of all elements.
-   type :: point_fields_type
-      type(point_rule_type) :: rules(kind_count)         !! by the kind of the element
+   type, extends(point_materials_type) :: point_fields_type
       integer, allocatable :: first(:)                   !! (elements + 1) first point of each
       !> (4, points) d xi/dx, d eta/dx, d xi/dy, d eta/dy [1/length]
       real(dp), allocatable :: inverse(:, :)
       real(dp), allocatable :: volume(:)                 !! (points) that each stands for [length^3]
-      type(point_material_type), allocatable :: materials(:)
-      integer, allocatable :: material(:)                !! (elements) first of its materials
-      logical, allocatable :: one_material(:)            !! (elements) one for all of its points
    contains
       procedure :: prepare
       procedure :: positions
       procedure :: stress
       procedure :: heat_flux
+      procedure :: nodal_forces
+      procedure :: nodal_heat
    end type point_fields_type
 
 contains
@@ -69,7 +42,7 @@ contains
       type(point_rule_type), intent(in) :: rules(:)         !! (kinds) points of each kind
       integer :: e, n
 
-      self%rules = rules
+      call self%place(mesh, sections, materials, orientations, rules)
       n = size(mesh%element_kind)
       allocate (self%first(n + 1), source=1)
       do e = 1, n
@@ -84,43 +57,7 @@ contains
                self%volume(self%first(e):))
          end associate
       end do
-      call place_materials(self, mesh, sections, materials, orientations)
    end subroutine prepare
-
-   !> Points of a kind of element, with its shape functions there.
-   pure function point_rule(kind, points, weights) result(rule)
-      integer, intent(in) :: kind
-      real(dp), intent(in) :: points(:, :)   !! (2, points) xi, eta
-      real(dp), intent(in) :: weights(:)     !! (points)
-      type(point_rule_type) :: rule
-      real(dp) :: slope(2, element_node_count(kind)), jacobian
-      integer :: g
-
-      rule%nodes = element_node_count(kind)
-      rule%count = size(weights)
-      rule%weight(:rule%count) = weights
-      do g = 1, rule%count
-         rule%shape(g, :rule%nodes) = element_shape(kind, points(:, g))
-         ! In the reference element x is xi and y is eta.
-         call element_gradients(kind, node_position(kind), points(:, g), slope, jacobian)
-         rule%slope_xi(g, :rule%nodes) = slope(1, :)
-         rule%slope_eta(g, :rule%nodes) = slope(2, :)
-      end do
-   end function point_rule
-
-   !> Integration points of every kind of element.
-   pure function integration_rules() result(rules)
-      type(point_rule_type) :: rules(kind_count)
-      real(dp) :: points(2, most), weights(most)
-      integer :: kind
-
-      do kind = 1, kind_count
-         associate (n => point_count(kind))
-            call integration_rule(kind, points(:, :n), weights(:n))
-            rules(kind) = point_rule(kind, points(:, :n), weights(:n))
-         end associate
-      end do
-   end function integration_rules
 
    pure subroutine map_points(rule, coordinates, thickness, is_axisymmetric, inverse, volume)
       type(point_rule_type), intent(in) :: rule
@@ -141,78 +78,6 @@ contains
          volume(g) = rule%weight(g)*jacobian*area_factor(radius, thickness, is_axisymmetric)
       end do
    end subroutine map_points
-
-   !> One material for a section and plane, or one a point where axes may turn.
-   pure subroutine place_materials(self, mesh, sections, materials, orientations)
-      class(point_fields_type), intent(inout) :: self
-      type(mesh_type), intent(in) :: mesh
-      type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(orientation_type), intent(in) :: orientations(:)
-      integer :: shared(size(sections), axisymmetric), e, g, n, pass
-      real(dp) :: axes(2, 2), position(2)
-
-      allocate (self%material(size(mesh%element_kind)))
-      self%one_material = sections(mesh%element_section)%orientation == 0
-      ! First counted, then made.
-      do pass = 1, 2
-         shared = 0
-         n = 0
-         do e = 1, size(self%material)
-            associate (s => mesh%element_section(e), plane => mesh%element_plane(e), &
-               rule => self%rules(mesh%element_kind(e)), &
-               nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
-               if (self%one_material(e) .and. shared(s, plane) > 0) then
-                  self%material(e) = shared(s, plane)
-                  cycle
-               end if
-               self%material(e) = n + 1
-               if (self%one_material(e)) shared(s, plane) = n + 1
-               do g = 1, merge(1, rule%count, self%one_material(e))
-                  n = n + 1
-                  if (pass == 1) cycle
-                  position = matmul(mesh%coordinates(:, nodes), rule%shape(g, :rule%nodes))
-                  axes = material_axes(orientations, sections(s)%orientation, position)
-                  associate (material => materials(sections(s)%material), &
-                     there => self%materials(n))
-                     there%elasticity = elasticity_in(plane, material, axes)
-                     there%thermal_modulus = thermal_modulus_in(plane, material, axes)
-                     ! Not condensed: with sigma_zz = 0 its energy is that of plane stress, too.
-                     there%compliance = inverse_of(elasticity_in(plane_strain, material, axes))
-                     there%conductivity = conductivity_in(material, axes)
-                     there%resistivity = inverse_of(there%conductivity)
-                  end associate
-               end do
-            end associate
-         end do
-         if (pass == 1) allocate (self%materials(n))
-      end do
-   end subroutine place_materials
-
-   !> Inverse of a symmetric positive definite matrix; zero where it is not.
-   pure function inverse_of(matrix) result(inverse)
-      real(dp), intent(in) :: matrix(:, :)
-      real(dp) :: inverse(size(matrix, 1), size(matrix, 1))
-      real(dp) :: pivot, column(size(matrix, 1))
-      integer :: i, k
-
-      ! Gauss-Jordan in place.
-      inverse = matrix
-      do k = 1, size(matrix, 1)
-         pivot = inverse(k, k)
-         if (.not. pivot > 0.0_dp) then
-            inverse = 0.0_dp
-            return
-         end if
-         column = inverse(:, k)
-         inverse(:, k) = 0.0_dp
-         inverse(k, k) = 1.0_dp
-         inverse(k, :) = inverse(k, :)/pivot
-         do i = 1, size(matrix, 1)
-            if (i /= k) inverse(i, :) = inverse(i, :) - column(i)*inverse(k, :)
-         end do
-      end do
-   end function inverse_of
 
    !> Where the points of an element lie.
    pure function positions(self, mesh, element)
@@ -261,6 +126,12 @@ contains
                strain(g + 1, :)) - self%materials(i + 1)%thermal_modulus*warmth(g + 1)
             i = i + 2
          end do
+         if (.not. self%one_material(element)) then
+            do g = 1, n
+               values(g, :) = values(g, :) - &
+                  self%materials(self%at_point(element, g))%thermal_stress
+            end do
+         end if
          if (.not. allocated(mesh%initial_stress)) return
          do g = 1, n
             values(g, :) = values(g, :) + mesh%initial_stress(:, element)
@@ -293,22 +164,84 @@ contains
       real(dp), intent(in) :: temperature(:)         !! (nodes) [temperature]
       real(dp), intent(inout) :: values(most, 2)     !! its points first; x, y [power/length^2]
       real(dp) :: fall(most, 2), t(nodes_per_element), k(2, 2)
-      integer :: g, i, q
+      integer :: g, q
 
       associate (rule => self%rules(mesh%element_kind(element)))
          do q = 1, rule%nodes
             t(q) = temperature(mesh%element_nodes(q, element))
          end do
          call find_fall(rule, self%inverse(:, self%first(element)), t, fall)
-         i = self%material(element)
-         k = self%materials(i)%conductivity
          do g = 1, rule%count
-            if (.not. self%one_material(element)) k = self%materials(i - 1 + g)%conductivity
+            k = self%materials(self%at_point(element, g))%conductivity
             values(g, 1) = k(1, 1)*fall(g, 1) + k(1, 2)*fall(g, 2)
             values(g, 2) = k(2, 1)*fall(g, 1) + k(2, 2)*fall(g, 2)
          end do
       end associate
    end subroutine heat_flux
+
+   !> Nodal forces that stresses of an element balance: the integral of B^T sigma, B as in
+   !> element_elasticity.
+   pure function nodal_forces(self, mesh, element, stress) result(forces)
+      class(point_fields_type), intent(in) :: self   !! points of integration_rules
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                 !! which element
+      real(dp), intent(in) :: stress(most, 4)        !! its points first; xx, yy, zz, xy [stress]
+      real(dp) :: forces(2, nodes_per_element)       !! x, y of its nodes [force]
+      real(dp) :: s(most, 4), slope(2), radius
+      integer :: g, q
+
+      associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
+         first => self%first(element), nodes => mesh%element_nodes(:, element), &
+         rule => self%rules(mesh%element_kind(element)))
+         s = stress
+         ! The transpose of a mean dilatation is a mean of the pressure.
+         if (kind == quad4 .and. plane /= plane_stress) call set_mean_dilatation( &
+            self%volume(first:first + rule%count - 1), s)
+         forces = 0.0_dp
+         do g = 1, rule%count
+            s(g, :) = self%volume(first + g - 1)*s(g, :)
+            radius = dot_product(rule%shape(g, :rule%nodes), mesh%coordinates(1, &
+               nodes(:rule%nodes)))
+            do q = 1, rule%nodes
+               slope = slope_of(rule, self%inverse(:, first + g - 1), g, q)
+               forces(:, q) = forces(:, q) + [slope(1)*s(g, 1) + slope(2)*s(g, 4), &
+                  slope(2)*s(g, 2) + slope(1)*s(g, 4)]
+               if (plane == axisymmetric) forces(1, q) = forces(1, q) + &
+                  rule%shape(g, q)/radius*s(g, 3)
+            end do
+         end do
+      end associate
+   end function nodal_forces
+
+   !> Heat that fluxes of an element take from its nodes: minus the integral of grad psi q.
+   pure function nodal_heat(self, mesh, element, flux) result(heat)
+      class(point_fields_type), intent(in) :: self   !! points of integration_rules
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                 !! which element
+      real(dp), intent(in) :: flux(most, 2)          !! its points first; x, y [power/length^2]
+      real(dp) :: heat(nodes_per_element)            !! of its nodes [power]
+      integer :: g, q
+
+      heat = 0.0_dp
+      associate (first => self%first(element), rule => self%rules(mesh%element_kind(element)))
+         do g = 1, rule%count
+            do q = 1, rule%nodes
+               heat(q) = heat(q) - self%volume(first + g - 1)*dot_product( &
+                  slope_of(rule, self%inverse(:, first + g - 1), g, q), flux(g, :))
+            end do
+         end do
+      end associate
+   end function nodal_heat
+
+   !> d psi^q/dx and d psi^q/dy at a point.
+   pure function slope_of(rule, inverse, g, q) result(slope)
+      type(point_rule_type), intent(in) :: rule
+      real(dp), intent(in) :: inverse(4)
+      integer, intent(in) :: g, q
+      real(dp) :: slope(2)
+
+      slope = rule%slope_xi(g, q)*inverse(1:3:2) + rule%slope_eta(g, q)*inverse(2:4:2)
+   end function slope_of
 
    !> Strains, but for zz, which is zero, and the temperature.
    pure subroutine find_strains(rule, inverse, u, strain, warmth)

@@ -3,42 +3,18 @@
 module point_properties
    use element_kinds, only: plane_stress
    use kinds, only: dp
-   use materials, only: material_axes, material_type, orientation_type, strain_rotation
-   use quadrature, only: integration_rule, point_count
-   use shape_functions, only: element_shape
+   use materials, only: properties_type, strain_rotation
    implicit none
    private
-   public :: elasticity_in, thermal_modulus_in, conductivity_in, axes_at_points, along_axes
+   public :: elasticity_in, thermal_modulus_in, conductivity_in, along_axes
 
 contains
-
-   !> Axes 1 and 2 of the material at the integration points of an element, as columns; x and y only
-   !> once.
-   pure function axes_at_points(kind, coordinates, orientations, orientation) result(axes)
-      integer, intent(in) :: kind                             !! kind of the element
-      real(dp), intent(in) :: coordinates(:, :)               !! (2, nodes of the kind) [length]
-      type(orientation_type), intent(in) :: orientations(:)   !! all orientations
-      integer, intent(in) :: orientation                      !! which, or 0 for x and y
-      real(dp) :: axes(2, 2, merge(point_count(kind), 1, orientation > 0))
-      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
-      integer :: g
-
-      if (orientation == 0) then
-         axes(:, :, 1) = material_axes(orientations, orientation, [0.0_dp, 0.0_dp])
-         return
-      end if
-      call integration_rule(kind, points, weights)
-      do g = 1, size(axes, 3)
-         axes(:, :, g) = material_axes(orientations, orientation, &
-            matmul(coordinates, element_shape(kind, points(:, g))))
-      end do
-   end function axes_at_points
 
    !> E of (1.1): stresses xx, yy, zz, xy from strains xx, yy, zz and the angle xy. In plane stress
    !> eps_zz is eliminated by sigma_zz = 0, and its row and column are zero.
    pure function elasticity_in(plane, material, axes) result(e)
       integer, intent(in) :: plane                  !! plane_strain, ...
-      type(material_type), intent(in) :: material
+      class(properties_type), intent(in) :: material
       real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
       real(dp) :: e(4, 4)                           !! [stress]
       real(dp) :: across(4)
@@ -56,14 +32,15 @@ contains
 
    !> beta = E:alpha of (1.1): the stress that holds back a unit temperature, in plane stress with
    !> sigma_zz = 0.
-   pure function thermal_modulus_in(plane, material, axes) result(beta)
+   pure function thermal_modulus_in(plane, material, expansion, axes) result(beta)
       integer, intent(in) :: plane                  !! plane_strain, ...
-      type(material_type), intent(in) :: material
+      class(properties_type), intent(in) :: material
+      real(dp), intent(in) :: expansion(3)          !! along axes 1, 2, 3 [1/temperature]
       real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
       real(dp) :: beta(4)                           !! xx, yy, zz, xy [stress/temperature]
       real(dp) :: e(4, 4)
 
-      beta = matmul(material%elasticity, [material%expansion, 0.0_dp])
+      beta = matmul(material%elasticity, [expansion, 0.0_dp])
       beta = matmul(transpose(strain_rotation(axes)), beta)
       if (plane /= plane_stress) return
       e = in_global_axes(material, axes)
@@ -73,7 +50,7 @@ contains
 
    !> K of (1.4).
    pure function conductivity_in(material, axes) result(k)
-      type(material_type), intent(in) :: material
+      class(properties_type), intent(in) :: material
       real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
       real(dp) :: k(2, 2)                           !! [power/(length temperature)]
 
@@ -90,7 +67,7 @@ contains
    end function along_axes
 
    pure function in_global_axes(material, axes) result(e)
-      type(material_type), intent(in) :: material
+      class(properties_type), intent(in) :: material
       real(dp), intent(in) :: axes(2, 2)
       real(dp) :: e(4, 4)
       real(dp) :: rotation(4, 4)

@@ -5,10 +5,10 @@ module stiffness_matrix
    use element_elasticity, only: element_stiffness, element_stress_force, element_thermal_load
    use element_kinds, only: element_node_count
    use kinds, only: dp
-   use materials, only: material_type, orientation_type, section_type
+   use materials, only: section_type
    use mesh, only: mesh_type
-   use point_properties, only: axes_at_points, elasticity_in, thermal_modulus_in
-   use quadrature, only: most_points
+   use point_materials, only: point_materials_type
+   use quadrature, only: most_points, point_count
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -17,58 +17,52 @@ module stiffness_matrix
 contains
 
    !> K of all bodies, both triangles.
-   pure function assemble_stiffness(mesh, sections, materials, orientations) result(stiffness)
+   pure function assemble_stiffness(mesh, sections, points) result(stiffness)
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
+      class(point_materials_type), intent(in) :: points      !! at those of integration_rules
       type(sparse_matrix_type) :: stiffness                  !! (2 nodes, 2 nodes) [stress length]
       type(element_assembly_type) :: assembly
-      real(dp), allocatable :: axes(:, :, :)
       real(dp) :: e(4, 4, most_points)
-      integer :: element, g
+      integer :: element, g, n
 
       call assembly%begin(mesh, 2, 2)
       do element = 1, size(mesh%element_number)
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
-            axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
-               section%orientation)
-            do g = 1, size(axes, 3)
-               e(:, :, g) = elasticity_in(plane, materials(section%material), axes(:, :, g))
+            n = merge(1, point_count(kind), points%one_material(element))
+            do g = 1, n
+               e(:, :, g) = points%materials(points%at_point(element, g))%elasticity
             end do
             call assembly%add(nodes, element_stiffness(kind, plane, mesh%coordinates(:, nodes), &
-               e(:, :, :size(axes, 3)), section%thickness))
+               e(:, :, :n), section%thickness))
          end associate
       end do
       stiffness = assembly%matrix
    end function assemble_stiffness
 
    !> Nodal forces per unit nodal temperature over the natural state, the right-hand side of (1.1).
-   pure function assemble_thermal_load(mesh, sections, materials, orientations) result(load)
+   pure function assemble_thermal_load(mesh, sections, points) result(load)
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
+      class(point_materials_type), intent(in) :: points      !! at those of integration_rules
       type(sparse_matrix_type) :: load                       !! (2 nodes, nodes)
       type(element_assembly_type) :: assembly
-      real(dp), allocatable :: axes(:, :, :)
       real(dp) :: beta(4, most_points)
-      integer :: element, g
+      integer :: element, g, n
 
       call assembly%begin(mesh, 2, 1)
       do element = 1, size(mesh%element_number)
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
-            axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
-               section%orientation)
-            do g = 1, size(axes, 3)
-               beta(:, g) = thermal_modulus_in(plane, materials(section%material), axes(:, :, g))
+            n = merge(1, point_count(kind), points%one_material(element))
+            do g = 1, n
+               beta(:, g) = points%materials(points%at_point(element, g))%thermal_modulus
             end do
             call assembly%add(nodes, element_thermal_load(kind, plane, &
-               mesh%coordinates(:, nodes), beta(:, :size(axes, 3)), section%thickness))
+               mesh%coordinates(:, nodes), beta(:, :n), section%thickness))
          end associate
       end do
       load = assembly%matrix

@@ -19,10 +19,10 @@ module thermal_matrix
    use element_conduction, only: capacity_matrix, conduction_matrix
    use element_kinds, only: element_node_count
    use kinds, only: dp
-   use materials, only: material_type, orientation_type, section_type
+   use materials, only: section_type
    use mesh, only: mesh_type
-   use point_properties, only: axes_at_points, conductivity_in
-   use quadrature, only: most_points
+   use point_materials, only: point_materials_type
+   use quadrature, only: most_points, point_count
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    implicit none
    private
@@ -61,8 +61,12 @@ module thermal_matrix
       real(dp) :: duration = 0.0_dp
       real(dp), allocatable :: content_old(:)       !! (nodes) C T* [energy]
       real(dp), allocatable :: stored_old(:)        !! (nodes) rate of stored heat at t_i [power]
-      !> (nodes) heat that strains take up in dt; unallocated where they take up none [energy]
+      !> (nodes) heat that is taken up in dt beside C: by strains, and where C does not follow the
+      !> temperatures; unallocated where there is none [energy]
       real(dp), allocatable :: taken_up(:)
+      !> (nodes) heat that K conducts beyond the bodies at t_i and t_i+1; unallocated where K follows
+      !> their temperatures [power]
+      real(dp), allocatable :: excess_old(:), excess(:)
    contains
       procedure :: takes_past_conductance
       procedure :: takes_past_field
@@ -85,29 +89,27 @@ module thermal_matrix
 contains
 
    !> K of (3.3), both triangles.
-   pure function assemble_conduction(mesh, sections, materials, orientations) result(conduction)
+   pure function assemble_conduction(mesh, sections, points) result(conduction)
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(orientation_type), intent(in) :: orientations(:)  !! axes of the materials
+      class(point_materials_type), intent(in) :: points      !! at those of integration_rules
       type(sparse_matrix_type) :: conduction                 !! (nodes, nodes) [power/temperature]
       type(element_assembly_type) :: assembly
-      real(dp), allocatable :: axes(:, :, :), k(:, :)
+      real(dp), allocatable :: k(:, :)
       real(dp) :: conductivity(2, 2, most_points)
-      integer :: element, g
+      integer :: element, g, n
 
       call assembly%begin(mesh, 1, 1)
       do element = 1, size(mesh%element_number)
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
-            axes = axes_at_points(kind, mesh%coordinates(:, nodes), orientations, &
-               section%orientation)
-            do g = 1, size(axes, 3)
-               conductivity(:, :, g) = conductivity_in(materials(section%material), axes(:, :, g))
+            n = merge(1, point_count(kind), points%one_material(element))
+            do g = 1, n
+               conductivity(:, :, g) = points%materials(points%at_point(element, g))%conductivity
             end do
             k = conduction_matrix(kind, plane, mesh%coordinates(:, nodes), &
-               conductivity(:, :, :size(axes, 3)), section%thickness)
+               conductivity(:, :, :n), section%thickness)
             call assembly%add(nodes, k)
          end associate
       end do
@@ -280,6 +282,7 @@ contains
          rhs = rhs + (c(1)*self%old%load + c(2)*self%new%load)/a(1)
          if (self%duration > 0.0_dp) rhs = rhs + self%content_old/self%duration
          if (allocated(self%taken_up)) rhs = rhs - self%taken_up/self%duration
+         if (allocated(self%excess)) rhs = rhs + self%excess + b(1)/a(1)*self%excess_old
       end associate
    end function history
 
@@ -362,6 +365,8 @@ contains
       end associate
       if (self%duration > 0.0_dp) rates%stored = self%scheme%a(1)/whole/self%duration* &
          gain(self, capacity, temperature)
+      if (allocated(self%excess)) rates%conducted = rates%conducted - self%scheme%a(1)* &
+         self%excess - self%scheme%b(1)*self%excess_old
       rates%conducted = rates%conducted/whole
       rates%entering = rates%entering/whole
       rates%crossing = rates%crossing/whole
@@ -374,6 +379,7 @@ contains
       type(heat_rates_type) :: rates
 
       rates%conducted = conduction%multiply(self%temperature_old)
+      if (allocated(self%excess)) rates%conducted = rates%conducted - self%excess_old
       rates%entering = self%old%net_heat(self%temperature_old)
       rates%crossing = heat_across(self%weight, self%omega_old, self%jump_old)
    end function rates_at_start

@@ -1,11 +1,18 @@
 !> Materials, the sections that give them to elements, and their axes in the plane (*ORIENTATION).
 module materials
+   use elasticity, only: anisotropic_elasticity, engineering_elasticity, isotropic_elasticity, &
+      orthotropic_elasticity
    use kinds, only: dp
    use named_items, only: named_type
    implicit none
    private
-   public :: material_type, section_type, constant_type, set_constants, orientation_type, &
-      material_axes, strain_rotation, heat_capacity
+   public :: material_type, properties_type, section_type, property_type, orientation_type
+   public :: material_axes, strain_rotation, heat_capacity
+   public :: elasticity_of, set_property, isotropic, engineering, orthotropic, anisotropic
+   public :: follows_temperature, thermal_strain, heat_content
+
+   ! What the constants of *ELASTIC are.
+   integer, parameter :: isotropic = 1, engineering = 2, orthotropic = 3, anisotropic = 4
 
    !> Local axes: axis 1 at a fixed angle to x, or to the radius from a centre.
    type, extends(named_type) :: orientation_type
@@ -16,29 +23,39 @@ module materials
       real(dp) :: hand = 1.0_dp                          !! 1: axis 2 is left of axis 1; -1: right
    end type orientation_type
 
-   !> A constant of a material as the deck gives it.
-   type :: constant_type
-      character(16) :: property = ''    !! keyword of its card
-      character(24) :: name = ''        !! what it is called
-      real(dp) :: value = 0.0_dp        !! its value
-   end type constant_type
+   !> A property of a material as the deck gives it: constants over temperature, linear between
+   !> rows and held outside of them.
+   type :: property_type
+      character(16) :: property = ''                  !! keyword of its card
+      integer :: symmetry = isotropic                 !! what the constants of *ELASTIC are
+      character(24), allocatable :: names(:)          !! (constants) what they are called
+      real(dp), allocatable :: values(:, :)           !! (constants, rows)
+      real(dp), allocatable :: temperature(:)         !! (rows) ascending; 0 of a single row
+   end type property_type
 
-   !> Linear elasticity, expansion and conductivity along the material's own axes 1 and 2 in the
-   !> plane and 3 across it.
-   type, extends(named_type) :: material_type
+   !> Properties at one temperature, along the material's own axes 1 and 2 in the plane and 3 across
+   !> it.
+   type, extends(named_type) :: properties_type
       !> Stresses 11, 22, 33, 12 from strains 11, 22, 33 and the shear angle 12 [stress]
       real(dp) :: elasticity(4, 4) = 0.0_dp
       real(dp) :: expansion(3) = 0.0_dp               !! alpha along axes 1, 2, 3 [1/temperature]
       real(dp) :: conductivity(2) = 0.0_dp            !! K_1, K_2 [power/(length temperature)]
       real(dp) :: density = 0.0_dp                    !! mass per volume, 0 where not given
       real(dp) :: specific_heat = 0.0_dp              !! c_p [energy/(mass temperature)]
+   end type properties_type
+
+   !> A material; the properties that it inherits are those of the first rows.
+   type, extends(properties_type) :: material_type
+      real(dp) :: no_strain = 0.0_dp                  !! ZERO= of *EXPANSION [temperature]
       logical :: has_elasticity = .false.             !! *ELASTIC was given
       logical :: has_expansion = .false.              !! *EXPANSION was given
       logical :: has_conductivity = .false.           !! *CONDUCTIVITY was given
       logical :: has_density = .false.                !! *DENSITY was given
       logical :: has_specific_heat = .false.          !! *SPECIFIC HEAT was given
-      !> All constants as the deck gives them; unallocated for none
-      type(constant_type), allocatable :: constants(:)
+      !> All properties as the deck gives them; unallocated for none
+      type(property_type), allocatable :: given(:)
+   contains
+      procedure :: set_to
    end type material_type
 
    !> One *SOLID SECTION.
@@ -52,26 +69,224 @@ contains
 
    !> rho c_p, 0 of a material without one.
    elemental real(dp) function heat_capacity(material)
-      type(material_type), intent(in) :: material
+      class(properties_type), intent(in) :: material
 
       heat_capacity = material%density*material%specific_heat
    end function heat_capacity
 
-   !> Keeps the constants of a property; those of an earlier card of the same property end.
-   pure subroutine set_constants(material, property, names, values)
-      type(material_type), intent(inout) :: material
-      character(*), intent(in) :: property              !! keyword of the card
-      character(*), intent(in) :: names(:)              !! (constants) what they are called
-      real(dp), intent(in) :: values(:)                 !! (constants) their values
-      type(constant_type) :: constants(size(values))
+   !> Whether any property varies with temperature.
+   elemental logical function follows_temperature(material)
+      type(material_type), intent(in) :: material
+      integer :: i
 
-      constants%property = property
-      constants%name = names
-      constants%value = values
-      if (.not. allocated(material%constants)) allocate (material%constants(0))
-      material%constants = [pack(material%constants, material%constants%property /= property), &
-         constants]
-   end subroutine set_constants
+      follows_temperature = .false.
+      if (.not. allocated(material%given)) return
+      do i = 1, size(material%given)
+         follows_temperature = follows_temperature .or. size(material%given(i)%temperature) > 1
+      end do
+   end function follows_temperature
+
+   !> Keeps a property, in place of that of an earlier card; what the material inherits is of its
+   !> first row.
+   pure subroutine set_property(material, property)
+      type(material_type), intent(inout) :: material
+      type(property_type), intent(in) :: property
+      type(property_type), allocatable :: others(:)
+      integer :: i
+
+      allocate (others(0))
+      if (allocated(material%given)) then
+         do i = 1, size(material%given)
+            if (material%given(i)%property /= property%property) others = [others, &
+               material%given(i)]
+         end do
+      end if
+      material%given = [others, property]
+      call take_values(property, property%values(:, 1), material)
+   end subroutine set_property
+
+   !> Gives properties the constants of a card.
+   pure subroutine take_values(property, values, there)
+      type(property_type), intent(in) :: property
+      real(dp), intent(in) :: values(:)                 ! (constants)
+      class(properties_type), intent(inout) :: there
+
+      select case (property%property)
+      case ('ELASTIC')
+         there%elasticity = elasticity_of(property%symmetry, values)
+      case ('EXPANSION')
+         there%expansion = values(min([1, 2, 3], size(values)))
+      case ('CONDUCTIVITY')
+         there%conductivity = values(min([1, 2], size(values)))
+      case ('DENSITY')
+         there%density = values(1)
+      case ('SPECIFIC HEAT')
+         there%specific_heat = values(1)
+      end select
+   end subroutine take_values
+
+   !> Stiffness in the plane from the constants of *ELASTIC.
+   pure function elasticity_of(symmetry, constants) result(stiffness)
+      integer, intent(in) :: symmetry                   !! isotropic, ...
+      real(dp), intent(in) :: constants(:)              !! as the deck gives them
+      real(dp) :: stiffness(4, 4)                       !! order 11, 22, 33, 12 [stress]
+      real(dp) :: whole(6, 6)
+
+      select case (symmetry)
+      case (isotropic)
+         stiffness = isotropic_elasticity(constants(1), constants(2))
+         return
+      case (engineering)
+         whole = engineering_elasticity(constants)
+      case (orthotropic)
+         whole = orthotropic_elasticity(constants)
+      case default
+         whole = anisotropic_elasticity(constants)
+      end select
+      stiffness = whole(:4, :4)
+   end function elasticity_of
+
+   !> The properties at a temperature. Those that do not vary stay as they are.
+   pure subroutine set_to(self, temperature, there)
+      class(material_type), intent(in) :: self
+      real(dp), intent(in) :: temperature
+      class(properties_type), intent(inout) :: there    !! of this material at any temperature
+      integer :: i
+
+      do i = 1, size(self%given)
+         associate (property => self%given(i))
+            if (size(property%temperature) > 1) call take_values(property, &
+               constants_at(property, temperature), there)
+         end associate
+      end do
+   end subroutine set_to
+
+   pure function constants_at(property, temperature) result(values)
+      type(property_type), intent(in) :: property
+      real(dp), intent(in) :: temperature
+      real(dp) :: values(size(property%values, 1))
+      real(dp) :: part
+      integer :: row
+
+      associate (rows => property%temperature)
+         row = row_below(rows, temperature)
+         if (row == 0 .or. row == size(rows)) then
+            values = property%values(:, max(row, 1))
+            return
+         end if
+         part = (temperature - rows(row))/(rows(row + 1) - rows(row))
+         values = property%values(:, row) + part*(property%values(:, row + 1) - &
+            property%values(:, row))
+      end associate
+   end function constants_at
+
+   !> The last row not above a temperature, or 0.
+   pure integer function row_below(rows, temperature) result(row)
+      real(dp), intent(in) :: rows(:), temperature
+
+      do row = size(rows), 1, -1
+         if (rows(row) <= temperature) return
+      end do
+   end function row_below
+
+   !> Strain along axes 1, 2, 3 that temperatures make from the initial one on, and its slope. The
+   !> coefficients of a table are secants from ZERO= on:
+   !> alpha(T) (T - ZERO) - alpha(T_initial) (T_initial - ZERO).
+   pure subroutine thermal_strain(material, initial, temperature, strain, slope)
+      type(material_type), intent(in) :: material
+      real(dp), intent(in) :: initial, temperature
+      real(dp), intent(out) :: strain(3)                !! [-]
+      real(dp), intent(out) :: slope(3)                 !! [1/temperature]
+      real(dp), allocatable :: now(:), first(:)
+      integer :: i, row
+
+      strain = material%expansion*(temperature - initial)
+      slope = material%expansion
+      do i = 1, size(material%given)
+         associate (property => material%given(i), rows => material%given(i)%temperature, &
+            zero => material%no_strain)
+            if (property%property /= 'EXPANSION' .or. size(rows) == 1) cycle
+            now = constants_at(property, temperature)
+            first = constants_at(property, initial)
+            row = row_below(rows, temperature)
+            associate (axis => min([1, 2, 3], size(now)))
+               strain = now(axis)*(temperature - zero) - first(axis)*(initial - zero)
+               slope = now(axis)
+               if (row > 0 .and. row < size(rows)) slope = slope + (temperature - zero)* &
+                  (property%values(axis, row + 1) - property%values(axis, row))/ &
+                  (rows(row + 1) - rows(row))
+            end associate
+         end associate
+      end do
+   end subroutine thermal_strain
+
+   !> Heat in a unit volume, the integral of rho c from the lowest row of both, or 0, on.
+   pure real(dp) function heat_content(material, temperature) result(content)
+      type(material_type), intent(in) :: material
+      real(dp), intent(in) :: temperature
+      real(dp), allocatable :: rows(:)
+      real(dp) :: from, to
+      integer :: i
+
+      rows = content_rows(material)
+      content = 0.0_dp
+      if (size(rows) == 0) rows = [0.0_dp]
+      if (temperature < rows(1)) then
+         content = capacity_at(material, rows(1))*(temperature - rows(1))
+         return
+      end if
+      from = rows(1)
+      do i = 1, size(rows)
+         to = temperature
+         if (i < size(rows)) to = min(to, rows(i + 1))
+         ! Simpson's rule is exact for rho c, which is quadratic between rows.
+         content = content + (to - from)/6*(capacity_at(material, from) + &
+            4*capacity_at(material, (from + to)/2) + capacity_at(material, to))
+         from = to
+      end do
+   end function heat_content
+
+   !> Temperatures of the rows of density and specific heat, ascending.
+   pure function content_rows(material) result(rows)
+      type(material_type), intent(in) :: material
+      real(dp), allocatable :: rows(:)
+      integer :: i, k
+
+      allocate (rows(0))
+      do i = 1, size(material%given)
+         associate (property => material%given(i))
+            if (size(property%temperature) == 1 .or. .not. (property%property == 'DENSITY' .or. &
+               property%property == 'SPECIFIC HEAT')) cycle
+            do k = 1, size(property%temperature)
+               associate (there => property%temperature(k))
+                  if (.not. any(abs(rows - there) <= 0.0_dp)) rows = [pack(rows, rows < there), &
+                     there, pack(rows, rows > there)]
+               end associate
+            end do
+         end associate
+      end do
+   end function content_rows
+
+   pure real(dp) function capacity_at(material, temperature) result(capacity)
+      type(material_type), intent(in) :: material
+      real(dp), intent(in) :: temperature
+      real(dp), allocatable :: values(:)
+      integer :: i
+
+      capacity = heat_capacity(material)
+      do i = 1, size(material%given)
+         associate (property => material%given(i))
+            if (size(property%temperature) == 1) cycle
+            if (property%property == 'DENSITY') then
+               values = constants_at(property, temperature)
+               capacity = capacity/material%density*values(1)
+            else if (property%property == 'SPECIFIC HEAT') then
+               values = constants_at(property, temperature)
+               capacity = capacity/material%specific_heat*values(1)
+            end if
+         end associate
+      end do
+   end function capacity_at
 
    !> Axes 1 and 2 at a point, as columns in x and y. On the very axis of a cylindrical system the
    !> radius is along x.

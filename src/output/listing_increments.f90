@@ -39,6 +39,9 @@ contains
       write (unit, '(/, a, i0, a, i0, 4a)') 'INCREMENT ', record%increment, '   STEP ', &
          record%step, '   TIME ', to_text(record%time), '   LOAD ', to_text(record%load)
       if (allocated(record%failed)) call print_attempts(unit, record%failed)
+      if (record%corrections > 0) write (unit, '(3x, a, i0, a)') 'corrections ', &
+         record%corrections, trim(merge(', operators formed again', '                        ', &
+         record%has_new_operators))
       if (.not. allocated(record%iterations)) return
       passes = size(record%iterations)
       if (passes == 0) return

@@ -133,14 +133,22 @@ contains
    pure function material_words(material) result(words)
       type(material_type), intent(in) :: material
       character(:), allocatable :: words            !! such as Young's modulus 2E5, ...
-      integer :: i
+      integer :: i, k, row
 
       words = ''
-      if (allocated(material%constants)) then
-         do i = 1, size(material%constants)
-            if (i > 1) words = words//', '
-            words = words//trim(material%constants(i)%name)//' '// &
-               to_text(material%constants(i)%value)
+      if (allocated(material%given)) then
+         do i = 1, size(material%given)
+            associate (property => material%given(i))
+               do k = 1, size(property%names)
+                  if (words /= '') words = words//', '
+                  words = words//trim(property%names(k))//' '//to_text(property%values(k, 1))
+                  do row = 2, size(property%temperature)
+                     if (row == 2) words = words//' at '//to_text(property%temperature(1))
+                     words = words//', '//to_text(property%values(k, row))//' at '// &
+                        to_text(property%temperature(row))
+                  end do
+               end do
+            end associate
          end do
       end if
       if (words == '') words = 'no constants'

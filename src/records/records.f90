@@ -112,6 +112,9 @@ module records
       real(dp) :: contact_violation = 0.0_dp
       type(contact_record_type), allocatable :: contacts(:)     !! one an interface
       integer :: cut_backs = 0               !! attempts at it that failed before
+      !> Solutions that properties over temperature or the heat of strains asked for; 0 without them
+      integer :: corrections = 0
+      logical :: has_new_operators = .false. !! whether they were formed again
       type(attempt_record_type), allocatable :: failed(:)       !! these; unallocated for none
       type(field_record_type) :: fields = field_record_type()   !! fields
       !> (interfaces) at the end of a step; else unallocated

@@ -65,6 +65,7 @@ contains
 
       omega = joined_conductance(next%omega, next%edge)
       rates%conducted = bodies%thermal%matrix%multiply(next%temperature)
+      if (allocated(data%equation%excess)) rates%conducted = rates%conducted - data%equation%excess
       rates%entering = next%sources%net_heat(next%temperature)
       rates%crossing = heat_across(bodies%points%weight, next%carrying, next%jump)
       record%heat_stored = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -204,7 +205,8 @@ contains
          scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
       end if
       internal = bodies%mechanical%matrix%multiply(next%displacement) - &
-         unstrained_forces(bodies, next%temperature - model%initial_temperature)
+         unstrained_forces(bodies, next%temperature - model%initial_temperature, &
+         next%force_excess)
       stiffness = bodies%mechanical%largest_entry
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)

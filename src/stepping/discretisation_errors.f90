@@ -6,10 +6,12 @@ module discretisation_errors
       heat_flux_samples, make_points, measure_heat_flux, measure_stress, point_map_type, &
       prepare_samples, stress_samples
    use kinds, only: dp
+   use materials, only: follows_temperature
    use mesh, only: mesh_type, nodes_per_element
    use model, only: model_type
    use patch_recovery, only: patch_recovery_type
-   use point_fields, only: most => most_field_points, point_fields_type
+   use point_fields, only: point_fields_type
+   use point_rules, only: most => most_points_of_rule
    implicit none
    private
    public :: recovery_type
@@ -82,7 +84,7 @@ contains
 
    !> Stress, averaged at the points, and its estimated error.
    pure subroutine recover_stress(self, model, displacement, temperature, stress, estimate)
-      class(recovery_type), intent(in) :: self
+      class(recovery_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: displacement(:, :)           !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
@@ -93,6 +95,7 @@ contains
       real(dp) :: values(most, 4), least, scale
       integer :: e
 
+      call set_temperature(self, model, temperature + model%initial_temperature)
       values = 0.0_dp
       allocate (samples(4, self%samples%first(size(self%samples%first)) - 1))
       allocate (smooth(4, size(self%points%node)))
@@ -114,7 +117,7 @@ contains
 
    !> Heat flux, averaged at the points, and its estimated error.
    pure subroutine recover_heat_flux(self, model, temperature, flux, estimate)
-      class(recovery_type), intent(in) :: self
+      class(recovery_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)               !! (nodes) [temperature]
       real(dp), allocatable, intent(out) :: flux(:, :)     !! (2, points) x, y [power/length^2]
@@ -124,6 +127,7 @@ contains
       real(dp) :: values(most, 2), least, scale
       integer :: e
 
+      call set_temperature(self, model, temperature)
       values = 0.0_dp
       allocate (samples(2, self%samples%first(size(self%samples%first)) - 1))
       allocate (smooth(2, size(self%points%node)))
@@ -141,6 +145,21 @@ contains
       least = largest_term(model%mesh, self%of_temperature, temperature)
       call drop_rounding(model, self%samples%first, samples, rounding*least, estimate%body)
    end subroutine recover_heat_flux
+
+   !> Properties that follow temperatures are those of the field.
+   pure subroutine set_temperature(self, model, temperature)
+      type(recovery_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)               ! (nodes) [temperature]
+
+      if (.not. any(follows_temperature(model%materials))) return
+      associate (mesh => model%mesh, sections => model%sections, materials => model%materials)
+         call self%samples%set_temperature(mesh, sections, materials, model%orientations, &
+            temperature, model%initial_temperature)
+         call self%quadrature%set_temperature(mesh, sections, materials, model%orientations, &
+            temperature, model%initial_temperature)
+      end associate
+   end subroutine set_temperature
 
    !> The largest of the terms whose sum a field is.
    pure real(dp) function largest_term(mesh, factor, on_nodes)

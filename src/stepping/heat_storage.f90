@@ -11,95 +11,23 @@
 !> Math. 20 (1996) 21.
 module heat_storage
    use edge_heat, only: supplied_heat
-   use errors, only: error_type, set_error, status_no_convergence
    use heat_reduction, only: heat_reduction_type
+   use increment_data, only: stage_type
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
+   use operator_corrections, only: corrections_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use steps, only: step_type
-   use text, only: to_text
    use thermal_matrix, only: heat_across, heat_rates_type
    implicit none
    private
-   public :: stage_type, strain_heat_type, strain_rate, begin_storage, measure_changes
-
-   real(dp), parameter :: settled = 1.0e-10_dp  !! part of the heat of an increment that is none
-   integer, parameter :: most_passes = 60       !! of heat that strains take up
-
-   !> A stage of an increment.
-   type :: stage_type
-      type(step_clock_type) :: clock = step_clock_type()   !! its end
-      real(dp) :: size = 0.0_dp                            !! from the end of the one before [time]
-      real(dp) :: duration = 0.0_dp                        !! dt of its equation [time]
-      real(dp), allocatable :: temperature(:)              !! (nodes) T* of its equation
-      real(dp), allocatable :: displacement(:)             !! (2 nodes) u* likewise
-      real(dp), allocatable :: jump(:)   !! (nodes) of temperatures where the step begins
-      logical :: is_last = .true.                          !! whether the increment ends with it
-   end type stage_type
-
-   !> Heat that strains take up in a stage, corrected until it is that of its displacements and
-   !> temperatures. Each correction is relaxed after Aitken: a body that cannot expand answers too
-   !> much heat with too little.
-   type :: strain_heat_type
-      real(dp), allocatable :: taken_up(:)       !! (nodes) as the stage is solved with [energy]
-      real(dp), allocatable, private :: before(:), rest(:)   !! (nodes) of T*, u*; last difference
-      real(dp), private :: relaxation = 1.0_dp
-      integer, private :: passes = 0
-   contains
-      procedure :: begin
-      procedure :: correct
-   end type strain_heat_type
+   public :: strain_rate, begin_storage, measure_changes
 
 contains
-
-   !> Starts a stage, from no heat taken up.
-   subroutine begin(self, bodies, stage)
-      class(strain_heat_type), intent(out) :: self
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(stage_type), intent(in) :: stage
-
-      self%before = bodies%dilatation%taken_up(bodies%thermal_load, stage%displacement, &
-         stage%temperature)
-      allocate (self%taken_up(size(self%before)), source=0.0_dp)
-   end subroutine begin
-
-   !> Corrects the heat to that of a solution, unless it is that heat already.
-   !> Error: no convergence.
-   subroutine correct(self, bodies, stage, next, is_settled, error)
-      class(strain_heat_type), intent(inout) :: self
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(stage_type), intent(in) :: stage
-      type(solution_state_type), intent(in) :: next          !! solved with the present heat
-      logical, intent(out) :: is_settled
-      type(error_type), allocatable, intent(out) :: error
-      real(dp), allocatable :: rest(:), change(:)
-      real(dp) :: scale
-
-      rest = bodies%dilatation%taken_up(bodies%thermal_load, next%displacement, &
-         next%temperature) - self%before - self%taken_up
-      scale = max(maxval(abs(self%taken_up)), maxval(abs(bodies%capacity%multiply( &
-         next%temperature - stage%temperature))), maxval(abs(bodies%dilatation%of_strains( &
-         bodies%thermal_load, next%displacement - stage%displacement))))
-      is_settled = maxval(abs(rest)) <= settled*scale
-      if (is_settled) return
-      self%passes = self%passes + 1
-      if (self%passes > most_passes) then
-         call set_error(error, status_no_convergence, 'the heat that strains take up '// &
-            '(DILATATION) does not converge in '//to_text(most_passes)//' passes')
-         return
-      end if
-      if (allocated(self%rest)) then
-         change = rest - self%rest
-         self%relaxation = min(max(-self%relaxation*dot_product(self%rest, change)/ &
-            dot_product(change, change), 0.1_dp), 1.0_dp)
-      end if
-      self%taken_up = self%taken_up + self%relaxation*rest
-      call move_alloc(rest, self%rest)
-   end subroutine correct
 
    !> Rate of the heat that strains take up, T0 beta:eps' over all bodies, over the stage. Loads
    !> that act at once strain bodies within the first one.
@@ -114,9 +42,10 @@ contains
 
    !> The state as its first increment finds it: temperatures that the step prescribes, its loads
    !> and its films act as at its start, jumps included, and what they leave over is stored.
-   subroutine begin_storage(model, bodies, loads, start, state)
+   subroutine begin_storage(model, bodies, corrections, loads, start, state)
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
+      type(corrections_type), intent(inout) :: corrections   !! of the operators
       type(loads_type), intent(inout) :: loads               !! moved to the start of the step
       type(step_clock_type), intent(in) :: start             !! this instant
       type(solution_state_type), intent(inout) :: state      !! before the first increment
@@ -130,6 +59,8 @@ contains
          state%sources%load = loads%heat_load()
          state%sources%film = loads%film_matrix()
          rates%conducted = bodies%thermal%matrix%multiply(state%temperature)
+         if (corrections%corrects) rates%conducted = rates%conducted - &
+            corrections%heat_beyond(model, bodies, state%temperature)
          rates%entering = state%sources%net_heat(state%temperature)
          rates%crossing = heat_across(bodies%points%weight, state%carrying, state%jump)
          stores = .not. held

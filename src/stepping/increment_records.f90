@@ -14,8 +14,9 @@ module increment_records
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
-   use materials, only: material_axes
-   use point_fields, only: integration_rules, most => most_field_points, point_fields_type
+   use materials, only: follows_temperature, material_axes
+   use point_fields, only: point_fields_type
+   use point_rules, only: integration_rules, most => most_points_of_rule
    use point_properties, only: along_axes
    use print_requests, only: print_request_type
    use quadrature, only: point_count
@@ -44,7 +45,7 @@ contains
    pure subroutine complete_record(bodies, model, recovery, loads, data, next, record)
       type(reduced_bodies_type), intent(in) :: bodies
       type(model_type), intent(in) :: model
-      type(recovery_type), intent(in) :: recovery             !! stress and flux with their errors
+      type(recovery_type), intent(inout) :: recovery          !! stress and flux with their errors
       type(loads_type), intent(in) :: loads                   !! loads at the end of the increment
       type(increment_data_type), intent(in) :: data           !! its start
       type(solution_state_type), intent(in) :: next           !! state at the end
@@ -224,6 +225,9 @@ contains
          if (state%has_mechanics) allocate (record%stress(4, n))
          if (with_heat) allocate (record%heat_flux(2, n))
          last = 0
+         if (any(follows_temperature(model%materials))) call fields%set_temperature(mesh, &
+            model%sections, model%materials, model%orientations, state%temperature, &
+            model%initial_temperature)
          do i = 1, size(members)
             first = last + 1
             last = last + point_count(mesh%element_kind(members(i)))

@@ -10,17 +10,17 @@ module increments
    use field_problem, only: solved_loads_type
    use balances, only: sound_imbalance
    use heat_reduction, only: heat_reduction_type
-   use heat_storage, only: begin_storage, measure_changes, stage_type, strain_heat_type, &
-      strain_rate
+   use heat_storage, only: begin_storage, measure_changes, strain_rate
    use increment_checks, only: check_heat, check_record, warn_of_choices
    use increment_control, only: increment_control_type
-   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_data, only: increment_data_type, increment_workspace_type, stage_type
    use increment_records, only: complete_record
    use increment_solution, only: begin_increment, recover_fields, solve_points
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
+   use operator_corrections, only: corrections_type
    use records, only: add_attempts, increment_record_type, note_failure
    use reduced_bodies, only: reduced_bodies_type
    use run_sizes, only: measure_factors, measure_steps, run_seconds_type, run_size_type
@@ -47,6 +47,7 @@ module increments
       type(heat_reduction_type) :: heats(kept_reductions)
       integer :: in_use = 1                 !! which of them the increment has
       type(recovery_type) :: recovery               !! stress and flux with their errors
+      type(corrections_type) :: corrections         !! what bodies are beyond their operators
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
       type(solved_loads_type), allocatable :: known(:)  !! loads of earlier increments, solved
@@ -82,6 +83,7 @@ contains
       call self%bodies%prepare(model, error)
       if (allocated(error)) return
       call self%recovery%prepare(model)
+      call self%corrections%prepare(model)
       call self%loads%prepare(model)
       self%state = make_initial_state(model, self%bodies)
       self%seconds%assemble = (wall_seconds() - since)
@@ -318,8 +320,11 @@ contains
          if (step%is_transient) then
             stage%size = self%control%size_to(clock)
             stage%duration = stage%size
+            stage%dilates = step%dilates
             if (self%control%increments_of_step == 0) call begin_storage(model, self%bodies, &
-               self%loads, self%control%start_of_step(model), before)
+               self%corrections, self%loads, self%control%start_of_step(model), before)
+            if (self%corrections%corrects) stage%content = self%corrections%true_contents(model, &
+               before%temperature)
             stage%jump = before%temperature - self%state%temperature
             stage%temperature = before%temperature
             stage%displacement = before%displacement
@@ -339,6 +344,8 @@ contains
                   (next%temperature - before%temperature)
                stage%displacement = before%displacement + (1/stage_part - 1)* &
                   (next%displacement - before%displacement)
+               if (self%corrections%corrects) stage%content = stage%content + (1/stage_part - 1)* &
+                  (self%corrections%true_contents(model, next%temperature) - stage%content)
                stage%size = clock%step_time - stage%clock%step_time
                stage%clock = clock
                stage%is_last = .true.
@@ -369,8 +376,8 @@ contains
       type(increment_data_type) :: data
       type(increment_workspace_type) :: workspace, fresh_workspace
       type(solution_state_type) :: fresh
-      type(strain_heat_type) :: strain_heat
-      logical :: is_settled
+      real(dp), allocatable :: omega_start(:)   ! of a solution with other corrections
+      logical :: is_settled, asks_operators
       real(dp) :: since
 
       call self%loads%move_to(stage%clock, model)
@@ -386,21 +393,32 @@ contains
       end if
       next%force_load = self%loads%nodal_forces()
       associate (step => model%steps(self%control%step), bodies => self%bodies)
-         if (step%dilates) then
-            fresh = next
-            call strain_heat%begin(bodies, stage)
-         end if
-         do
-            call solve_fields(self, model, stage, strain_heat, before, data, workspace, next, &
-               record, error)
-            if (allocated(error)) return
-            if (.not. step%dilates) exit
-            call strain_heat%correct(bodies, stage, next, is_settled, error)
-            if (allocated(error)) return
-            if (is_settled) exit
-            next = fresh
-            workspace = fresh_workspace
-         end do
+         associate (corrections => self%corrections)
+            if (corrections%corrects) then
+               fresh = next
+               call corrections%begin(model, bodies, stage, before)
+            end if
+            do
+               call solve_fields(self, model, stage, omega_start, before, data, workspace, next, &
+                  record, error)
+               if (allocated(error)) return
+               if (.not. corrections%corrects) exit
+               call corrections%correct(model, bodies, stage, next, is_settled, asks_operators, &
+                  error)
+               if (allocated(error)) return
+               if (is_settled) exit
+               if (asks_operators) then
+                  call renew_operators(self, model, stage, before, next, error)
+                  if (allocated(error)) return
+               end if
+               omega_start = next%omega
+               next = fresh
+               workspace = fresh_workspace
+            end do
+            if (corrections%corrects) call corrections%keep(bodies, before, next)
+            record%corrections = corrections%passes
+            record%has_new_operators = corrections%is_renewed
+         end associate
          if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
          if (.not. stage%is_last) then
             call move_alloc(workspace%known, self%known)
@@ -415,13 +433,32 @@ contains
       end associate
    end subroutine solve_stage
 
-   !> Solves the fields of a stage, with the heat that strains take up given.
-   subroutine solve_fields(self, model, stage, strain_heat, before, data, workspace, next, record, &
+   !> Forms the operators at the solution of a stage, and goes on from it.
+   !> Errors: as reduce.
+   subroutine renew_operators(self, model, stage, before, next, error)
+      type(simulation_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before, next
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (bodies => self%bodies)
+         call bodies%form_operators(model, next%temperature, &
+            allocated(bodies%mechanical%matrix%value), allocated(bodies%thermal%matrix%value), &
+            allocated(bodies%thermal_load%value))
+         call self%corrections%renew(model, bodies, stage, before, next)
+         if (solves_mechanics(model%steps(self%control%step)%analysis)) call bodies%reduce(model, &
+            self%heats(self%in_use)%node_rank, error)
+      end associate
+   end subroutine renew_operators
+
+   !> Solves the fields of a stage with the present corrections of its operators.
+   subroutine solve_fields(self, model, stage, omega_start, before, data, workspace, next, record, &
       error)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(stage_type), intent(in) :: stage
-      type(strain_heat_type), intent(in) :: strain_heat
+      real(dp), allocatable, intent(in) :: omega_start(:)    ! where its fixed point starts, or none
       type(solution_state_type), intent(in) :: before
       type(increment_data_type), intent(out) :: data
       type(increment_workspace_type), intent(inout) :: workspace
@@ -435,7 +472,8 @@ contains
          call begin_increment(bodies, step, before, next, data)
          if (step%is_transient) call data%equation%hold_heat(bodies%capacity, stage%duration, &
             stage%temperature, before%stored)
-         if (allocated(strain_heat%taken_up)) data%equation%taken_up = strain_heat%taken_up
+         if (self%corrections%corrects) call self%corrections%give(data%equation, next)
+         if (allocated(omega_start)) data%omega_start = omega_start
          if (solves_heat(step%analysis)) then
             call reduce_heat(self, model, data%equation%left_film(bodies%capacity), error)
             if (allocated(error)) return

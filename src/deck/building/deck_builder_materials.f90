@@ -1,18 +1,20 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *ORIENTATION and
 !> *SOLID SECTION, which give elements their material, its axes and their thickness.
 module deck_builder_materials
-   use card_parameters, only: choose, parameter_place
+   use card_parameters, only: choose, parameter_place, take_parameter
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
       take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use deck_context, only: deck_context_type, name_last, need_element_set, need_named, take_named
    use deck_report, only: deck_report_type
+   use deck_source, only: place_type
    use deck_structure, only: card_count, cards_of, has_stand_in
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
-      is_positive_definite, isotropic_elasticity, orthotropic_elasticity
+      is_positive_definite, orthotropic_elasticity
    use element_kinds, only: axisymmetric
    use kinds, only: dp
-   use materials, only: material_type, orientation_type, set_constants
+   use materials, only: anisotropic, engineering, isotropic, material_type, orientation_type, &
+      orthotropic, property_type, set_property
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use named_items, only: find_named
@@ -30,9 +32,6 @@ module deck_builder_materials
    character(*), parameter :: anisotropic_names(21) = [character(5) :: 'D1111', 'D1122', &
       'D2222', 'D1133', 'D2233', 'D3333', 'D1112', 'D2212', 'D3312', 'D1212', 'D1113', 'D2213', &
       'D3313', 'D1213', 'D1313', 'D1123', 'D2223', 'D3323', 'D1223', 'D1323', 'D2323']
-
-   character(*), parameter :: varies = 'properties that vary with temperature are refused: '// &
-      'bodies are linear, and reduced once to their contact unknowns'
 
    integer, parameter :: per_card = 8   !! constants of a property on a card
 
@@ -78,45 +77,45 @@ contains
       end do
    end subroutine build_materials
 
+   !> Reads a property. One with errors in it is not kept.
    subroutine build_property(cards, card, context, report, material)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(material_type), intent(inout) :: material
-      real(dp), allocatable :: constants(:)
+      type(property_type) :: property
+      logical :: valid
 
+      property%property = card%name
       select case (card%name)
       case ('ELASTIC')
          material%has_elasticity = .true.
-         call build_elasticity(cards, card, context, report, material)
+         call build_elasticity(cards, card, context, report, property, valid)
       case ('EXPANSION')
          material%has_expansion = .true.
          if (is_isotropic(card, report)) then
-            call read_constants(cards, card, ['coefficient of expansion'], context, report, &
-               material, constants)
-            if (allocated(constants)) material%expansion = constants(1)
+            property%names = [character(24) :: 'coefficient of expansion']
          else
-            call read_constants(cards, card, ['alpha11', 'alpha22', 'alpha33'], context, report, &
-               material, constants)
-            if (allocated(constants)) material%expansion = constants
+            property%names = [character(24) :: 'alpha11', 'alpha22', 'alpha33']
          end if
+         call read_rows(cards, card, context, report, property, valid)
+         call take_parameter(card, 'ZERO', report, material%no_strain)
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
-         call build_conductivity(cards, card, context, report, material)
+         call build_conductivity(cards, card, context, report, property, valid)
       case ('SPECIFIC HEAT')
          material%has_specific_heat = .true.
-         call read_constants(cards, card, ['specific heat'], context, report, material, constants)
-         if (.not. allocated(constants)) return
-         call refuse_not_positive(cards, card, ['specific heat'], constants, [1], report)
-         material%specific_heat = constants(1)
+         property%names = [character(24) :: 'specific heat']
+         call read_rows(cards, card, context, report, property, valid)
+         if (valid) call refuse_not_positive(cards, card, property, [1], report, valid)
       case default
          material%has_density = .true.
-         call read_constants(cards, card, ['density'], context, report, material, constants)
-         if (.not. allocated(constants)) return
-         call refuse_not_positive(cards, card, ['density'], constants, [1], report)
-         material%density = constants(1)
+         property%names = [character(24) :: 'density']
+         call read_rows(cards, card, context, report, property, valid)
+         if (valid) call refuse_not_positive(cards, card, property, [1], report, valid)
       end select
+      if (valid) call set_property(material, property)
    end subroutine build_property
 
    !> TYPE= of expansion and conductivity. CalculiX reads the first letters only, so longer words
@@ -131,116 +130,190 @@ contains
       is_isotropic = symmetry(:3) == 'ISO'
    end function is_isotropic
 
-   subroutine build_elasticity(cards, card, context, report, material)
+   subroutine build_elasticity(cards, card, context, report, property, valid)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
-      type(material_type), intent(inout) :: material
+      type(property_type), intent(inout) :: property
+      logical, intent(out) :: valid                       ! whether it has no errors
       integer, parameter :: moduli(6) = [1, 2, 3, 7, 8, 9]   ! of the engineering constants
       character(:), allocatable :: kind
-      character(15), allocatable :: names(:)
-      real(dp), allocatable :: constants(:)
-      real(dp) :: d(6, 6)
+      integer :: row
 
       kind = 'ISO'
       call choose(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/'// &
          'ANISOTROPIC', report, kind)
       select case (kind)
       case ('ENGINEERING CONSTANTS')
-         names = engineering_names
+         property%symmetry = engineering
+         property%names = engineering_names
       case ('ORTHO', 'ORTHOTROPIC')
-         names = orthotropic_names
+         property%symmetry = orthotropic
+         property%names = orthotropic_names
       case ('ANISO', 'ANISOTROPIC')
-         names = anisotropic_names
+         property%symmetry = anisotropic
+         property%names = anisotropic_names
       case default
-         names = isotropic_names
+         property%names = isotropic_names
       end select
-      call read_constants(cards, card, names, context, report, material, constants)
-      if (.not. allocated(constants)) return
-      select case (kind)
-      case ('ENGINEERING CONSTANTS')
-         call refuse_not_positive(cards, card, names, constants, moduli, report)
-         if (.not. all(constants(moduli) > 0.0_dp)) return
-         d = engineering_elasticity(constants)
-      case ('ORTHO', 'ORTHOTROPIC')
-         d = orthotropic_elasticity(constants)
-      case ('ANISO', 'ANISOTROPIC')
-         d = anisotropic_elasticity(constants)
-      case default
-         call refuse_not_positive(cards, card, names, constants, [1], report)
-         if (constants(2) > -1.0_dp .and. constants(2) < 0.5_dp) then
-            material%elasticity = isotropic_elasticity(constants(1), constants(2))
-         else
-            call report%error(field_place(cards%data(card%first_data), 2), &
-               'Poisson''s ratio must lie between -1 and 0.5')
-         end if
-         return
-      end select
-      if (couples_out_of_plane(d)) then
-         call report%error(field_place(cards%data(card%first_data), 1), &
-            'couplings of the shear 13 or 23 with strains in the plane are refused: '// &
-            'the plane would warp')
-      else if (.not. is_positive_definite(d)) then
-         call report%error(field_place(cards%data(card%first_data), 1), &
-            'these constants are not positive definite: some strain would release energy')
-      end if
-      material%elasticity = d(:4, :4)
+      call read_rows(cards, card, context, report, property, valid)
+      if (.not. valid) return
+      if (property%symmetry == isotropic) call refuse_not_positive(cards, card, property, [1], &
+         report, valid)
+      if (property%symmetry == engineering) call refuse_not_positive(cards, card, property, &
+         moduli, report, valid)
+      do row = 1, size(property%temperature)
+         if (valid) call check_elasticity(field_place(cards%data(first_card(card, property, row)), &
+            merge(2, 1, property%symmetry == isotropic)), property, row, report, valid)
+      end do
    end subroutine build_elasticity
 
+   !> Reports a row whose stiffness has no energy, or warps the plane.
+   subroutine check_elasticity(place, property, row, report, valid)
+      type(place_type), intent(in) :: place
+      type(property_type), intent(in) :: property
+      integer, intent(in) :: row
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      real(dp) :: d(6, 6)
+
+      associate (constants => property%values(:, row))
+         select case (property%symmetry)
+         case (isotropic)
+            valid = constants(2) > -1.0_dp .and. constants(2) < 0.5_dp
+            if (.not. valid) call report%error(place, &
+               'Poisson''s ratio must lie between -1 and 0.5')
+            return
+         case (engineering)
+            d = engineering_elasticity(constants)
+         case (orthotropic)
+            d = orthotropic_elasticity(constants)
+         case default
+            d = anisotropic_elasticity(constants)
+         end select
+      end associate
+      valid = .false.
+      if (couples_out_of_plane(d)) then
+         call report%error(place, 'couplings of the shear 13 or 23 with strains in the plane '// &
+            'are refused: the plane would warp')
+      else if (.not. is_positive_definite(d)) then
+         call report%error(place, 'these constants are not positive definite: some strain '// &
+            'would release energy')
+      else
+         valid = .true.
+      end if
+   end subroutine check_elasticity
+
    !> K11 and K22; K33, which CalculiX wants, is read and means nothing in the plane.
-   subroutine build_conductivity(cards, card, context, report, material)
+   subroutine build_conductivity(cards, card, context, report, property, valid)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
-      type(material_type), intent(inout) :: material
-      character(*), parameter :: names(3) = ['K11', 'K22', 'K33']
-      real(dp), allocatable :: constants(:)
-      integer :: n
+      type(property_type), intent(inout) :: property
+      logical, intent(out) :: valid                       ! whether it has no errors
+      integer :: fields, n, row
 
       if (is_isotropic(card, report)) then
-         call read_constants(cards, card, ['conductivity'], context, report, material, constants)
-         if (.not. allocated(constants)) return
-         call refuse_not_positive(cards, card, ['conductivity'], constants, [1], report)
-         material%conductivity = constants(1)
+         property%names = [character(24) :: 'conductivity']
+         call read_rows(cards, card, context, report, property, valid)
+         if (valid) call refuse_not_positive(cards, card, property, [1], report, valid)
          return
       end if
-      n = min(max(size(cards%data(card%first_data)%fields), 2), 3)
-      call read_constants(cards, card, names(:n), context, report, material, constants)
+      fields = size(cards%data(card%first_data)%fields)
+      n = min(max(fields, 2), 3)
+      property%names = [character(24) :: 'K11', 'K22', 'K33']
+      property%names = property%names(:n)
+      call read_rows(cards, card, context, report, property, valid)
       if (n == 3) call context%note('*CONDUCTIVITY: K33 is ignored')
-      if (.not. allocated(constants)) return
-      call refuse_not_positive(cards, card, names, constants, [1, 2], report)
+      if (.not. valid) return
+      call refuse_not_positive(cards, card, property, [1, 2], report, valid)
       if (n == 3) then
          ! Across the plane most materials conduct as along one of its axes.
-         if (all(abs(constants(:2) - constants(3)) > 0.0_dp)) call check_unneeded( &
-            cards%data(card%first_data), 3, 'K33', report)
+         do row = 1, size(property%temperature)
+            associate (constants => property%values(:, row))
+               if (all(abs(constants(:2) - constants(3)) > 0.0_dp)) call check_unneeded( &
+                  cards%data(card%first_data + row - 1), 3, 'K33', report)
+            end associate
+         end do
       end if
-      material%conductivity = constants(:2)
-      call set_constants(material, card%name, names(:2), constants(:2))
+      property%names = property%names(:2)
+      property%values = property%values(:2, :)
    end subroutine build_conductivity
 
-   !> Reads the constants of a property, eight on a card, and the temperature behind the last.
-   subroutine read_constants(cards, card, names, context, report, material, constants)
+   !> First data card of a row.
+   pure integer function first_card(card, property, row) result(first)
+      type(keyword_card_type), intent(in) :: card
+      type(property_type), intent(in) :: property          ! with its names
+      integer, intent(in) :: row
+
+      first = card%first_data + (row - 1)*cards_of_row(property)
+   end function first_card
+
+   pure integer function cards_of_row(property)
+      type(property_type), intent(in) :: property          ! with its names
+
+      cards_of_row = 1 + (size(property%names) - 1)/per_card
+   end function cards_of_row
+
+   !> Reads the rows of a property: constants, eight on a card, and the temperature behind the last.
+   subroutine read_rows(cards, card, context, report, property, valid)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: names(:)                  ! (constants)
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
-      type(material_type), intent(inout) :: material        ! keeps them as the deck gives them
-      real(dp), allocatable, intent(out) :: constants(:)    ! unallocated after an error
-      real(dp) :: temperature, values(size(names))
-      integer :: behind, i, last, place
-      logical :: is_number, valid
+      type(property_type), intent(inout) :: property        ! receives values and temperatures
+      logical, intent(out) :: valid                         ! whether all could be read
+      integer :: behind, last, n, row
 
+      n = (card%last_data - card%first_data)/cards_of_row(property) + 1
+      allocate (property%values(size(property%names), n), property%temperature(n), source=0.0_dp)
+      behind = mod(size(property%names) - 1, per_card) + 2
       valid = .true.
+      do row = 1, n
+         call read_constants(cards, card, first_card(card, property, row), property%names, report, &
+            property%values(:, row), valid)
+         last = first_card(card, property, row + 1) - 1
+         if (last > card%last_data) return
+         if (n > 1) then
+            call need_field(cards%data(last), behind, 'temperature', report, &
+               property%temperature(row), valid)
+            if (.not. valid .or. row == 1) cycle
+            if (property%temperature(row) > property%temperature(row - 1)) cycle
+            valid = .false.
+            call report%error(field_place(cards%data(last), behind), 'the temperatures of the '// &
+               'rows must ascend: '//to_text(property%temperature(row))//' follows '// &
+               to_text(property%temperature(row - 1)))
+         else if (has_field(cards%data(last), behind)) then
+            ! One temperature behind them means nothing.
+            call take_field(cards%data(last), behind, 'temperature', report, &
+               property%temperature(row), valid)
+            call context%note('the temperature field of a single property row is ignored')
+            if (valid) call check_unneeded_temperature(cards%data(last), behind, report)
+         end if
+      end do
+   end subroutine read_rows
+
+   !> Reads the constants of a row.
+   subroutine read_constants(cards, card, first, names, report, values, valid)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: first                          ! its first data card
+      character(*), intent(in) :: names(:)                  ! (constants)
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(out) :: values(:)                    ! (constants)
+      logical, intent(inout) :: valid                       ! false where they cannot be read
+      integer :: behind, i, last, place
+
       values = 0.0_dp
-      last = card%first_data + (size(values) - 1)/per_card
+      last = first + (size(values) - 1)/per_card
       do i = 1, size(values)
-         place = card%first_data + (i - 1)/per_card
+         place = first + (i - 1)/per_card
          if (place > card%last_data) then
             call report%error(cards%data(card%last_data)%end, 'a card is missing after '// &
                'this one: '//trim(names(i)))
+            valid = .false.
             return
          end if
          call need_field(cards%data(place), mod(i - 1, per_card) + 1, trim(names(i)), report, &
@@ -250,20 +323,9 @@ contains
          if (mod(i, per_card) == 0) call check_extra(cards%data(place), per_card, &
             'eight constants', report)
       end do
-      ! One temperature behind them means nothing.
       behind = mod(size(values) - 1, per_card) + 2
-      is_number = .true.
-      call take_field(cards%data(last), behind, 'temperature', report, temperature, is_number)
-      call check_extra(cards%data(last), behind, &
-         joined(names(per_card*(last - card%first_data) + 1:))//', temperature', report)
-      if (has_field(cards%data(last), behind)) then
-         call context%note('the temperature field of a single property row is ignored')
-         if (is_number) call check_unneeded_temperature(cards%data(last), behind, report)
-      end if
-      if (card%last_data > last) call report%error(field_place(cards%data(last + 1), 1), varies)
-      if (.not. valid) return
-      constants = values
-      call set_constants(material, card%name, names, values)
+      call check_extra(cards%data(last), behind, joined(names(per_card*(last - first) + 1:))// &
+         ', temperature', report)
    end subroutine read_constants
 
    pure function joined(names) result(list)
@@ -278,19 +340,23 @@ contains
    end function joined
 
    !> Reports constants that must be positive and are not.
-   subroutine refuse_not_positive(cards, card, names, constants, which, report)
+   subroutine refuse_not_positive(cards, card, property, which, report, valid)
       type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card         !! the property
-      character(*), intent(in) :: names(:)                !! (constants) what they are called
-      real(dp), intent(in) :: constants(:)                !! (constants) as read
+      type(keyword_card_type), intent(in) :: card
+      type(property_type), intent(in) :: property         !! as read
       integer, intent(in) :: which(:)                     !! indexes of those that must be positive
       type(deck_report_type), intent(inout) :: report     !! receives errors
-      integer :: i
+      logical, intent(inout) :: valid                     !! false where one is not
+      integer :: i, row
 
-      do i = 1, size(which)
-         if (constants(which(i)) > 0.0_dp) cycle
-         call report%error(field_place(cards%data(card%first_data + (which(i) - 1)/per_card), &
-            mod(which(i) - 1, per_card) + 1), trim(names(which(i)))//' must be positive')
+      do row = 1, size(property%temperature)
+         do i = 1, size(which)
+            if (property%values(which(i), row) > 0.0_dp) cycle
+            valid = .false.
+            call report%error(field_place(cards%data(first_card(card, property, row) + &
+               (which(i) - 1)/per_card), mod(which(i) - 1, per_card) + 1), &
+               trim(property%names(which(i)))//' must be positive')
+         end do
       end do
    end subroutine refuse_not_positive
 

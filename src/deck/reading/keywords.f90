@@ -82,7 +82,7 @@ module keywords
       keyword_type('SURFACE', built, in_model, 1, many, 'NAME=/TYPE=/~INTERNAL'), &
       keyword_type('MATERIAL', built, in_model, 0, 0, 'NAME='), &
       keyword_type('ELASTIC', built, in_model, 1, many, 'TYPE='), &
-      keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/~ZERO='), &
+      keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/ZERO='), &
       keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
       keyword_type('DENSITY', built, in_model, 1, many, ''), &
       keyword_type('SPECIFIC HEAT', built, in_model, 1, many, ''), &

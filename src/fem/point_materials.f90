@@ -1,0 +1,193 @@
+!> Materials at given points of all elements: one for all points that share it, or one for each point
+!> where the axes turn or properties follow the temperature.
+module point_materials
+   use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain
+   use kinds, only: dp
+   use materials, only: follows_temperature, material_axes, material_type, orientation_type, &
+      properties_type, section_type, thermal_strain
+   use mesh, only: mesh_type
+   use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
+   use point_rules, only: point_rule_type
+   implicit none
+   private
+   public :: point_material_type, point_materials_type
+
+   !> A material at a point, along x, y and z.
+   type :: point_material_type
+      real(dp) :: elasticity(4, 4) = 0.0_dp        !! condensed in plane stress [stress]
+      real(dp) :: thermal_modulus(4) = 0.0_dp      !! [stress/temperature]
+      !> What temperatures hold back beyond it, where expansion follows them [stress]
+      real(dp) :: thermal_stress(4) = 0.0_dp
+      real(dp) :: compliance(4, 4) = 0.0_dp        !! inverse of all of E; 0 without it [1/stress]
+      real(dp) :: conductivity(2, 2) = 0.0_dp      !! [power/(length temperature)]
+      real(dp) :: resistivity(2, 2) = 0.0_dp       !! its inverse; 0 without it
+   end type point_material_type
+
+   !> The materials of all elements.
+   type :: point_materials_type
+      type(point_rule_type) :: rules(kind_count)         !! by the kind of the element
+      type(point_material_type), allocatable :: materials(:)
+      integer, allocatable :: material(:)                !! (elements) first of its materials
+      logical, allocatable :: one_material(:)            !! (elements) one for all of its points
+      logical :: has_inverses = .true.   !! whether compliance and resistivity are asked for
+   contains
+      procedure :: place
+      procedure :: set_temperature
+      procedure :: at_point
+   end type point_materials_type
+
+contains
+
+   !> One material for a section and plane, or one a point where axes may turn or properties follow
+   !> the temperature. These are as of their first rows until they are set.
+   pure subroutine place(self, mesh, sections, materials, orientations, rules)
+      class(point_materials_type), intent(inout) :: self
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      type(point_rule_type), intent(in) :: rules(:)         !! (kinds) points of each kind
+      integer :: shared(size(sections), axisymmetric), e, g, n, pass
+      real(dp) :: axes(2, 2), position(2)
+
+      self%rules = rules
+      allocate (self%material(size(mesh%element_kind)))
+      self%one_material = sections(mesh%element_section)%orientation == 0 .and. &
+         .not. follows_temperature(materials(sections(mesh%element_section)%material))
+      ! First counted, then made.
+      do pass = 1, 2
+         shared = 0
+         n = 0
+         do e = 1, size(self%material)
+            associate (s => mesh%element_section(e), plane => mesh%element_plane(e), &
+               rule => self%rules(mesh%element_kind(e)), &
+               nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+               if (self%one_material(e) .and. shared(s, plane) > 0) then
+                  self%material(e) = shared(s, plane)
+                  cycle
+               end if
+               self%material(e) = n + 1
+               if (self%one_material(e)) shared(s, plane) = n + 1
+               do g = 1, merge(1, rule%count, self%one_material(e))
+                  n = n + 1
+                  if (pass == 1) cycle
+                  position = matmul(mesh%coordinates(:, nodes), rule%shape(g, :rule%nodes))
+                  axes = material_axes(orientations, sections(s)%orientation, position)
+                  associate (material => materials(sections(s)%material))
+                     call set_point(plane, material, axes, self%has_inverses, self%materials(n))
+                     self%materials(n)%thermal_modulus = thermal_modulus_in(plane, material, &
+                        material%expansion, axes)
+                  end associate
+               end do
+            end associate
+         end do
+         if (pass == 1) allocate (self%materials(n))
+      end do
+   end subroutine place
+
+   !> Gives points whose properties follow the temperature those of theirs. Their thermal modulus is
+   !> the slope by temperature, and what it leaves out is thermal stress.
+   pure subroutine set_temperature(self, mesh, sections, materials, orientations, temperature, &
+      initial)
+      class(point_materials_type), intent(inout) :: self    !! placed
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
+      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
+      real(dp), intent(in) :: temperature(:), initial(:)    !! (nodes) [temperature]
+      type(properties_type) :: properties(size(materials))
+      logical :: follows(size(materials))
+      integer :: e, g, m
+
+      follows = follows_temperature(materials)
+      do m = 1, size(materials)
+         properties(m) = materials(m)%properties_type
+      end do
+      do e = 1, size(mesh%element_kind)
+         associate (section => sections(mesh%element_section(e)), plane => mesh%element_plane(e), &
+            rule => self%rules(mesh%element_kind(e)), &
+            nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+            m = section%material
+            if (.not. follows(m)) cycle
+            do g = 1, rule%count
+               associate (psi => rule%shape(g, :rule%nodes))
+                  call set_warm_point(plane, materials(m), properties(m), &
+                     material_axes(orientations, section%orientation, &
+                     matmul(mesh%coordinates(:, nodes), psi)), &
+                     dot_product(psi, temperature(nodes)), dot_product(psi, initial(nodes)), &
+                     self%has_inverses, self%materials(self%material(e) + g - 1))
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine set_temperature
+
+   pure subroutine set_warm_point(plane, material, properties, axes, temperature, initial, &
+      with_inverses, there)
+      integer, intent(in) :: plane
+      type(material_type), intent(in) :: material
+      type(properties_type), intent(inout) :: properties
+      real(dp), intent(in) :: axes(2, 2), temperature, initial
+      logical, intent(in) :: with_inverses
+      type(point_material_type), intent(inout) :: there
+      real(dp) :: strain(3), slope(3)
+
+      call material%set_to(temperature, properties)
+      call thermal_strain(material, initial, temperature, strain, slope)
+      call set_point(plane, properties, axes, with_inverses, there)
+      there%thermal_modulus = thermal_modulus_in(plane, properties, slope, axes)
+      there%thermal_stress = thermal_modulus_in(plane, properties, strain - &
+         slope*(temperature - initial), axes)
+   end subroutine set_warm_point
+
+   pure subroutine set_point(plane, properties, axes, with_inverses, there)
+      integer, intent(in) :: plane
+      class(properties_type), intent(in) :: properties
+      real(dp), intent(in) :: axes(2, 2)
+      logical, intent(in) :: with_inverses
+      type(point_material_type), intent(inout) :: there
+
+      there%elasticity = elasticity_in(plane, properties, axes)
+      there%conductivity = conductivity_in(properties, axes)
+      if (.not. with_inverses) return
+      ! Not condensed: with sigma_zz = 0 its energy is that of plane stress, too.
+      there%compliance = inverse_of(elasticity_in(plane_strain, properties, axes))
+      there%resistivity = inverse_of(there%conductivity)
+   end subroutine set_point
+
+   !> The material at a point of an element.
+   pure integer function at_point(self, element, g) result(i)
+      class(point_materials_type), intent(in) :: self    !! placed
+      integer, intent(in) :: element                     !! which element
+      integer, intent(in) :: g                           !! which of its points
+
+      i = self%material(element)
+      if (.not. self%one_material(element)) i = i + g - 1
+   end function at_point
+
+   !> Inverse of a symmetric positive definite matrix; zero where it is not.
+   pure function inverse_of(matrix) result(inverse)
+      real(dp), intent(in) :: matrix(:, :)
+      real(dp) :: inverse(size(matrix, 1), size(matrix, 1))
+      real(dp) :: pivot, column(size(matrix, 1))
+      integer :: i, k
+
+      ! Gauss-Jordan in place.
+      inverse = matrix
+      do k = 1, size(matrix, 1)
+         pivot = inverse(k, k)
+         if (.not. pivot > 0.0_dp) then
+            inverse = 0.0_dp
+            return
+         end if
+         column = inverse(:, k)
+         inverse(:, k) = 0.0_dp
+         inverse(k, k) = 1.0_dp
+         inverse(k, :) = inverse(k, :)/pivot
+         do i = 1, size(matrix, 1)
+            if (i /= k) inverse(i, :) = inverse(i, :) - column(i)*inverse(k, :)
+         end do
+      end do
+   end function inverse_of
+
+end module point_materials

@@ -1,0 +1,372 @@
+!> What bodies are beyond their linear operators K, B and C, of (3.3) and (2.4), which were formed at
+!> earlier temperatures: heat and forces that stand on the right of the equations of a stage, and are
+!> corrected until they are those of its solution.
+!>
+!> At the integration points fluxes and stresses of both kinds are taken, and their differences
+!> gathered on the nodes, so that a solution balances the true ones. Heat is stored as enthalpy,
+!> H(T) = integral of rho c, so that the heat of an increment is a difference of contents. Heat that
+!> strains take up (DILATATION) is corrected in the same way.
+!>
+!> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where one does
+!> not reduce what is left over to 0.3 of the one before, the operators are to be formed again.
+module operator_corrections
+   use anderson_mixing, only: mixing_type
+   use element_kinds, only: element_node_count
+   use errors, only: error_type, set_error, status_no_convergence
+   use increment_data, only: stage_type
+   use kinds, only: dp
+   use materials, only: follows_temperature, heat_content
+   use model, only: model_type
+   use point_fields, only: point_fields_type
+   use point_materials, only: point_material_type
+   use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
+   use reduced_bodies, only: reduced_bodies_type
+   use solution_state, only: solution_state_type
+   use text, only: to_text
+   use thermal_matrix, only: heat_equation_type
+   implicit none
+   private
+   public :: corrections_type
+
+   real(dp), parameter :: settled = 1.0e-10_dp  !! part of heat and forces that is left over
+   integer, parameter :: most_passes = 60
+   real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
+
+   !> Fields at points of all elements, and the elements whose properties follow temperatures.
+   type :: corrections_type
+      private
+      type(point_fields_type) :: excess            !! operators over bodies, at integration points
+      type(point_fields_type) :: contents          !! points at which heat contents are integrated
+      integer, allocatable :: elements(:)
+      !> (nodes, ...) of a stage: rate of heat taken up, heat beyond conduction, forces along x and y
+      real(dp), allocatable :: values(:)
+      real(dp), allocatable :: heat_before(:)      !! (nodes) beyond conduction at its start
+      real(dp), allocatable :: strain_before(:)    !! (nodes) taken up by strains at T*, u*
+      real(dp), allocatable :: scale(:)            !! (4 nodes) of the values
+      type(mixing_type) :: mixing
+      real(dp) :: left_over = 0.0_dp               !! of the last pass, in scales
+      integer, public :: passes = 0                !! of the stage
+      logical, public :: is_renewed = .false.      !! whether operators were formed in the stage
+      logical, public :: corrects = .false.        !! whether the run has anything to correct
+   contains
+      procedure :: prepare
+      procedure :: begin
+      procedure :: give
+      procedure :: correct
+      procedure :: renew
+      procedure :: heat_beyond
+      procedure :: true_contents
+      procedure :: keep
+   end type corrections_type
+
+contains
+
+   !> Forms what stays.
+   subroutine prepare(self, model)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      logical :: follows(size(model%mesh%element_section))
+      integer :: e
+
+      follows = follows_temperature(model%materials(model%sections( &
+         model%mesh%element_section)%material))
+      self%elements = pack([(e, e=1, size(follows))], follows)
+      self%corrects = any(follows) .or. any(model%steps%dilates)
+      if (.not. any(follows)) return
+      self%excess%has_inverses = .false.
+      self%contents%has_inverses = .false.
+      call self%excess%prepare(model%mesh, model%sections, model%materials, model%orientations, &
+         integration_rules())
+      if (any(model%steps%is_transient)) call self%contents%prepare(model%mesh, model%sections, &
+         model%materials, model%orientations, load_rules())
+   end subroutine prepare
+
+   !> Starts a stage, from the corrections of the last increments where these are of the present
+   !> operators.
+   subroutine begin(self, model, bodies, stage, before)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before        !! state at its start
+      logical :: goes_on
+
+      self%passes = 0
+      self%is_renewed = .false.
+      self%left_over = 0.0_dp
+      self%mixing = mixing_type()
+      if (allocated(self%scale)) deallocate (self%scale)
+      self%heat_before = self%heat_beyond(model, bodies, before%temperature)
+      if (allocated(self%strain_before)) deallocate (self%strain_before)
+      if (stage%dilates) self%strain_before = bodies%dilatation%taken_up(bodies%thermal_load, &
+         stage%displacement, stage%temperature)
+      goes_on = allocated(before%corrections)
+      if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
+         all(abs(before%operators_at - bodies%operators_at) <= 0.0_dp)
+      if (.not. goes_on) then
+         self%values = corrections_of(self, model, bodies, stage, before%temperature, &
+            before%displacement)
+      else
+         self%values = before%corrections
+         if (allocated(before%corrections_before)) self%values = self%values + stage%size/ &
+            before%increment_size*(before%corrections - before%corrections_before)
+      end if
+   end subroutine begin
+
+   !> Gives a stage its corrections: heat to its equation, forces to its state.
+   subroutine give(self, equation, next)
+      class(corrections_type), intent(in) :: self
+      type(heat_equation_type), intent(inout) :: equation
+      type(solution_state_type), intent(inout) :: next
+
+      associate (n => size(next%temperature))
+         if (equation%duration > 0.0_dp) equation%taken_up = equation%duration*self%values(:n)
+         if (size(self%elements) == 0) return
+         equation%excess_old = self%heat_before
+         equation%excess = self%values(n + 1:2*n)
+         next%force_excess = self%values(2*n + 1:)
+      end associate
+   end subroutine give
+
+   !> Corrects to a solution, unless what is left over is rounding.
+   !> Error: no convergence.
+   subroutine correct(self, model, bodies, stage, next, is_settled, asks_operators, error)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: next          !! solved with the present corrections
+      logical, intent(out) :: is_settled
+      logical, intent(out) :: asks_operators                 !! whether they are to be formed again
+      type(error_type), allocatable, intent(out) :: error
+      real(dp), allocatable :: left_over(:), x(:)
+      real(dp) :: last
+
+      self%passes = self%passes + 1
+      left_over = corrections_of(self, model, bodies, stage, next%temperature, &
+         next%displacement) - self%values
+      if (.not. allocated(self%scale)) self%scale = scales_of(self, bodies, stage, next)
+      last = self%left_over
+      left_over = left_over/self%scale
+      self%left_over = maxval(abs(left_over))
+      is_settled = self%left_over <= settled
+      asks_operators = .not. (is_settled .or. self%is_renewed) .and. self%passes > 1 .and. &
+         self%left_over > contracts*last .and. size(self%elements) > 0
+      if (is_settled .or. asks_operators) return
+      if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
+         call set_error(error, status_no_convergence, 'heat and stress of bodies do not follow '// &
+            'their temperatures within '//to_text(most_passes)//' corrections')
+         return
+      end if
+      x = self%values/self%scale
+      self%values = (x + self%mixing%step(x, left_over, spread(1.0_dp, 1, size(x))))*self%scale
+   end subroutine correct
+
+   !> Goes on with operators that were formed at a solution.
+   subroutine renew(self, model, bodies, stage, before, at)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies        !! with them
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before        !! state at the start of the stage
+      type(solution_state_type), intent(in) :: at            !! the solution
+
+      self%is_renewed = .true.
+      self%mixing = mixing_type()
+      deallocate (self%scale)
+      self%heat_before = self%heat_beyond(model, bodies, before%temperature)
+      self%values = corrections_of(self, model, bodies, stage, at%temperature, at%displacement)
+   end subroutine renew
+
+   !> Keeps the corrections of a stage in its state, for the next one to begin with.
+   subroutine keep(self, bodies, before, next)
+      class(corrections_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(solution_state_type), intent(in) :: before
+      type(solution_state_type), intent(inout) :: next
+
+      next%corrections = self%values
+      if (allocated(next%corrections_before)) deallocate (next%corrections_before)
+      if (.not. self%is_renewed .and. allocated(before%corrections)) &
+         next%corrections_before = before%corrections
+      if (allocated(bodies%operators_at)) next%operators_at = bodies%operators_at
+   end subroutine keep
+
+   !> Corrections that temperatures and displacements at the end of a stage ask for.
+   function corrections_of(self, model, bodies, stage, temperature, displacement) result(values)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(stage_type), intent(in) :: stage
+      real(dp), intent(in) :: temperature(:), displacement(:)
+      real(dp), allocatable :: values(:)                     ! (4 nodes)
+      integer :: n
+
+      n = size(temperature)
+      allocate (values(4*n), source=0.0_dp)
+      if (size(self%elements) > 0) call gather_excess(self, model, bodies, temperature, &
+         displacement, values(n + 1:2*n), values(2*n + 1:))
+      if (stage%duration <= 0.0_dp) return
+      if (allocated(stage%content)) values(:n) = true_contents(self, model, temperature) - &
+         stage%content - nodal_contents(self, model, temperature - stage%temperature, &
+         bodies%heat_capacity)
+      if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
+         bodies%thermal_load, displacement, temperature) - self%strain_before
+      values(:n) = values(:n)/stage%duration
+   end function corrections_of
+
+   !> Heat that K conducts beyond the bodies.
+   function heat_beyond(self, model, bodies, temperature) result(heat)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp) :: heat(size(temperature))                    !! (nodes) [power]
+      real(dp) :: forces(2*size(temperature)), rest(2*size(temperature))
+
+      rest = 0.0_dp
+      heat = 0.0_dp
+      if (size(self%elements) > 0) call gather_excess(self, model, bodies, temperature, rest, &
+         heat, forces)
+   end function heat_beyond
+
+   !> Heat and forces of the operators over those of the bodies.
+   subroutine gather_excess(self, model, bodies, temperature, displacement, heat, forces)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: temperature(:), displacement(:)
+      real(dp), intent(out) :: heat(:), forces(:)            ! (nodes), (2 nodes)
+      real(dp) :: flux(most, 2), stress(most, 4), of_nodes(2, 8)
+      integer :: e, i, q
+
+      heat = 0.0_dp
+      forces = 0.0_dp
+      call self%excess%set_temperature(model%mesh, model%sections, model%materials, &
+         model%orientations, temperature, model%initial_temperature)
+      flux = 0.0_dp
+      stress = 0.0_dp
+      do i = 1, size(self%elements)
+         e = self%elements(i)
+         associate (mesh => model%mesh, first => self%excess%material(e), &
+            n => self%excess%rules(model%mesh%element_kind(e))%count, &
+            nodes => model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e))
+            call take_from(bodies%materials(first:first + n - 1), &
+               self%excess%materials(first:first + n - 1))
+            if (allocated(bodies%thermal%matrix%value)) then
+               call self%excess%heat_flux(mesh, e, temperature, flux)
+               of_nodes(1, :) = self%excess%nodal_heat(mesh, e, flux)
+               heat(nodes) = heat(nodes) + of_nodes(1, :size(nodes))
+            end if
+            if (.not. allocated(bodies%mechanical%matrix%value)) cycle
+            call self%excess%stress(mesh, e, reshape(displacement, [2, size(temperature)]), &
+               temperature - model%initial_temperature, stress)
+            if (allocated(mesh%initial_stress)) stress(:n, :) = stress(:n, :) - &
+               spread(mesh%initial_stress(:, e), 1, n)
+            of_nodes = self%excess%nodal_forces(mesh, e, stress)
+            do q = 1, size(nodes)
+               associate (there => forces(2*nodes(q) - 1:2*nodes(q)))
+                  there = there + of_nodes(:, q)
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine gather_excess
+
+   !> Properties of the operators less those of the bodies.
+   pure elemental subroutine take_from(of_operators, of_bodies)
+      type(point_material_type), intent(in) :: of_operators
+      type(point_material_type), intent(inout) :: of_bodies
+
+      of_bodies%elasticity = of_operators%elasticity - of_bodies%elasticity
+      of_bodies%thermal_modulus = of_operators%thermal_modulus - of_bodies%thermal_modulus
+      of_bodies%thermal_stress = -of_bodies%thermal_stress
+      of_bodies%conductivity = of_operators%conductivity - of_bodies%conductivity
+   end subroutine take_from
+
+   !> Heat contents of the elements whose properties follow temperatures, on the nodes.
+   pure function true_contents(self, model, temperature) result(content)
+      class(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes) [temperature]
+      real(dp) :: content(size(temperature))                 !! (nodes) [energy]
+      real(dp), allocatable :: none(:)
+
+      content = nodal_contents(self, model, temperature, none)
+   end function true_contents
+
+   !> Contents by a law of the material, or by given capacities of the elements; consistent in
+   !> elements with nodes between corners, else lumped, as the capacity matrix is.
+   pure function nodal_contents(self, model, temperature, capacity) result(content)
+      class(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)
+      real(dp), allocatable, intent(in) :: capacity(:)       ! (elements), or none
+      real(dp) :: content(size(temperature))
+      real(dp) :: there
+      integer :: g, i, q
+
+      content = 0.0_dp
+      do i = 1, size(self%elements)
+         associate (mesh => model%mesh, e => self%elements(i), fields => self%contents)
+            associate (rule => fields%rules(mesh%element_kind(e)), nodes => mesh%element_nodes( &
+               :element_node_count(mesh%element_kind(e)), e), material => model%materials( &
+               model%sections(mesh%element_section(e))%material))
+               if (size(nodes) <= 4) then
+                  do q = 1, size(nodes)
+                     there = content_at(temperature(nodes(q)))
+                     content(nodes(q)) = content(nodes(q)) + there*dot_product(rule%shape( &
+                        :rule%count, q), fields%volume(fields%first(e):fields%first(e + 1) - 1))
+                  end do
+                  cycle
+               end if
+               do g = 1, rule%count
+                  associate (psi => rule%shape(g, :rule%nodes))
+                     there = content_at(dot_product(psi, temperature(nodes)))
+                     content(nodes) = content(nodes) + there*fields%volume(fields%first(e) + g - &
+                        1)*psi
+                  end associate
+               end do
+            end associate
+         end associate
+      end do
+   contains
+      pure real(dp) function content_at(temperature)
+         real(dp), intent(in) :: temperature
+
+         if (allocated(capacity)) then
+            content_at = capacity(self%elements(i))*temperature
+         else
+            content_at = heat_content(model%materials(model%sections( &
+               model%mesh%element_section(self%elements(i)))%material), temperature)
+         end if
+      end function content_at
+   end function nodal_contents
+
+   !> Largest heat and forces of a solution, by which what is left over is small.
+   function scales_of(self, bodies, stage, next) result(scale)
+      class(corrections_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: next
+      real(dp) :: scale(size(self%values))
+      real(dp) :: heat, force
+
+      associate (n => size(next%temperature))
+         heat = maxval(abs(self%values(:2*n)))
+         if (allocated(bodies%thermal%matrix%value)) heat = max(heat, &
+            maxval(abs(bodies%thermal%matrix%multiply(next%temperature))))
+         if (stage%duration > 0.0_dp) heat = max(heat, maxval(abs(bodies%capacity%multiply( &
+            next%temperature - stage%temperature)))/stage%duration)
+         if (allocated(self%strain_before)) heat = max(heat, maxval(abs( &
+            bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
+            stage%displacement)))/stage%duration)
+         force = maxval(abs(self%values(2*n + 1:)))
+         if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
+            maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
+         scale(:2*n) = max(heat, tiny(heat))
+         scale(2*n + 1:) = max(force, tiny(force))
+      end associate
+   end function scales_of
+
+end module operator_corrections
