@@ -30,6 +30,7 @@ module point_materials
       integer, allocatable :: material(:)                !! (elements) first of its materials
       logical, allocatable :: one_material(:)            !! (elements) one for all of its points
       logical :: has_inverses = .true.   !! whether compliance and resistivity are asked for
+      real(dp), allocatable :: temperature(:)   !! (nodes) that they were set to last [temperature]
    contains
       procedure :: place
       procedure :: set_temperature
@@ -97,8 +98,13 @@ contains
       real(dp), intent(in) :: temperature(:), initial(:)    !! (nodes) [temperature]
       type(properties_type) :: properties(size(materials))
       logical :: follows(size(materials))
+      real(dp) :: axes(2, 2)
       integer :: e, g, m
 
+      if (allocated(self%temperature)) then
+         if (all(abs(self%temperature - temperature) <= 0.0_dp)) return
+      end if
+      self%temperature = temperature
       follows = follows_temperature(materials)
       do m = 1, size(materials)
          properties(m) = materials(m)%properties_type
@@ -111,9 +117,9 @@ contains
             if (.not. follows(m)) cycle
             do g = 1, rule%count
                associate (psi => rule%shape(g, :rule%nodes))
-                  call set_warm_point(plane, materials(m), properties(m), &
-                     material_axes(orientations, section%orientation, &
-                     matmul(mesh%coordinates(:, nodes), psi)), &
+                  if (g == 1 .or. section%orientation > 0) axes = material_axes(orientations, &
+                     section%orientation, matmul(mesh%coordinates(:, nodes), psi))
+                  call set_warm_point(plane, materials(m), properties(m), axes, &
                      dot_product(psi, temperature(nodes)), dot_product(psi, initial(nodes)), &
                      self%has_inverses, self%materials(self%material(e) + g - 1))
                end associate

@@ -41,7 +41,7 @@ contains
       real(dp) :: e(4, 4)
 
       beta = matmul(material%elasticity, [expansion, 0.0_dp])
-      beta = matmul(transpose(strain_rotation(axes)), beta)
+      if (.not. are_x_and_y(axes)) beta = matmul(transpose(strain_rotation(axes)), beta)
       if (plane /= plane_stress) return
       e = in_global_axes(material, axes)
       beta = beta - e(:, 3)*(beta(3)/e(3, 3))
@@ -54,7 +54,10 @@ contains
       real(dp), intent(in) :: axes(2, 2)            !! its axes 1 and 2 as columns
       real(dp) :: k(2, 2)                           !! [power/(length temperature)]
 
-      k = matmul(axes, transpose(axes*spread(material%conductivity, 1, 2)))
+      associate (a => axes(:, 1), b => axes(:, 2), c => material%conductivity)
+         k(:, 1) = a*(c(1)*a(1)) + b*(c(2)*b(1))
+         k(:, 2) = a*(c(1)*a(2)) + b*(c(2)*b(2))
+      end associate
    end function conductivity_in
 
    !> Stresses xx, yy, zz, xy as 11, 22, 33, 12 of axes.
@@ -66,14 +69,24 @@ contains
       turned = matmul(transpose(strain_rotation(transpose(axes))), stress)
    end function along_axes
 
+   !> Whether unit vectors are those along x and y.
+   pure logical function are_x_and_y(axes)
+      real(dp), intent(in) :: axes(2, 2)
+
+      are_x_and_y = abs(axes(2, 1)) + abs(axes(1, 2)) <= 0.0_dp .and. axes(1, 1) > 0.0_dp .and. &
+         axes(2, 2) > 0.0_dp
+   end function are_x_and_y
+
    pure function in_global_axes(material, axes) result(e)
       class(properties_type), intent(in) :: material
       real(dp), intent(in) :: axes(2, 2)
       real(dp) :: e(4, 4)
       real(dp) :: rotation(4, 4)
 
+      e = material%elasticity
+      if (are_x_and_y(axes)) return
       rotation = strain_rotation(axes)
-      e = matmul(transpose(rotation), matmul(material%elasticity, rotation))
+      e = matmul(transpose(rotation), matmul(e, rotation))
    end function in_global_axes
 
 end module point_properties

@@ -10,6 +10,15 @@ module materials
    public :: material_axes, strain_rotation, heat_capacity
    public :: elasticity_of, set_property, isotropic, engineering, orthotropic, anisotropic
    public :: follows_temperature, thermal_strain, heat_content
+   public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
+      of_specific_heat
+
+   ! What a property is.
+   integer, parameter :: of_elasticity = 1, of_expansion = 2, of_conductivity = 3, of_density = 4, &
+      of_specific_heat = 5
+   character(13), parameter :: property_keywords(5) = [character(13) :: 'ELASTIC', 'EXPANSION', &
+      'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT']
+   integer, parameter :: most_constants = 21
 
    ! What the constants of *ELASTIC are.
    integer, parameter :: isotropic = 1, engineering = 2, orthotropic = 3, anisotropic = 4
@@ -26,7 +35,7 @@ module materials
    !> A property of a material as the deck gives it: constants over temperature, linear between
    !> rows and held outside of them.
    type :: property_type
-      character(16) :: property = ''                  !! keyword of its card
+      integer :: kind = 0                             !! of_elasticity, ...
       integer :: symmetry = isotropic                 !! what the constants of *ELASTIC are
       character(24), allocatable :: names(:)          !! (constants) what they are called
       real(dp), allocatable :: values(:, :)           !! (constants, rows)
@@ -87,7 +96,7 @@ contains
    end function follows_temperature
 
    !> Keeps a property, in place of that of an earlier card; what the material inherits is of its
-   !> first row.
+   !> first row. Rows that are all alike are one.
    pure subroutine set_property(material, property)
       type(material_type), intent(inout) :: material
       type(property_type), intent(in) :: property
@@ -97,33 +106,48 @@ contains
       allocate (others(0))
       if (allocated(material%given)) then
          do i = 1, size(material%given)
-            if (material%given(i)%property /= property%property) others = [others, &
-               material%given(i)]
+            if (material%given(i)%kind /= property%kind) others = [others, material%given(i)]
          end do
       end if
       material%given = [others, property]
-      call take_values(property, property%values(:, 1), material)
+      associate (given => material%given(size(material%given)))
+         if (all(abs(given%values - spread(given%values(:, 1), 2, size(given%temperature))) <= &
+            0.0_dp)) then
+            given%values = given%values(:, :1)
+            given%temperature = given%temperature(:1)
+         end if
+      end associate
+      call take_values(property%kind, property%symmetry, property%values(:, 1), material)
    end subroutine set_property
 
    !> Gives properties the constants of a card.
-   pure subroutine take_values(property, values, there)
-      type(property_type), intent(in) :: property
+   pure subroutine take_values(kind, symmetry, values, there)
+      integer, intent(in) :: kind, symmetry
       real(dp), intent(in) :: values(:)                 ! (constants)
       class(properties_type), intent(inout) :: there
 
-      select case (property%property)
-      case ('ELASTIC')
-         there%elasticity = elasticity_of(property%symmetry, values)
-      case ('EXPANSION')
-         there%expansion = values(min([1, 2, 3], size(values)))
-      case ('CONDUCTIVITY')
-         there%conductivity = values(min([1, 2], size(values)))
-      case ('DENSITY')
+      select case (kind)
+      case (of_elasticity)
+         there%elasticity = elasticity_of(symmetry, values)
+      case (of_expansion)
+         there%expansion = along_axes(values)
+      case (of_conductivity)
+         there%conductivity = [values(1), values(size(values))]
+      case (of_density)
          there%density = values(1)
-      case ('SPECIFIC HEAT')
+      case (of_specific_heat)
          there%specific_heat = values(1)
       end select
    end subroutine take_values
+
+   !> One or three values along axes 1, 2, 3.
+   pure function along_axes(values) result(along)
+      real(dp), intent(in) :: values(:)
+      real(dp) :: along(3)
+
+      along = values(1)
+      if (size(values) == 3) along = values
+   end function along_axes
 
    !> Stiffness in the plane from the constants of *ELASTIC.
    pure function elasticity_of(symmetry, constants) result(stiffness)
@@ -151,34 +175,39 @@ contains
       class(material_type), intent(in) :: self
       real(dp), intent(in) :: temperature
       class(properties_type), intent(inout) :: there    !! of this material at any temperature
+      real(dp) :: values(most_constants)
       integer :: i
 
       do i = 1, size(self%given)
          associate (property => self%given(i))
-            if (size(property%temperature) > 1) call take_values(property, &
-               constants_at(property, temperature), there)
+            if (size(property%temperature) == 1) cycle
+            call interpolate(property, temperature, values)
+            call take_values(property%kind, property%symmetry, &
+               values(:size(property%values, 1)), there)
          end associate
       end do
    end subroutine set_to
 
-   pure function constants_at(property, temperature) result(values)
+   !> The constants at a temperature.
+   pure subroutine interpolate(property, temperature, values)
       type(property_type), intent(in) :: property
       real(dp), intent(in) :: temperature
-      real(dp) :: values(size(property%values, 1))
+      real(dp), intent(out) :: values(:)                ! its constants first
       real(dp) :: part
-      integer :: row
+      integer :: k, row
 
       associate (rows => property%temperature)
          row = row_below(rows, temperature)
-         if (row == 0 .or. row == size(rows)) then
-            values = property%values(:, max(row, 1))
-            return
-         end if
-         part = (temperature - rows(row))/(rows(row + 1) - rows(row))
-         values = property%values(:, row) + part*(property%values(:, row + 1) - &
-            property%values(:, row))
+         part = 0.0_dp
+         if (row > 0 .and. row < size(rows)) part = (temperature - rows(row))/ &
+            (rows(row + 1) - rows(row))
+         do k = 1, size(property%values, 1)
+            values(k) = property%values(k, max(row, 1))
+            if (part > 0.0_dp) values(k) = values(k) + part*(property%values(k, row + 1) - &
+               values(k))
+         end do
       end associate
-   end function constants_at
+   end subroutine interpolate
 
    !> The last row not above a temperature, or 0.
    pure integer function row_below(rows, temperature) result(row)
@@ -197,25 +226,24 @@ contains
       real(dp), intent(in) :: initial, temperature
       real(dp), intent(out) :: strain(3)                !! [-]
       real(dp), intent(out) :: slope(3)                 !! [1/temperature]
-      real(dp), allocatable :: now(:), first(:)
+      real(dp) :: values(most_constants), first(3)
       integer :: i, row
 
       strain = material%expansion*(temperature - initial)
       slope = material%expansion
       do i = 1, size(material%given)
          associate (property => material%given(i), rows => material%given(i)%temperature, &
-            zero => material%no_strain)
-            if (property%property /= 'EXPANSION' .or. size(rows) == 1) cycle
-            now = constants_at(property, temperature)
-            first = constants_at(property, initial)
+            zero => material%no_strain, n => size(material%given(i)%values, 1))
+            if (property%kind /= of_expansion .or. size(rows) == 1) cycle
+            call interpolate(property, initial, values)
+            first = along_axes(values(:n))
+            call interpolate(property, temperature, values)
+            slope = along_axes(values(:n))
+            strain = slope*(temperature - zero) - first*(initial - zero)
             row = row_below(rows, temperature)
-            associate (axis => min([1, 2, 3], size(now)))
-               strain = now(axis)*(temperature - zero) - first(axis)*(initial - zero)
-               slope = now(axis)
-               if (row > 0 .and. row < size(rows)) slope = slope + (temperature - zero)* &
-                  (property%values(axis, row + 1) - property%values(axis, row))/ &
-                  (rows(row + 1) - rows(row))
-            end associate
+            if (row > 0 .and. row < size(rows)) slope = slope + (temperature - zero)/ &
+               (rows(row + 1) - rows(row))*along_axes(property%values(:, row + 1) - &
+               property%values(:, row))
          end associate
       end do
    end subroutine thermal_strain
@@ -255,8 +283,8 @@ contains
       allocate (rows(0))
       do i = 1, size(material%given)
          associate (property => material%given(i))
-            if (size(property%temperature) == 1 .or. .not. (property%property == 'DENSITY' .or. &
-               property%property == 'SPECIFIC HEAT')) cycle
+            if (size(property%temperature) == 1 .or. .not. any(property%kind == &
+               [of_density, of_specific_heat])) cycle
             do k = 1, size(property%temperature)
                associate (there => property%temperature(k))
                   if (.not. any(abs(rows - there) <= 0.0_dp)) rows = [pack(rows, rows < there), &
@@ -270,20 +298,17 @@ contains
    pure real(dp) function capacity_at(material, temperature) result(capacity)
       type(material_type), intent(in) :: material
       real(dp), intent(in) :: temperature
-      real(dp), allocatable :: values(:)
+      real(dp) :: values(most_constants)
       integer :: i
 
       capacity = heat_capacity(material)
       do i = 1, size(material%given)
          associate (property => material%given(i))
             if (size(property%temperature) == 1) cycle
-            if (property%property == 'DENSITY') then
-               values = constants_at(property, temperature)
-               capacity = capacity/material%density*values(1)
-            else if (property%property == 'SPECIFIC HEAT') then
-               values = constants_at(property, temperature)
-               capacity = capacity/material%specific_heat*values(1)
-            end if
+            if (all(property%kind /= [of_density, of_specific_heat])) cycle
+            call interpolate(property, temperature, values)
+            capacity = capacity/merge(material%density, material%specific_heat, &
+               property%kind == of_density)*values(1)
          end associate
       end do
    end function capacity_at

@@ -28,7 +28,7 @@ module operator_corrections
    private
    public :: corrections_type
 
-   real(dp), parameter :: settled = 1.0e-10_dp  !! part of heat and forces that is left over
+   real(dp), parameter :: settled = 1.0e-9_dp  !! part of heat and forces that is left over
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
 
@@ -96,7 +96,6 @@ contains
       self%left_over = 0.0_dp
       self%mixing = mixing_type()
       if (allocated(self%scale)) deallocate (self%scale)
-      self%heat_before = self%heat_beyond(model, bodies, before%temperature)
       if (allocated(self%strain_before)) deallocate (self%strain_before)
       if (stage%dilates) self%strain_before = bodies%dilatation%taken_up(bodies%thermal_load, &
          stage%displacement, stage%temperature)
@@ -104,10 +103,12 @@ contains
       if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
          all(abs(before%operators_at - bodies%operators_at) <= 0.0_dp)
       if (.not. goes_on) then
+         self%heat_before = self%heat_beyond(model, bodies, before%temperature)
          self%values = corrections_of(self, model, bodies, stage, before%temperature, &
             before%displacement)
       else
          self%values = before%corrections
+         self%heat_before = self%values(size(before%temperature) + 1:2*size(before%temperature))
          if (allocated(before%corrections_before)) self%values = self%values + stage%size/ &
             before%increment_size*(before%corrections - before%corrections_before)
       end if
@@ -237,13 +238,18 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:), displacement(:)
       real(dp), intent(out) :: heat(:), forces(:)            ! (nodes), (2 nodes)
-      real(dp) :: flux(most, 2), stress(most, 4), of_nodes(2, 8)
+      real(dp) :: flux(most, 2), stress(most, 4), of_nodes(2, 8), u(2, size(temperature))
+      real(dp) :: warming(size(temperature))
       integer :: e, i, q
 
       heat = 0.0_dp
       forces = 0.0_dp
       call self%excess%set_temperature(model%mesh, model%sections, model%materials, &
          model%orientations, temperature, model%initial_temperature)
+      ! Its materials become differences.
+      deallocate (self%excess%temperature)
+      u = reshape(displacement, shape(u))
+      warming = temperature - model%initial_temperature
       flux = 0.0_dp
       stress = 0.0_dp
       do i = 1, size(self%elements)
@@ -259,8 +265,7 @@ contains
                heat(nodes) = heat(nodes) + of_nodes(1, :size(nodes))
             end if
             if (.not. allocated(bodies%mechanical%matrix%value)) cycle
-            call self%excess%stress(mesh, e, reshape(displacement, [2, size(temperature)]), &
-               temperature - model%initial_temperature, stress)
+            call self%excess%stress(mesh, e, u, warming, stress)
             if (allocated(mesh%initial_stress)) stress(:n, :) = stress(:n, :) - &
                spread(mesh%initial_stress(:, e), 1, n)
             of_nodes = self%excess%nodal_forces(mesh, e, stress)

@@ -14,7 +14,7 @@ module deck_builder_materials
    use element_kinds, only: axisymmetric
    use kinds, only: dp
    use materials, only: anisotropic, engineering, isotropic, material_type, orientation_type, &
-      orthotropic, property_type, set_property
+      orthotropic, property_keywords, property_type, set_property
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use named_items, only: find_named
@@ -87,7 +87,7 @@ contains
       type(property_type) :: property
       logical :: valid
 
-      property%property = card%name
+      property%kind = findloc(property_keywords == card%name, .true., dim=1)
       select case (card%name)
       case ('ELASTIC')
          material%has_elasticity = .true.
