@@ -4,9 +4,9 @@ module point_materials
    use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain
    use kinds, only: dp
    use materials, only: follows_temperature, material_axes, material_type, orientation_type, &
-      properties_type, section_type, thermal_strain
+      properties_type, section_type, strain_rotation, thermal_strain
    use mesh, only: mesh_type
-   use point_properties, only: conductivity_in, elasticity_in, thermal_modulus_in
+   use point_properties, only: are_x_and_y, conductivity_in, elasticity_in, thermal_modulus_in
    use point_rules, only: point_rule_type
    implicit none
    private
@@ -141,9 +141,24 @@ contains
       call material%set_to(temperature, properties)
       call thermal_strain(material, initial, temperature, strain, slope)
       call set_point(plane, properties, axes, with_inverses, there)
-      there%thermal_modulus = thermal_modulus_in(plane, properties, slope, axes)
-      there%thermal_stress = thermal_modulus_in(plane, properties, strain - &
-         slope*(temperature - initial), axes)
+      there%thermal_modulus = stress_of(slope)
+      strain = strain - slope*(temperature - initial)
+      there%thermal_stress = 0.0_dp
+      if (any(abs(strain) > 0.0_dp)) there%thermal_stress = stress_of(strain)
+   contains
+      !> Stress of strains along the axes of the material; E of plane stress has no row 3.
+      pure function stress_of(along) result(stress)
+         real(dp), intent(in) :: along(3)
+         real(dp) :: stress(4), global(4)
+         integer :: i
+
+         global = [along, 0.0_dp]
+         if (.not. are_x_and_y(axes)) global = matmul(strain_rotation(transpose(axes)), global)
+         do i = 1, 4
+            stress(i) = there%elasticity(1, i)*global(1) + there%elasticity(2, i)*global(2) + &
+               there%elasticity(3, i)*global(3) + there%elasticity(4, i)*global(4)
+         end do
+      end function stress_of
    end subroutine set_warm_point
 
    pure subroutine set_point(plane, properties, axes, with_inverses, there)

@@ -6,7 +6,7 @@ module point_properties
    use materials, only: properties_type, strain_rotation
    implicit none
    private
-   public :: elasticity_in, thermal_modulus_in, conductivity_in, along_axes
+   public :: elasticity_in, thermal_modulus_in, conductivity_in, along_axes, are_x_and_y
 
 contains
 
@@ -71,7 +71,7 @@ contains
 
    !> Whether unit vectors are those along x and y.
    pure logical function are_x_and_y(axes)
-      real(dp), intent(in) :: axes(2, 2)
+      real(dp), intent(in) :: axes(2, 2)    !! as columns
 
       are_x_and_y = abs(axes(2, 1)) + abs(axes(1, 2)) <= 0.0_dp .and. axes(1, 1) > 0.0_dp .and. &
          axes(2, 2) > 0.0_dp
