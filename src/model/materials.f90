@@ -83,15 +83,20 @@ contains
       heat_capacity = material%density*material%specific_heat
    end function heat_capacity
 
-   !> Whether any property varies with temperature.
-   elemental logical function follows_temperature(material)
+   !> Whether a property varies with temperature, or any.
+   elemental logical function follows_temperature(material, kind)
       type(material_type), intent(in) :: material
+      integer, optional, intent(in) :: kind             !! of_elasticity, ...
       integer :: i
 
       follows_temperature = .false.
       if (.not. allocated(material%given)) return
       do i = 1, size(material%given)
-         follows_temperature = follows_temperature .or. size(material%given(i)%temperature) > 1
+         if (size(material%given(i)%temperature) == 1) cycle
+         if (present(kind)) then
+            if (material%given(i)%kind /= kind) cycle
+         end if
+         follows_temperature = .true.
       end do
    end function follows_temperature
 

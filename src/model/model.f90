@@ -9,7 +9,7 @@ module model
    use equations, only: coupling_type, equation_type
    use kinds, only: dp
    use load_requests, only: nodal_field_type, requests_type
-   use materials, only: material_type, orientation_type, section_type
+   use materials, only: follows_temperature, material_type, orientation_type, section_type
    use mesh, only: mesh_type
    use refined_regions, only: refined_region_type
    use steps, only: step_type
@@ -18,6 +18,7 @@ module model
    implicit none
    private
    public :: model_type, physical_constants_type, verify_type, unit_labels_type
+   public :: follows_temperatures, unbounded
 
    !> Labels of the deck's units (*OPTIONS, UNITS=); empty when not given.
    type :: unit_labels_type
@@ -94,5 +95,24 @@ module model
       type(string_type), allocatable :: notes(:)                 !! defaults used, cards not needed
       type(string_type), allocatable :: warnings(:)              !! warnings, as printed
    end type model_type
+
+contains
+
+   !> Whether properties of any body follow its temperatures.
+   pure logical function follows_temperatures(model)
+      type(model_type), intent(in) :: model
+
+      follows_temperatures = any(follows_temperature(model%materials(model%sections%material)))
+   end function follows_temperatures
+
+   !> What a model has that bounds of errors do not know, in words; empty for nothing.
+   pure function unbounded(model) result(words)
+      type(model_type), intent(in) :: model
+      character(:), allocatable :: words   !! such as steps that store heat
+
+      words = ''
+      if (follows_temperatures(model)) words = 'properties over temperature'
+      if (any(model%steps%is_transient)) words = 'steps that store heat'
+   end function unbounded
 
 end module model

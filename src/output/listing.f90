@@ -14,10 +14,13 @@ module listing
    use listing_tables, only: print_contact_table, print_iterations, print_requested, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped, &
       printed_text_type
-   use model, only: model_type
+   use materials, only: follows_temperature
+   use mesh_bodies, only: body_name
+   use model, only: follows_temperatures, model_type
    use open_files, only: append_to_file, close_descriptor, empty_file, lock_file, open_in_memory, &
       overwrite_in_file, unlock_file
    use records, only: increment_record_type
+   use run_sizes, only: run_size_type
    use run_summaries, only: in_times, or_blank, run_entries, run_entry_type, run_summary_type
    use summary, only: summary_type
    use text, only: append, counted, string_type, to_text
@@ -268,9 +271,10 @@ contains
       write (self%text%unit, '(3x, *(a12))') (entries(i)%label, i=findloc(is_time, .true., dim=1), &
          findloc(is_time, .true., dim=1, back=.true.))
       write (self%text%unit, '(3x, *(f12.4))') pack(entries%number, is_time)
-      if (any(model%steps%is_transient)) write (self%text%unit, '(/, 3x, a)') &
-         'The matrix of heat was factored '//counted(run%sizes%heat_factored, 'time')//' in '// &
-         counted(self%summary%increment, 'increment')//'.'
+      if (any(model%steps%is_transient) .or. follows_temperatures(model)) write (self%text%unit, &
+         '(/, 3x, a)') 'The matrix of heat was factored '//counted(run%sizes%heat_factored, &
+         'time')//' in '//counted(self%summary%increment, 'increment')//'.'
+      if (follows_temperatures(model)) call print_bodies(self%text%unit, model, run%sizes)
       call print_deck(self%text%unit, cards)
       call write_text(self, error)
       if (allocated(error)) return
@@ -361,5 +365,24 @@ contains
          call print_wrapped(unit, '   ', line)
       end do
    end subroutine print_unapproached
+
+   !> How bodies whose properties may follow temperatures were solved.
+   subroutine print_bodies(unit, model, sizes)
+      integer, intent(in) :: unit
+      type(model_type), intent(in) :: model
+      type(run_size_type), intent(in) :: sizes
+      integer :: b
+
+      write (unit, '(3x, a)') 'The stiffness was factored '// &
+         counted(sizes%stiffness_factored, 'time')//'; '//counted(sizes%corrections, &
+         'correction')//' in all, at most '//to_text(sizes%most_corrections)//' in an increment.'
+      do b = 1, model%mesh%body_count
+         write (unit, '(3x, a)') body_name(model, b)//trim(merge( &
+            ': properties over temperature, corrected by true heat and stress', &
+            ': constant properties, no corrections of its own                ', &
+            any(follows_temperature(model%materials(model%sections(pack( &
+            model%mesh%element_section, model%mesh%element_body == b))%material)))))
+      end do
+   end subroutine print_bodies
 
 end module listing

@@ -6,13 +6,13 @@ module model_words
    use kinds, only: dp
    use element_kinds, only: axisymmetric, plane_stress
    use friction_laws, only: friction_law_type, rough_coefficient, unlimited
-   use materials, only: material_type
+   use materials, only: follows_temperature, material_type, of_expansion, thermal_strain
    use model, only: model_type
    use steps, only: analysis_heat, analysis_static
    use text, only: append, counted, string_type, to_text
    implicit none
    private
-   public :: material_words, friction_words, open_law_words, closed_law_words
+   public :: expansion_words, material_words, friction_words, open_law_words, closed_law_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
 
 contains
@@ -153,6 +153,32 @@ contains
       end if
       if (words == '') words = 'no constants'
    end function material_words
+
+   !> What a table of expansion coefficients means: strains at its ends from the initial temperature
+   !> of the material's first element on; empty without a table.
+   pure function expansion_words(model, m) result(words)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: m                      !! which material
+      character(:), allocatable :: words            !! such as strain -2E-4 at 0, 5E-3 at 500
+      real(dp) :: initial, slope(3), strain(3)
+      integer :: e, i, row
+
+      words = ''
+      e = findloc(model%sections(model%mesh%element_section)%material, m, dim=1)
+      if (e == 0) return
+      associate (material => model%materials(m))
+         if (.not. follows_temperature(material, of_expansion)) return
+         i = findloc(material%given%kind, of_expansion, dim=1)
+         initial = model%initial_temperature(model%mesh%element_nodes(1, e))
+         associate (rows => material%given(i)%temperature)
+            words = 'along axis 1 from '//to_text(initial)//' on'
+            do row = 1, size(rows), size(rows) - 1
+               call thermal_strain(material, initial, rows(row), strain, slope)
+               words = words//', '//to_text(strain(1))//' to '//to_text(rows(row))
+            end do
+         end associate
+      end associate
+   end function expansion_words
 
    !> A law of friction.
    pure function friction_words(friction) result(words)

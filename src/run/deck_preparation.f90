@@ -18,7 +18,7 @@ module deck_preparation
    use load_histories, only: load_history_type
    use loads, only: loads_type
    use messages, only: print_error, print_line
-   use model, only: model_type
+   use model, only: model_type, unbounded
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use held_points, only: first_redundant, normal_supports, over_constrained
    use progress, only: progress_type
@@ -110,9 +110,9 @@ contains
       call build_model(deck%cards, verifiable, estimated, deck%model, deck%report)
       if (command%accuracy <= 0.0_dp .or. deck%report%has_errors()) return
       ! Targets of --accuracy replace those of the deck.
-      if (any(deck%model%steps%is_transient)) call deck%report%error(deck%cards%last, &
-         'a requested accuracy needs bounds of errors, which steps that store heat do not '// &
-         'have; refine by *REFINE and LOCAL ERROR=, or give STEADY STATE')
+      if (unbounded(deck%model) /= '') call deck%report%error(deck%cards%last, &
+         'a requested accuracy needs bounds of errors, which do not know '// &
+         unbounded(deck%model)//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
       deck%model%estimates_errors = .true.
       deck%model%accuracy%targets = whole_request(command%accuracy)
       if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &

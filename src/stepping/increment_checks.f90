@@ -2,10 +2,13 @@
 module increment_checks
    use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type
+   use element_kinds, only: element_node_count
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use kinds, only: dp
    use loads, only: loads_type
-   use model, only: model_type
+   use materials, only: follows_temperature, property_keywords
+   use mesh_bodies, only: body_name
+   use model, only: follows_temperatures, model_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
@@ -14,8 +17,10 @@ module increment_checks
    use unconstrained_bodies, only: unconstrained_now, undetermined_now
    implicit none
    private
-   public :: check_balance, check_heat, check_record, check_values, check_violation, warn_of_choices
+   public :: check_balance, check_heat, check_record, check_values, check_violation
+   public :: warn_of_choices, warn_of_tables
 
+   real(dp), parameter :: margin = 1.0e-9_dp          !! of a table, that rounding may leave
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
    real(dp), parameter :: sound_imbalance = 1.0e-6_dp !! of heat and forces in discrete equations
 
@@ -119,6 +124,53 @@ contains
       if (allocated(error)) deallocate (error)
       call set_error(error, status_no_convergence, words)
    end subroutine check_heat
+
+   !> Warns of temperatures beyond the first and last rows of tables of the bodies' materials.
+   subroutine warn_of_tables(model, record)
+      type(model_type), intent(in) :: model
+      type(increment_record_type), intent(inout) :: record     !! receives the warnings
+      logical :: is_of(size(model%mesh%node_number))
+      integer :: e, i, m
+
+      if (.not. follows_temperatures(model)) return
+      do m = 1, size(model%materials)
+         if (.not. follows_temperature(model%materials(m))) cycle
+         is_of = .false.
+         do e = 1, size(model%mesh%element_kind)
+            if (model%sections(model%mesh%element_section(e))%material == m) &
+               is_of(model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), &
+               e)) = .true.
+         end do
+         if (.not. any(is_of)) cycle
+         associate (material => model%materials(m), t => record%fields%temperature)
+            do i = 1, size(material%given)
+               associate (rows => material%given(i)%temperature)
+                  if (size(rows) == 1) cycle
+                  call warn_of_end(rows(1), minloc(t, dim=1, mask=is_of), -1.0_dp)
+                  call warn_of_end(rows(size(rows)), maxloc(t, dim=1, mask=is_of), 1.0_dp)
+               end associate
+            end do
+         end associate
+      end do
+   contains
+      subroutine warn_of_end(row, node, side)
+         real(dp), intent(in) :: row, side
+         integer, intent(in) :: node
+
+         associate (there => record%fields%temperature(node), range => maxval( &
+            model%materials(m)%given(i)%temperature) - &
+            minval(model%materials(m)%given(i)%temperature))
+            if (side*(there - row) <= margin*range) return
+            call record%warn(body_name(model, model%mesh%node_body(node))//' leaves the table '// &
+               'of *'//trim(property_keywords(model%materials(m)%given(i)%kind))//' of '// &
+               model%materials(m)%name//trim(merge(' above its last row, ', &
+               ' below its first row,', side > 0.0_dp))//' '//to_text(row)// &
+               ', and its values are held: temperature ', there, ' at node '// &
+               to_text(model%mesh%node_number(node))//', time '//to_text(record%time), &
+               severity=abs(there - row))
+         end associate
+      end subroutine warn_of_end
+   end subroutine warn_of_tables
 
    !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
    !> and nothing holds, contact states of which friction allows several.

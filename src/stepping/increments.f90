@@ -11,7 +11,7 @@ module increments
    use balances, only: sound_imbalance
    use heat_reduction, only: heat_reduction_type
    use heat_storage, only: begin_storage, measure_changes, strain_rate
-   use increment_checks, only: check_heat, check_record, warn_of_choices
+   use increment_checks, only: check_heat, check_record, warn_of_choices, warn_of_tables
    use increment_control, only: increment_control_type
    use increment_data, only: increment_data_type, increment_workspace_type, stage_type
    use increment_records, only: complete_record
@@ -229,6 +229,8 @@ contains
          return
       end do
       call warn_of_pivot(self, record)
+      self%sizes%corrections = self%sizes%corrections + record%corrections
+      self%sizes%most_corrections = max(self%sizes%most_corrections, record%corrections)
       call accept_increment(next, model, self%state, record)
       call self%control%accept(model, clock, record)
    end subroutine advance
@@ -427,6 +429,7 @@ contains
          since = wall_seconds()
          call complete_record(bodies, model, self%recovery, self%loads, data, next, record)
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
+         call warn_of_tables(model, record)
          call check_record(record, step%analysis, error)
          if (allocated(error)) return
          call move_alloc(workspace%known, self%known)

@@ -26,7 +26,7 @@ module deck_builder
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
    use mesh, only: mesh_type, set_type
-   use model, only: model_type
+   use model, only: model_type, unbounded
    use quantity_types, only: quantity_type
    use order_reduction, only: side_corners
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
@@ -75,9 +75,9 @@ contains
       call build_couplings(cards, context, model, report)
       call build_transforms(cards, model, report)
       call build_steps(cards, context, model, report)
-      if (any(model%steps%is_transient) .and. model%estimates_errors .and. &
-         size(model%contacts) > 0) call context%note('no bounds of errors: a step stores heat')
-      model%estimates_errors = model%estimates_errors .and. .not. any(model%steps%is_transient)
+      if (unbounded(model) /= '' .and. model%estimates_errors .and. size(model%contacts) > 0) &
+         call context%note('no bounds of errors: they do not know '//unbounded(model))
+      model%estimates_errors = model%estimates_errors .and. unbounded(model) == ''
       call build_verifications(cards, context, model, report)
       call build_accuracy(cards, estimated, model, report)
       call build_load_axis(cards%last, context, model, report)

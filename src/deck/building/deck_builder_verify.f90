@@ -12,7 +12,7 @@ module deck_builder_verify
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_cards_of
    use kinds, only: dp
-   use model, only: model_type, verify_type
+   use model, only: model_type, verify_type, unbounded
    use named_items, only: find_named
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_contact_points, &
       of_history, of_interface, of_nodes, quantity_type
@@ -313,9 +313,9 @@ contains
 
       if (size(model%contacts) == 0) call report%missing(card%place, 'the deck has no *CONTACT '// &
          'PAIR: there is no quantity that *ACCURACY could name')
-      if (any(model%steps%is_transient)) then
-         call report%error(card%place, '*ACCURACY needs bounds of errors, which steps that '// &
-            'store heat do not have; refine by *REFINE and LOCAL ERROR=, or give STEADY STATE')
+      if (unbounded(model) /= '') then
+         call report%error(card%place, '*ACCURACY needs bounds of errors, which do not know '// &
+            unbounded(model)//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
          return
       end if
       if (.not. model%estimates_errors) call report%error(card%place, '*ACCURACY needs '// &

@@ -9,6 +9,7 @@ module heat_checks
    use deck_source, only: place_type
    use kinds, only: dp
    use load_requests, only: request_type
+   use materials, only: follows_temperature, of_expansion
    use model, only: model_type
    use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat, &
       solves_mechanics
@@ -18,6 +19,7 @@ module heat_checks
    public :: check_heat_paths, check_starts, check_constants
 
    real(dp), parameter :: small_strain = 0.1_dp   !! largest for which small strains hold
+   real(dp), parameter :: far = 0.25_dp   !! from ZERO= to the initial temperature, in a table's span
 
    !> Stefan-Boltzmann constant, CODATA 2018 [W/(m^2 K^4)].
    real(dp), parameter :: stefan_boltzmann = 5.670374419e-8_dp
@@ -59,6 +61,7 @@ contains
       integer :: i
 
       call check_expansion(cards, model, report)
+      call check_secants(cards, model, report)
       if (.not. any(solves_heat(model%steps%analysis))) return
       do i = 1, size(model%contacts)
          associate (contact => model%contacts(i), &
@@ -159,6 +162,36 @@ contains
          return
       end do
    end subroutine check_expansion
+
+   !> Warns of tables of expansion coefficients whose secants begin far from the initial temperature:
+   !> farther than a quarter of what the table spans.
+   subroutine check_secants(cards, model, report)
+      type(cards_type), intent(in) :: cards
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: initial
+      integer :: e, i, k, m
+
+      m = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name == 'MATERIAL') m = m + 1
+         if (cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
+         e = findloc(model%sections(model%mesh%element_section)%material, m, dim=1)
+         if (e == 0) cycle
+         if (.not. follows_temperature(model%materials(m), of_expansion)) cycle
+         associate (material => model%materials(m))
+            i = findloc(material%given%kind, of_expansion, dim=1)
+            initial = model%initial_temperature(model%mesh%element_nodes(1, e))
+            associate (rows => material%given(i)%temperature)
+               if (abs(initial - material%no_strain) <= far*(rows(size(rows)) - rows(1))) cycle
+            end associate
+            call report%warning(cards%keywords(k)%place, 'the coefficients of '//material%name// &
+               ' are secants from ZERO='//to_text(material%no_strain)//' on, far from the '// &
+               'initial temperature '//to_text(initial)//'; give the ZERO= that they were '// &
+               'measured from')
+         end associate
+      end do
+   end subroutine check_secants
 
    !> Least and largest of the temperatures that the deck gives: initial ones, prescribed ones and
    !> sinks of films, with the extreme factors of their amplitudes.

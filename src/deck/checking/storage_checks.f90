@@ -4,7 +4,7 @@ module storage_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use materials, only: heat_capacity
+   use materials, only: follows_temperature, heat_capacity, of_elasticity, of_expansion
    use model, only: model_type
    use steps, only: solves_heat
    use text, only: to_text
@@ -60,6 +60,12 @@ contains
       if (.not. model%constants%has_absolute_zero) then
          call report%error(place, 'DILATATION needs absolute temperatures; give *PHYSICAL '// &
             'CONSTANTS, ABSOLUTE ZERO=')
+         return
+      end if
+      if (any(follows_temperature(model%materials(model%sections%material), of_elasticity) .or. &
+         follows_temperature(model%materials(model%sections%material), of_expansion))) then
+         call report%error(place, 'DILATATION needs *ELASTIC and *EXPANSION of one row: with '// &
+            'tables over temperature the heat of strains is another one')
          return
       end if
       n = minloc(model%initial_temperature, dim=1)
