@@ -95,12 +95,12 @@ contains
       sentence = sentence//self%behind
    end function words
 
-   !> Whether two warnings are of one kind.
+   !> Whether two warnings are of one kind: they begin alike.
    pure logical function is_like(self, other)
       class(warning_type), intent(in) :: self
       type(warning_type), intent(in) :: other
 
-      is_like = self%before == other%before .and. self%behind == other%behind
+      is_like = self%before == other%before
    end function is_like
 
 end module solution_report

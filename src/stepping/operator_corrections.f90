@@ -35,8 +35,8 @@ module operator_corrections
    !> Fields at points of all elements, and the elements whose properties follow temperatures.
    type :: corrections_type
       private
-      type(point_fields_type) :: excess            !! operators over bodies, at integration points
-      type(point_fields_type) :: contents          !! points at which heat contents are integrated
+      !> Operators over bodies, at integration points; and points of heat contents
+      type(point_fields_type), allocatable :: excess, contents
       integer, allocatable :: elements(:)
       !> (nodes, ...) of a stage: rate of heat taken up, heat beyond conduction, forces along x and y
       real(dp), allocatable :: values(:)
@@ -73,6 +73,7 @@ contains
       self%elements = pack([(e, e=1, size(follows))], follows)
       self%corrects = any(follows) .or. any(model%steps%dilates)
       if (.not. any(follows)) return
+      allocate (self%excess, self%contents)
       self%excess%has_inverses = .false.
       self%contents%has_inverses = .false.
       call self%excess%prepare(model%mesh, model%sections, model%materials, model%orientations, &
