@@ -28,6 +28,8 @@ module heat_storage
    public :: stage_type, strain_heat_type, strain_rate, begin_storage, measure_changes
 
    real(dp), parameter :: settled = 1.0e-10_dp  !! part of the heat of an increment that is none
+   real(dp), parameter :: rounding = 1.0e-13_dp !! part of all heat of a body that is none
+   real(dp), parameter :: most_relaxed = 1.0e3_dp  !! of corrections
    integer, parameter :: most_passes = 60       !! of heat that strains take up
 
    !> A stage of an increment.
@@ -42,8 +44,9 @@ module heat_storage
    end type stage_type
 
    !> Heat that strains take up in a stage, corrected until it is that of its displacements and
-   !> temperatures. Each correction is relaxed after Aitken: a body that cannot expand answers too
-   !> much heat with too little.
+   !> temperatures. A body that cannot expand answers a correction with a part of it, up to
+   !> f = T0 beta:alpha/(rho c_p) < 1, so that corrections are relaxed by 1 to 1/(1 - f), after
+   !> Aitken.
    type :: strain_heat_type
       real(dp), allocatable :: taken_up(:)       !! (nodes) as the stage is solved with [energy]
       real(dp), allocatable, private :: before(:), rest(:)   !! (nodes) of T*, u*; last difference
@@ -77,14 +80,15 @@ contains
       logical, intent(out) :: is_settled
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: rest(:), change(:)
-      real(dp) :: scale
+      real(dp) :: scale, least
 
       rest = bodies%dilatation%taken_up(bodies%thermal_load, next%displacement, &
          next%temperature) - self%before - self%taken_up
       scale = max(maxval(abs(self%taken_up)), maxval(abs(bodies%capacity%multiply( &
          next%temperature - stage%temperature))), maxval(abs(bodies%dilatation%of_strains( &
          bodies%thermal_load, next%displacement - stage%displacement))))
-      is_settled = maxval(abs(rest)) <= settled*scale
+      least = rounding*maxval(abs(bodies%capacity%multiply(bodies%dilatation%absolute)))
+      is_settled = maxval(abs(rest)) <= max(settled*scale, least)
       if (is_settled) return
       self%passes = self%passes + 1
       if (self%passes > most_passes) then
@@ -95,7 +99,7 @@ contains
       if (allocated(self%rest)) then
          change = rest - self%rest
          self%relaxation = min(max(-self%relaxation*dot_product(self%rest, change)/ &
-            dot_product(change, change), 0.1_dp), 1.0_dp)
+            dot_product(change, change), 1.0_dp), most_relaxed)
       end if
       self%taken_up = self%taken_up + self%relaxation*rest
       call move_alloc(rest, self%rest)
