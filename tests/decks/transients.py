@@ -21,6 +21,7 @@ CAPACITY = {name: body["density"] * body["specific_heat"] for name, body in PROP
 XS, HIGH, LOW = [0.0, 0.4, 1.0], [0.0, 0.2, 0.5, 1.0], [-1.0, -0.5, -0.2, 0.0]
 PRESSED = -0.01
 LAWS = ["*GAP LAW, TYPE=GAS", "2.E-3, 5.E-3", "*GAP LAW, TYPE=POWER", "0.4, 0.5, 1."]
+COUPLED = "*COUPLED TEMPERATURE-DISPLACEMENT"
 FIRST, PERIOD = 0.05, 0.5
 TIE = ["*TIE, NAME=GLUE", "UPPER.BOTTOM, MIDDLE.TOP"]
 # What one coordinate decides: the same at all contact points, and of both blocks.
@@ -29,17 +30,17 @@ OF_POINTS = ("gap", "pressure", "heat_flux", "conductance", "slave_temperature",
 OF_BODIES = "heat_in", "heat_out", "heat_stored"
 
 
-def bodies(kind="CPE8", upper=(XS, HIGH), lower=(XS, LOW), middle=None):
-    """Return the cards of both blocks, corners at xs and ys; where a middle one is given it is the
-    lower part of the upper one, and another card joins it."""
+def bodies(kind="CPE8", upper=(XS, HIGH), lower=(XS, LOW), middle=None, held=None):
+    """Return the cards of both blocks, corners at xs and ys, and of what is held; where a middle one
+    is given it is the lower part of the upper one, and another card joins it."""
     parts = {"UPPER": upper, "LOWER": lower} | ({"MIDDLE": middle} if middle else {})
     cards, starts = [], ["*INITIAL CONDITIONS, TYPE=TEMPERATURE"]
     for k, (name, (xs, ys)) in enumerate(parts.items()):
         like = PROPERTIES["LOWER" if name == "LOWER" else "UPPER"]
         cards += [*mesh(name, xs, ys, kind, first=1 + 1000 * k), *material(name, **like)]
         starts += [f"{name}, {START!r}"]
-    held = ["*BOUNDARY", *(f"{name}, 1" for name in parts), "LOWER.BOTTOM, 2"]
-    return [*cards, *starts, *held]
+    held = held or ["LOWER.BOTTOM, 2", *(f"{name}, 1" for name in parts)]
+    return [*cards, *starts, "*BOUNDARY", *held]
 
 
 def contact(slave="UPPER.BOTTOM", pairing="NODES", laws=LAWS):
@@ -51,7 +52,7 @@ def contact(slave="UPPER.BOTTOM", pairing="NODES", laws=LAWS):
 def heated(*cards, times=f"{FIRST!r}, {PERIOD!r}", how=", DIRECT",
            pressed=("*BOUNDARY", f"UPPER.TOP, 2, 2, {PRESSED!r}")):
     """Return the step."""
-    return ["*STEP, INC=100000", f"*COUPLED TEMPERATURE-DISPLACEMENT{how}", times, *pressed,
+    return ["*STEP, INC=1000000", COUPLED + how, times, *pressed,
             "*SFILM", f"UPPER.TOP, F, {HOT!r}, {HOT_FILM!r}",
             f"LOWER.BOTTOM, F, {COLD!r}, {COLD_FILM!r}", *cards, "*END STEP"]
 
