@@ -96,14 +96,14 @@ contains
       unknowns = 0.0_dp
       associate (by => self%by_unknowns)
          do dof = size(values), 1, -1
-            if (by%start(dof + 1) - by%start(dof) == 1 .and. .not. self%is_given(dof)) &
-               unknowns(by%value(by%start(dof))) = values(dof)/by%coefficient(by%start(dof))
+            if (by%start(dof + 1) - by%start(dof) /= 1 .or. self%is_given(dof)) cycle
+            unknowns(by%value(by%start(dof))) = values(dof)/by%coefficient(by%start(dof))
          end do
          whole = self%expand(unknowns(1:), given)
          carried = values
          do dof = 1, size(values)
-            if (self%is_given(dof) .and. .not. any(is_introduced(by%values_of(dof)))) &
-               carried(dof) = whole(dof)
+            if (any(is_introduced(by%values_of(dof)))) cycle
+            if (self%is_given(dof)) carried(dof) = whole(dof)
          end do
       end associate
    end function carried_along
