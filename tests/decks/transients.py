@@ -30,14 +30,15 @@ OF_POINTS = ("gap", "pressure", "heat_flux", "conductance", "slave_temperature",
 OF_BODIES = "heat_in", "heat_out", "heat_stored"
 
 
-def bodies(kind="CPE8", upper=(XS, HIGH), lower=(XS, LOW), middle=None, held=None):
+def bodies(kind="CPE8", upper=(XS, HIGH), lower=(XS, LOW), middle=None, held=None, apart=1000):
     """Return the cards of both blocks, corners at xs and ys, and of what is held; where a middle one
-    is given it is the lower part of the upper one, and another card joins it."""
+    is given it is the lower part of the upper one, and another card joins it. Numbers of nodes and
+    elements of the parts are apart."""
     parts = {"UPPER": upper, "LOWER": lower} | ({"MIDDLE": middle} if middle else {})
     cards, starts = [], ["*INITIAL CONDITIONS, TYPE=TEMPERATURE"]
     for k, (name, (xs, ys)) in enumerate(parts.items()):
         like = PROPERTIES["LOWER" if name == "LOWER" else "UPPER"]
-        cards += [*mesh(name, xs, ys, kind, first=1 + 1000 * k), *material(name, **like)]
+        cards += [*mesh(name, xs, ys, kind, first=1 + apart * k), *material(name, **like)]
         starts += [f"{name}, {START!r}"]
     held = held or ["LOWER.BOTTOM, 2", *(f"{name}, 1" for name in parts)]
     return [*cards, *starts, "*BOUNDARY", *held]
