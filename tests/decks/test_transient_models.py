@@ -147,6 +147,132 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
                                rtol=1e-9)
 
 
+# Steps and methods
+
+STEADY = [f"{two.COUPLED}, STEADY STATE", "0.1, 0.2"]
+OTHER_STEPS = {
+    "a static step before": ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}",
+                             "*END STEP"],
+    "a transient of heat alone before": [
+        "*STEP, INC=1000", "*HEAT TRANSFER, DIRECT", "0.05, 0.3", "*DFLUX", "UPPER, BF, 100.", "*END STEP"],
+    "a coupled transient before": two.heated("*DFLUX", "UPPER, BF, 50.", times="0.03, 0.3"),
+}
+
+
+@pytest.mark.parametrize("before", OTHER_STEPS)
+@pytest.mark.parametrize("scheme", ["IMPLICIT", "EXPLICIT"])
+def test_heat_is_kept_from_step_to_step(tmp_path, before, scheme):
+    """What the step before stored is where the next one begins."""
+    result = solve(two.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}",
+                                  *OTHER_STEPS[before]))
+    times, heat = two.content(result)
+    stored, = two.history(result, "heat_stored")
+    gained = np.cumsum(np.nan_to_num(stored) * np.diff(times, prepend=0.0))
+    np.testing.assert_allclose(gained, heat, rtol=1e-9, atol=1e-9 * heat.max())
+    assert heat[-1] > 0
+
+
+def test_a_steady_step_between_transients_stores_nothing_and_what_follows_starts_from_it(tmp_path):
+    """Loads that act at once as they are find the steady state, and nothing changes."""
+    steady = two.heated(times="0.1, 0.2", how=", STEADY STATE")
+    result = solve(two.two_blocks(tmp_path / "deck.inp", *two.heated(times="0.05, 0.1"), *steady))
+    time, stored, entering = two.history(result, "time", "heat_stored", "heat_in")
+    assert np.isnan(stored[(time > 0.1 + 1e-9) & (time < 0.3 + 1e-9)]).all()
+    last = time > 0.3 + 1e-9
+    np.testing.assert_allclose(stored[last], 0.0, atol=1e-7 * entering[-1])
+    np.testing.assert_allclose(entering[last], entering[~last][-1], rtol=1e-7)
+
+
+def test_faces_that_are_removed_conduct_nothing_and_conduct_again_when_added(tmp_path):
+    steps = []
+    for change in ("REMOVE", "ADD"):
+        steps += ["*STEP, INC=1000", f"{two.COUPLED}, DIRECT", "0.05, 0.2",
+                  f"*MODEL CHANGE, TYPE=CONTACT PAIR, {change}", "UPPER.BOTTOM, LOWER.TOP", "*END STEP"]
+    bodies = two.bodies(held=["LOWER.BOTTOM, 1, 2", "LOWER, 1", "UPPER, 1"])
+    deck = two.write_deck(tmp_path / "deck.inp", bodies, two.contact(), TIGHT,
+                          ["*THERMAL SCHEME, TYPE=IMPLICIT"], two.heated(times="0.05, 0.2"), steps)
+    result = solve(deck)
+    times, heat = two.content(result)
+    stored, = two.history(result, "heat_stored")
+    with h5py.File(result) as file:
+        crossing = file["contact/FACE/heat_rate"][()]
+    np.testing.assert_allclose(np.cumsum(stored * np.diff(times, prepend=0.0)), heat, rtol=1e-9)
+    removed = (times > 0.2 + 1e-9) & (times < 0.4 + 1e-9)
+    assert np.abs(crossing[removed]).max() == 0.0
+    assert np.abs(crossing[~removed]).min() > 0.1
+
+
+def test_a_scheme_that_is_given_is_that_of_its_coefficients(tmp_path):
+    names = "*THERMAL SCHEME, TYPE=GALERKIN", "*THERMAL SCHEME, TYPE=FREE"
+    given = "4., 1., 3., 2., 1., 1., 2., 4."   # six times as large
+    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), "contact", "VTKHDF/PointData")
+             for cards in (names[:1], (names[1], given))]
+    assert_alike(*found, 1e-9)
+
+
+@pytest.mark.parametrize("start", ["BOTH", "OPEN", "CLOSED"])
+def test_the_start_of_the_iteration_leaves_the_solution(tmp_path, start):
+    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), "contact", "VTKHDF/PointData")
+             for cards in ((), (f"*START, FROM={start}",))]
+    assert_alike(*found, 1e-9)
+
+
+def mirrored(cards):
+    """Return the cards with x turned round: elements begin at their other lower corner."""
+    turned, inside = [], ""
+    for card in cards:
+        if card.startswith("*"):
+            inside = card.split(",")[0]
+        elif inside == "*NODE":
+            number, x, y = card.split(", ")
+            card = f"{number}, {1.0 - float(x):.15g}, {y}"
+        elif inside == "*ELEMENT":
+            number, a, b, c, d, ab, bc, cd, da = card.split(", ")
+            card = ", ".join((number, b, a, d, c, ab, da, cd, bc))
+        elif inside == "*SURFACE":
+            card = card[:-1] + {"2": "4", "4": "2"}.get(card[-1], card[-1])
+        turned.append(card)
+    return turned
+
+
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_a_mirrored_twin_finds_the_same(tmp_path, pairing):
+    """Two blocks that rub on each other and are heated on one side: all fields vary along x."""
+    found = []
+    for turn, sign in ((lambda cards: cards, 1), (mirrored, -1)):
+        bodies = turn(two.bodies(held=["LOWER.BOTTOM, 1, 2", "UPPER.TOP, 1"]))
+        cards = two.contact(pairing=pairing, laws=["*FRICTION", "0.2", *two.LAWS])
+        slide = ("*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", f"UPPER.TOP, 1, 1, {sign * 4e-3!r}")
+        deck = two.write_deck(tmp_path / f"{pairing}{sign}.inp", bodies, cards, TIGHT, two.heated(
+            "*CFLUX", "1, 11, 20.", pressed=slide, how=""))
+        with h5py.File(solve(deck)) as file:
+            face = file["contact/FACE"]
+            rows = np.argsort(sign * face["x"][()])
+            found.append({name: face[name][()][:, rows] for name in (
+                "pressure", "heat_flux", "slave_temperature", "gap", "status")})
+            found[-1]["shear"] = sign * face["shear"][()][:, rows]
+            found[-1] |= {name: file[f"history/{name}"][()] for name in two.OF_BODIES}
+    assert np.ptp(found[0]["heat_flux"][-1]) > 0.1 * np.abs(found[0]["heat_flux"][-1]).max()
+    assert {1, 2} <= set(found[0]["status"].ravel())
+    assert_alike(*found, 1e-8)
+
+
+@pytest.mark.parametrize("kind", ["CPE8R", "CPS8", "CAX8", "CPE6", "CPE4", "CPE3", "CAX4"])
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_heat_balances_in_elements_of_all_kinds(tmp_path, kind, pairing):
+    """A uniform source heats insulated bodies as a whole: the heat that is stored is known."""
+    bodies = two.bodies(kind, held=["LOWER.BOTTOM, 2", "LOWER, 1", "UPPER, 1"])
+    step = ["*STEP, INC=100000", two.COUPLED, "0.05, 0.5", "*BOUNDARY",
+            f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*DFLUX", "UPPER, BF, 30.", "*END STEP"]
+    result = solve(two.write_deck(tmp_path / "deck.inp", bodies, two.contact(pairing=pairing), TIGHT,
+                                  step))
+    volume = np.pi if "CAX" in kind else 1.0
+    time, stored, entering, leaving = two.history(result, "time", "heat_stored", "heat_in", "heat_out")
+    np.testing.assert_allclose(stored, 30.0 * volume, rtol=1e-9)
+    np.testing.assert_allclose(entering, 30.0 * volume, rtol=1e-9)
+    np.testing.assert_allclose(leaving, 0.0, atol=1e-9)
+
+
 def test_mumps_gives_what_skyline_does(tmp_path):
     found = {}
     for solver in ("SKYLINE", "MUMPS"):
