@@ -192,22 +192,31 @@ contains
       real(dp), intent(in) :: increment_size                 !! of the attempt [time]
       type(increment_record_type), intent(in) :: record      !! of it
       character(:), allocatable :: words                     !! part of a sentence
-      real(dp) :: wanted
 
       associate (step => model%steps(self%step))
          words = 'its temperatures err by '//percent(record%local_error)//' of their range'
          if (record%local_error <= allowance*step%local_error) words = &
             'a temperature changes by '//to_text(record%largest_change)//', more than DELTMX='// &
             to_text(step%largest_change)
-         wanted = increment_size*sqrt(aim/excess(step, record))
-         do while (self%largest > max(wanted, step%smallest_increment) .and. &
-            0.5_dp*self%largest >= self%useful_size(step, record))
-            self%largest = 0.5_dp*self%largest
-         end do
-         self%largest = max(self%largest, step%smallest_increment)
+         call halve(self, step, increment_size*sqrt(aim/excess(step, record)), &
+            self%useful_size(step, record))
       end associate
       self%cut_backs = self%cut_backs + 1
    end function shorten
+
+   !> Halves the size until it is at most the one wanted, but makes it no smaller than the smallest,
+   !> nor than what is useful.
+   pure subroutine halve(self, step, wanted, useful)
+      type(increment_control_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      real(dp), intent(in) :: wanted, useful                 !! [time]
+
+      do while (self%largest > max(wanted, step%smallest_increment) .and. &
+         0.5_dp*self%largest >= useful)
+         self%largest = 0.5_dp*self%largest
+      end do
+      self%largest = max(self%largest, step%smallest_increment)
+   end subroutine halve
 
    !> How many increments the whole run takes where no further one is cut back or ends before its
    !> time on an instant of the deck.
@@ -276,7 +285,13 @@ contains
       real(dp), intent(in) :: failed                         !! size that failed [time]
 
       self%cut_backs = self%cut_backs + 1
-      self%largest = max(cut*failed, model%steps(self%step)%smallest_increment)
+      associate (step => model%steps(self%step))
+         if (adapts_increments(step)) then
+            call halve(self, step, cut*failed, 0.0_dp)
+         else
+            self%largest = max(cut*failed, step%smallest_increment)
+         end if
+      end associate
    end subroutine cut_back
 
    !> Says where the run ends, and why the increment is not tried again.

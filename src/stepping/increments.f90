@@ -349,8 +349,8 @@ contains
          if (of_first%increment > 0) call add_attempts(of_first, record)
          if (.not. step%is_transient .or. allocated(error)) return
          if (of_first%increment > 0) before%temperature = self%state%temperature + stage%jump
-         call measure_changes(self%bodies, self%heats(self%in_use), &
-            self%loads%temperature%active, step, before, next, record)
+         call measure_changes(model, self%bodies, self%heats(self%in_use), &
+            self%loads%temperature%active, before, next, record)
          if (self%control%increments_of_step == 0) call note_shock(model, stage%jump, &
             self%control%size_to(clock), record)
       end associate

@@ -28,8 +28,10 @@ contains
       real(dp) :: least, largest, size_across
       integer :: e, i
 
-      jumps = abs(jump) > shock*maxval(abs(jump)) .and. abs(jump) > shock* &
-         (maxval(record%fields%temperature) - minval(record%fields%temperature))
+      associate (temperature => record%fields%temperature, used => model%mesh%node_body > 0)
+         jumps = abs(jump) > shock*max(maxval(abs(jump)), maxval(temperature, mask=used) - &
+            minval(temperature, mask=used))
+      end associate
       is_coarse = .false.
       largest = 0.0_dp
       do e = 1, size(model%mesh%element_kind)
