@@ -44,6 +44,7 @@ module linear_constraints
    contains
       procedure :: expand
       procedure :: supported
+      procedure :: carried_along
       procedure :: restrict
       procedure :: carry_over
       procedure :: load
@@ -78,6 +79,34 @@ contains
       values = 0.0_dp
       call self%by_given%add_totals(given, values)
    end function supported
+
+   !> Values with those that prescribed ones are part of made anew, while the others stay. Where an
+   !> introduced value is part of one, it takes up the difference.
+   pure function carried_along(self, values, given) result(carried)
+      class(linear_constraints_type), intent(in) :: self
+      real(dp), intent(in) :: values(:)             !! (dofs)
+      real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
+      real(dp) :: carried(size(values))             !! (dofs)
+      real(dp) :: unknowns(0:self%equations), whole(size(values))
+      logical :: is_introduced(0:self%equations)
+      integer :: dof
+
+      is_introduced = .false.
+      is_introduced(self%introduced) = .true.
+      unknowns = 0.0_dp
+      associate (by => self%by_unknowns)
+         do dof = size(values), 1, -1
+            if (by%start(dof + 1) - by%start(dof) /= 1 .or. self%is_given(dof)) cycle
+            unknowns(by%value(by%start(dof))) = values(dof)/by%coefficient(by%start(dof))
+         end do
+         whole = self%expand(unknowns(1:), given)
+         carried = values
+         do dof = 1, size(values)
+            if (any(is_introduced(by%values_of(dof)))) cycle
+            if (self%is_given(dof)) carried(dof) = whole(dof)
+         end do
+      end associate
+   end function carried_along
 
    !> Forces on the unknowns from forces on the degrees of freedom, T^T f.
    pure function restrict(self, forces) result(rhs)

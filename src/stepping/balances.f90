@@ -30,7 +30,8 @@ module balances
    !> collects that of all nodes, for which the norm of T is.
    real(dp), parameter :: noise = 1.0e-6_dp
 
-   !> Part of the heat that bodies hold, over an increment, below which a rate is no scale.
+   !> Part of the heat that bodies hold, over an increment, below which a rate is no scale; with
+   !> heat of strains from absolute zero.
    real(dp), parameter :: content_noise = 1.0e-9_dp
 
    !> Displacement, in the extent of the model, below which it is no scale.
@@ -87,7 +88,9 @@ contains
          if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)), &
             content_noise*maxval(abs(data%equation%content_old))/data%equation%duration)
          if (allocated(data%equation%taken_up)) scale = max(scale, &
-            maxval(abs(data%equation%taken_up))/data%equation%duration)
+            maxval(abs(data%equation%taken_up))/data%equation%duration, content_noise* &
+            maxval(abs(bodies%capacity%multiply(bodies%dilatation%absolute)))/ &
+            data%equation%duration)
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + rates%entering
          rates%crossing = heat_across(bodies%points%weight, omega, next%jump)

@@ -21,7 +21,6 @@ module heat_storage
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
-   use steps, only: step_type
    use thermal_matrix, only: heat_across, heat_rates_type
    implicit none
    private
@@ -40,8 +39,9 @@ contains
          before%displacement))/stage%size
    end function strain_rate
 
-   !> The state as its first increment finds it: temperatures that the step prescribes, its loads
-   !> and its films act as at its start, jumps included, and what they leave over is stored.
+   !> The state as its first increment finds it: temperatures that the step prescribes, with those
+   !> that ties, equations and hanging nodes give by them, its loads and its films act as at its
+   !> start, jumps included, and what they leave over is stored.
    subroutine begin_storage(model, bodies, corrections, loads, start, state)
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
@@ -50,12 +50,16 @@ contains
       type(step_clock_type), intent(in) :: start             !! this instant
       type(solution_state_type), intent(inout) :: state      !! before the first increment
       type(heat_rates_type) :: rates
+      real(dp) :: temperature(size(state%temperature))
       logical :: stores(size(state%temperature))
       integer :: i
 
       call loads%move_to(start, model)
-      associate (held => loads%temperature%active)
-         where (held) state%temperature = loads%temperature%value
+      associate (by => bodies%thermal%map%by_unknowns)
+         temperature = bodies%thermal%map%carried_along(state%temperature, merge( &
+            loads%temperature%value, 0.0_dp, loads%temperature%active))
+         state%jump = state%jump + bodies%points%jumps(temperature - state%temperature)
+         state%temperature = temperature
          state%sources%load = loads%heat_load()
          state%sources%film = loads%film_matrix()
          rates%conducted = bodies%thermal%matrix%multiply(state%temperature)
@@ -63,8 +67,8 @@ contains
             corrections%heat_beyond(model, bodies, state%temperature)
          rates%entering = state%sources%net_heat(state%temperature)
          rates%crossing = heat_across(bodies%points%weight, state%carrying, state%jump)
-         stores = .not. held
          do i = 1, bodies%capacity%row_count
+            stores(i) = by%start(i + 1) > by%start(i)
             associate (row => bodies%capacity%value(bodies%capacity%row_start(i): &
                bodies%capacity%row_start(i + 1) - 1))
                stores(i) = stores(i) .and. any(abs(row) > 0.0_dp)
@@ -72,30 +76,43 @@ contains
          end do
       end associate
       state%stored = merge(-supplied_heat(bodies, state%edge, rates), 0.0_dp, stores)
-      state%extremes = [minval(state%temperature), maxval(state%temperature)]
+      state%extremes = extremes_of(model, state%temperature)
    end subroutine begin_storage
 
    !> Measures an increment: error and largest change of its temperatures.
-   subroutine measure_changes(bodies, heat, held, step, before, next, record)
+   subroutine measure_changes(model, bodies, heat, held, before, next, record)
+      type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat          !! of the increment
       logical, intent(in) :: held(:)                         !! (nodes) prescribed temperatures
-      type(step_type), intent(in) :: step
       !> State before the last stage, with the temperatures at the start of the increment
       type(solution_state_type), intent(in) :: before
       type(solution_state_type), intent(inout) :: next       !! state at the end
       type(increment_record_type), intent(inout) :: record
-      real(dp) :: part, range
+      real(dp) :: here(2), part, range
 
-      next%extremes = [min(before%extremes(1), minval(next%temperature)), &
-         max(before%extremes(2), maxval(next%temperature))]
+      here = extremes_of(model, next%temperature)
+      next%extremes = [min(before%extremes(1), here(1)), max(before%extremes(2), here(2))]
       range = max(next%extremes(2) - next%extremes(1), &
          epsilon(range)*maxval(abs(next%extremes)), tiny(range))
-      part = merge(1.0_dp, 0.5_dp/step%scheme%a(1), step%scheme%stages == 2)
+      associate (scheme => model%steps(record%step)%scheme)
+         part = merge(1.0_dp, 0.5_dp/scheme%a(1), scheme%stages == 2)
+      end associate
       record%local_error = maxval(abs(heat%welded_response(bodies%thermal, part* &
          (next%stored - before%stored))))/range
       record%largest_change = maxval(abs(next%temperature - before%temperature), &
          mask=.not. held)
    end subroutine measure_changes
+
+   !> Lowest and highest temperature of the bodies.
+   pure function extremes_of(model, temperature) result(extremes)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp) :: extremes(2)
+
+      associate (used => model%mesh%node_body > 0)
+         extremes = [minval(temperature, mask=used), maxval(temperature, mask=used)]
+      end associate
+   end function extremes_of
 
 end module heat_storage

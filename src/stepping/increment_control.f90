@@ -29,6 +29,7 @@ module increment_control
       real(dp) :: step_start = 0.0_dp         !! total time at the start of the step [time]
       real(dp) :: step_time = 0.0_dp          !! time since then [time]
       real(dp) :: largest = 0.0_dp            !! largest size of the next increment [time]
+      real(dp) :: useful = 0.0_dp             !! size below which none is shortened [time]
       !> Instants on which increments of the step land, from its start [time]
       real(dp), allocatable :: landings(:)
    contains
@@ -39,6 +40,7 @@ module increment_control
       procedure :: end_at
       procedure :: size_to
       procedure :: goes_too_far
+      procedure, private :: useful_size
       procedure :: shorten
       procedure :: planned
       procedure :: accept
@@ -59,6 +61,7 @@ contains
       self%step_time = 0.0_dp
       self%increments_of_step = 0
       self%cut_backs = 0
+      self%useful = 0.0_dp
       self%largest = model%steps(self%step)%first_increment
       self%landings = landing_times(model, model%steps(self%step), self%step_start)
    end subroutine enter_step
@@ -147,7 +150,8 @@ contains
    end subroutine end_at
 
    !> Whether an increment of a transient errs or changes temperatures by more than the step allows,
-   !> and may be shorter.
+   !> and may be shorter. Beside temperatures that jump as a step begins none is shorter than heat
+   !> takes to cross an element, until one errs by no more than the step allows.
    pure logical function goes_too_far(self, model, increment_size, record)
       class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
@@ -157,8 +161,19 @@ contains
       goes_too_far = .false.
       if (.not. adapts_increments(model%steps(self%step))) return
       goes_too_far = excess(model%steps(self%step), record) > allowance .and. &
-         self%can_cut_back(model, increment_size)
+         self%can_cut_back(model, increment_size) .and. &
+         0.5_dp*increment_size > hardly_longer*self%useful_size(model%steps(self%step), record)
    end function goes_too_far
+
+   !> Size below which an increment is not shortened for what it errs.
+   pure real(dp) function useful_size(self, step, record)
+      class(increment_control_type), intent(in) :: self   !! position in the steps
+      type(step_type), intent(in) :: step
+      type(increment_record_type), intent(in) :: record   !! of the increment
+
+      useful_size = max(self%useful, record%useful_increment)
+      if ((record%largest_change/step%largest_change)**2 > allowance) useful_size = 0.0_dp
+   end function useful_size
 
    !> What an increment takes of what its step allows: 1 is all of it.
    pure real(dp) function excess(step, record)
@@ -177,21 +192,31 @@ contains
       real(dp), intent(in) :: increment_size                 !! of the attempt [time]
       type(increment_record_type), intent(in) :: record      !! of it
       character(:), allocatable :: words                     !! part of a sentence
-      real(dp) :: wanted
 
       associate (step => model%steps(self%step))
          words = 'its temperatures err by '//percent(record%local_error)//' of their range'
          if (record%local_error <= allowance*step%local_error) words = &
             'a temperature changes by '//to_text(record%largest_change)//', more than DELTMX='// &
             to_text(step%largest_change)
-         wanted = increment_size*sqrt(aim/excess(step, record))
-         do while (self%largest > max(wanted, step%smallest_increment))
-            self%largest = 0.5_dp*self%largest
-         end do
-         self%largest = max(self%largest, step%smallest_increment)
+         call halve(self, step, increment_size*sqrt(aim/excess(step, record)), &
+            self%useful_size(step, record))
       end associate
       self%cut_backs = self%cut_backs + 1
    end function shorten
+
+   !> Halves the size until it is at most the one wanted, but makes it no smaller than the smallest,
+   !> nor than what is useful.
+   pure subroutine halve(self, step, wanted, useful)
+      type(increment_control_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      real(dp), intent(in) :: wanted, useful                 !! [time]
+
+      do while (self%largest > max(wanted, step%smallest_increment) .and. &
+         0.5_dp*self%largest >= useful)
+         self%largest = 0.5_dp*self%largest
+      end do
+      self%largest = max(self%largest, step%smallest_increment)
+   end subroutine halve
 
    !> How many increments the whole run takes where no further one is cut back or ends before its
    !> time on an instant of the deck.
@@ -228,6 +253,8 @@ contains
       associate (step => model%steps(self%step))
          if (adapts_increments(step)) then
             if (.not. present(record)) return
+            self%useful = max(self%useful, record%useful_increment)
+            if (excess(step, record) <= allowance) self%useful = 0.0_dp
             if (2.0_dp*self%largest <= step%largest_increment .and. excess(step, record)* &
                (2.0_dp*self%largest/increment_size)**2 <= aim) self%largest = 2.0_dp*self%largest
          else if (self%cut_backs == 0 .and. step%grows) then
@@ -258,7 +285,13 @@ contains
       real(dp), intent(in) :: failed                         !! size that failed [time]
 
       self%cut_backs = self%cut_backs + 1
-      self%largest = max(cut*failed, model%steps(self%step)%smallest_increment)
+      associate (step => model%steps(self%step))
+         if (adapts_increments(step)) then
+            call halve(self, step, cut*failed, 0.0_dp)
+         else
+            self%largest = max(cut*failed, step%smallest_increment)
+         end if
+      end associate
    end subroutine cut_back
 
    !> Says where the run ends, and why the increment is not tried again.

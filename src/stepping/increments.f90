@@ -24,7 +24,7 @@ module increments
    use records, only: add_attempts, increment_record_type, note_failure
    use reduced_bodies, only: reduced_bodies_type
    use run_sizes, only: measure_factors, measure_steps, run_seconds_type, run_size_type
-   use shock_checks, only: warn_of_shock
+   use shock_checks, only: note_shock
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: adapts_increments, solves_heat, solves_mechanics
@@ -358,9 +358,9 @@ contains
          if (of_first%increment > 0) call add_attempts(of_first, record)
          if (.not. step%is_transient .or. allocated(error)) return
          if (of_first%increment > 0) before%temperature = self%state%temperature + stage%jump
-         call measure_changes(self%bodies, self%heats(self%in_use), &
-            self%loads%temperature%active, step, before, next, record)
-         if (self%control%increments_of_step == 0) call warn_of_shock(model, stage%jump, &
+         call measure_changes(model, self%bodies, self%heats(self%in_use), &
+            self%loads%temperature%active, before, next, record)
+         if (self%control%increments_of_step == 0) call note_shock(model, stage%jump, &
             self%control%size_to(clock), record)
       end associate
    end subroutine attempt

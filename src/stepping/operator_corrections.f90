@@ -29,6 +29,7 @@ module operator_corrections
    public :: corrections_type
 
    real(dp), parameter :: settled = 1.0e-9_dp  !! part of heat and forces that is left over
+   real(dp), parameter :: rounding = 1.0e-13_dp !! part of all heat of a body that is none
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
 
@@ -366,7 +367,8 @@ contains
             next%temperature - stage%temperature)))/stage%duration)
          if (allocated(self%strain_before)) heat = max(heat, maxval(abs( &
             bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
-            stage%displacement)))/stage%duration)
+            stage%displacement)))/stage%duration, rounding/settled*maxval(abs( &
+            bodies%capacity%multiply(bodies%dilatation%absolute)))/stage%duration)
          force = maxval(abs(self%values(2*n + 1:)))
          if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
             maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))

@@ -5,7 +5,7 @@
 module trade_study
    use contact_definitions, only: pairing_name, pairing_nodes, pairing_surfaces
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
-      method_names, solver_mumps, solver_skyline, thermal_scheme_type
+      l_stable_scheme, method_names, solver_mumps, solver_skyline, thermal_scheme_type
    use kinds, only: dp
    use model, only: model_type
    use reported_quantities, only: traded
@@ -65,8 +65,8 @@ module trade_study
    logical, parameter :: is_local(5) = [.true., .false., .true., .false., .false.]   !! finer there
    integer, parameter :: most_levels = 3            !! refinements beyond those of the deck
    real(dp), parameter :: tolerances(4) = [1.0e-3_dp, 1.0e-5_dp, 1.0e-8_dp, 1.0e-11_dp]
-   type(thermal_scheme_type), parameter :: schemes(4) = [implicit_scheme, galerkin_scheme, &
-      crank_nicolson_scheme, explicit_scheme]
+   type(thermal_scheme_type), parameter :: schemes(5) = [l_stable_scheme, implicit_scheme, &
+      galerkin_scheme, crank_nicolson_scheme, explicit_scheme]
 
 contains
 
@@ -193,21 +193,24 @@ contains
       integer, intent(in) :: pairings(:)           !! (interfaces) as the deck has them
       type(trade_row_type), allocatable, intent(out) :: rows(:)
       type(variation_type) :: written, varied
-      integer :: i, coupled, heated, pairing
+      integer :: i, coupled, pairing
+      logical :: follows(size(model%steps))   ! the scheme that is varied
 
       allocate (rows(0))
       written = variation_type(order=min(model%written_order, highest), levels=model%written_levels)
       varied = written
       coupled = findloc(model%steps%analysis, analysis_coupled, dim=1)
       if (size(model%contacts) == 0) coupled = 0
-      heated = findloc(solves_heat(model%steps%analysis), .true., dim=1)
       do i = 1, merge(size(tolerances), 0, coupled > 0)
          if (abs(tolerances(i)/model%steps(coupled)%fixed_point%tolerance - 1.0_dp) < 0.5_dp) cycle
          varied%tolerance = tolerances(i)
          call add('TOL='//to_text(tolerances(i)))
       end do
-      do i = 1, merge(size(schemes), 0, heated > 0)
-         if (schemes(i)%name == model%steps(heated)%scheme%name) cycle
+      do i = 1, size(schemes)
+         ! Steady steps do as with the implicit one.
+         follows = solves_heat(model%steps%analysis) .and. (model%steps%is_transient .or. &
+            schemes(i)%stages == 1)
+         if (all(model%steps%scheme%name == schemes(i)%name .or. .not. follows)) cycle
          varied%scheme = schemes(i)
          call add(schemes(i)%name)
       end do

@@ -39,11 +39,13 @@ def place(file, line):
 
 @dataclass(frozen=True)
 class Profile:
-    """Instructions of a run: all, those of each place, and those of calls between two places."""
+    """Instructions of a run: all, those of each place, and those of calls between two places; and how
+    often each place is called from elsewhere."""
 
     total: int
     own: dict
     calls: dict
+    called: dict
 
     def share(self, names):
         """Return the part of all instructions that is spent in these modules (`name`) and
@@ -80,8 +82,8 @@ def instructions(*arguments):
 
 def read(path):
     """Read a file of callgrind, whose names and lines are told by what stands before them."""
-    names, own, calls = {}, {}, {}
-    total = line = 0
+    names, own, calls, called = {}, {}, {}, {}
+    total = line = often = 0
     at = to = ""
     target = None
     for text in path.read_text().splitlines():
@@ -94,7 +96,7 @@ def read(path):
         elif text.startswith("summary:"):
             total = int(text.split()[1])
         elif text.startswith("calls="):
-            target = moved(line, text.split()[1])
+            often, target = int(text[6:].split()[0]), moved(line, text.split()[1])
         elif re.match(r"[\d+*-]", text):
             position, cost = text.split()
             line = moved(line, position)
@@ -102,10 +104,11 @@ def read(path):
             if target is not None:
                 between = where, place(to, target)
                 calls[between] = calls.get(between, 0) + int(cost)
+                called[between[1]] = called.get(between[1], 0) + often
                 target, to = None, at
             else:
                 own[where] = own.get(where, 0) + int(cost)
-    return Profile(total, own, calls)
+    return Profile(total, own, calls, called)
 
 
 def moved(line, position):

@@ -16,6 +16,7 @@ from contextlib import contextmanager
 import h5py
 import numpy as np
 import pytest
+import transients
 from blocks import write
 from deck_runs import CYLINDER, HERTZ, INPUT, PROGRAM, run, solve
 from physics import DECKS  # noqa: F401  puts tests/reference on the path
@@ -37,7 +38,7 @@ COLUMNS = [
 ]
 CARDS = {"TOL": "*FIXED POINT, <>", "MUMPS": "*SOLVER, TYPE=<>"}
 CARDS |= {name: "*FIXED POINT, METHOD=<>" for name in ("NEWTON", "ANDERSON", "ZAITSEV", "PICARD")}
-CARDS |= {name: "*THERMAL SCHEME, TYPE=<>" for name in ("GALERKIN", "CRANK", "EXPLICIT")}
+CARDS |= {name: "*THERMAL SCHEME, TYPE=<>" for name in ("IMPLICIT", "L-STABLE", "GALERKIN", "CRANK", "EXPLICIT")}
 PAIRINGS = "NODES", "SURFACES"
 
 
@@ -255,6 +256,57 @@ def test_cheap_rows_are_repeated_and_their_figures_make_sense(r2):
     small, large = (next(row for row in solved if row["elements"] == "Q8" and row["level"] == level)
                     for level in "03")
     assert float(small["cpu_seconds"]) < float(large["cpu_seconds"])
+
+
+def stated_and_true(rows, deck, names, exact):
+    """Return stated and true errors of the rows with some names, at the last increment."""
+    for row in rows:
+        if row["varied"] in names or row["recommended_1"]:
+            found = last_figures(solve(as_cards(deck, row, deck.with_name("row.inp"))), "FACE")
+            for key in ("heat_rate", "normal_force", "peak_pressure"):
+                yield row, float(row[f"error_{key}"]), abs(found[key] / exact[key] - 1.0)
+
+
+@pytest.mark.parametrize("scheme", ["L-STABLE", "IMPLICIT"])
+def test_rows_of_steps_that_store_heat_have_the_errors_that_are_stated(tmp_path, scheme):
+    """Against a fine mesh with 64 times as many increments; every scheme but the deck's is a row."""
+    deck = transients.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}")
+    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.02")
+    schemes = {"L-STABLE", "IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT"} - {scheme}
+    assert {row["varied"] for row in rows} >= schemes
+    fine = transients.two_blocks(tmp_path / "fine.inp", "*REFINE, LEVELS=2",
+                                 times=f"{transients.FIRST / 64!r}, {transients.PERIOD!r}")
+    exact = last_figures(solve(fine), "FACE")
+    pairs = list(stated_and_true(rows[:-1], deck, schemes, exact))
+    for row, stated, true in pairs:
+        assert true <= stated * 1.01 + 1e-6, row
+    assert max(true for *_, true in pairs) > 3e-3
+
+
+def test_schemes_are_varied_in_the_steps_that_follow_them(tmp_path):
+    """A steady step does with L-STABLE as with IMPLICIT."""
+    steady = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",
+              "UPPER.TOP, 2, 2, -0.01", "UPPER.TOP, 11, 11, 20.", "LOWER.BOTTOM, 11, 11, 0.",
+              "*END STEP"]
+    every = ["L-STABLE", "IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT"]
+    for steps, varied in ((steady, every[2:]), (steady + transients.heated(), every[1:])):
+        deck = transients.write_deck(tmp_path / "deck.inp", transients.bodies(), transients.contact(),
+                                     steps)
+        rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.001")
+        assert [row["varied"] for row in rows if row["varied"] in every] == varied
+
+
+def test_increments_by_error_are_varied_by_their_error(tmp_path):
+    """Half of the factor takes twice the increments, whose error is a quarter."""
+    deck = transients.two_blocks(tmp_path / "deck.inp", how="")
+    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.1")
+    found = {row["increment_factor"]: row for row in rows[:-1] if row["elements"] == "Q8"
+             and (row["level"], row["contact_level"], row["varied"]) == ("0", "0", "")}
+    for one, other in itertools.pairwise(("4", "2", "1", "0.5", "0.25")):
+        assert 1.6 < int(found[other]["increments"]) / int(found[one]["increments"]) < 2.4
+    from_reference = {factor: float(row["error_heat_rate"]) - float(rows[-1]["error_heat_rate"])
+                      for factor, row in found.items()}
+    assert from_reference["1"] < from_reference["4"] / 6
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ import base64
 import numpy as np
 
 from .. import mesh
+from ..courses import HEAT
 from ..field_colours import SIGNED
 from ..fields import TITLES, touches_after_a_gap
 from ..result import CELL_FIELDS, FIELD_SOURCES, words_of
@@ -114,7 +115,7 @@ def histories(result):
     for key, values in result.history.items():
         if key in ("time", "load") or values.ndim > 1 or not np.nan_to_num(values).any():
             continue
-        unit = plain(result.units.names.get("power", "")) if key in ("heat_in", "heat_out") else ""
+        unit = plain(result.units.names.get("power", "")) if key in HEAT else ""
         found.append({"label": words_of(key).capitalize(), "unit": unit, "values": listed(values)})
     return found
 

@@ -258,10 +258,20 @@ function later() {
 }
 const fields = data.fields ? fieldPicture(data, {$, floats, integers, show, html, put, ticks, loadWords, withUnit, later}) : null;
 if (!fields) $('fields').hidden = true;
-$('load').addEventListener('input', () => { row = Number($('load').value) - 1; later(); });
+const slider = $('load'), inTime = slider.step === 'any';
+const nearest = time => times.reduce((best, t, k) => Math.abs(t - time) < Math.abs(times[best] - time) ? k : best, 0);
+slider.addEventListener('input', () => { row = inTime ? nearest(Number(slider.value)) : Number(slider.value) - 1; later(); });
+if (inTime) slider.addEventListener('keydown', event => {
+   const next = row + ({ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1}[event.key] ?? NaN);
+   if (Number.isNaN(next)) return;
+   event.preventDefault();
+   row = Math.min(count - 1, Math.max(0, next));
+   slider.value = String(times[row]);
+   later();
+});
 for (const id of ['interface', 'same']) if ($(id)) $(id).addEventListener('change', later);
 for (const form of document.forms) form.addEventListener('submit', event => event.preventDefault());
 addEventListener('beforeprint', () => { for (const each of document.querySelectorAll('details')) each.open = true; });
-$('load').value = String(count);
+slider.value = slider.max;
 draw();
 })();

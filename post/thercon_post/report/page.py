@@ -83,12 +83,17 @@ def run_text(result, key):
 
 
 def load_bar(result):
-    """Return the slider that chooses the increment of all pictures."""
+    """Return the slider that chooses the increment of all pictures: by its number, or by the time
+    where heat is stored and times are real."""
+    what, first, last, step = "Increment", "1", str(result.increments), "1"
+    if "heat_stored" in result.history:
+        first, last = (repr(float(result.history["time"][row])) for row in (0, -1))
+        what, step = "Time", "any"
     return html("""<form id="bar" aria-label="Load of all pictures">
-<label for="load">Increment</label>
-<input type="range" id="load" min="1" max="{last}" step="1" value="{last}">
+<label for="load">{what}</label>
+<input type="range" id="load" min="{first}" max="{last}" step="{step}" value="{last}">
 <output id="now" for="load"></output>
-</form>""", last=result.increments)
+</form>""", what=what, first=first, last=last, step=step)
 
 
 def contact_section(result):

@@ -104,7 +104,7 @@ contains
       call warn_of_nlgeom(cards, report, model%steps)
    end subroutine build_steps
 
-   !> Controls stay from step to step; transients have a scheme of their own until the deck names one.
+   !> Controls stay from step to step; transients have their own scheme until the deck names one.
    subroutine take_controls(controls, has_scheme, is_uncoupled, step)
       type(step_controls_type), intent(in) :: controls
       logical, intent(in) :: has_scheme     !! whether *THERMAL SCHEME was there

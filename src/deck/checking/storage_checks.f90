@@ -68,7 +68,7 @@ contains
             'tables over temperature the heat of strains is another one')
          return
       end if
-      n = minloc(model%initial_temperature, dim=1)
+      n = minloc(model%initial_temperature, dim=1, mask=model%mesh%node_body > 0)
       if (model%initial_temperature(n) > model%constants%absolute_zero) return
       call report%error(place, 'DILATATION needs temperatures above absolute zero, '// &
          to_text(model%constants%absolute_zero)//', but node '// &

@@ -1,0 +1,72 @@
+"""What steps that store heat cost: a pass of the fixed point does not see the mesh behind the contact
+points, and an increment of heat alone takes few back substitutions.
+
+Instructions are the same in every run, so that the difference of two runs is that of what differs.
+"""
+
+import h5py
+import numpy as np
+import pytest
+import report  # noqa: F401  makes the modules of decks known
+import transients as two
+from instructions import instructions, profile
+from test_needed import MEASURED
+
+COLUMNS = [float(x) for x in np.linspace(0.0, 1.0, 6)]
+QUIET = ["*NODE FILE, FREQUENCY=0", "NT"]
+STEADY = ["*BOUNDARY", f"UPPER.TOP, 11, 11, {two.HOT!r}", f"LOWER.BOTTOM, 11, 11, {two.COLD!r}"]
+
+
+def pressed(path, rows, tolerance, analysis, cards=()):
+    """Write two blocks with so many rows of elements each, relaxed slowly to a tolerance; return its
+    path."""
+    high = [float(y) for y in np.linspace(0.0, 1.0, rows + 1)]
+    low = [y - 1.0 for y in high]
+    return two.write_deck(path, ["*OPTIONS, ERRORS=NO", "*SOLVER, TYPE=SKYLINE"],
+                          two.bodies(upper=(COLUMNS, high), lower=(COLUMNS, low),
+                                     apart=10000), two.contact(),
+                          ["*FIXED POINT, METHOD=ZAITSEV, G=0.1, CONSTANT=500, MAXITER=500, "
+                           f"TOL={tolerance}"],
+                          two.heated(*cards, *QUIET, how=analysis, times="0.1, 0.2"))
+
+
+def cost_of_a_pass(folder, rows, analysis, cards):
+    """Return the instructions of a pass, and the number of equations: two runs that differ in the
+    passes of their increments alone."""
+    counts, passes = [], []
+    for tolerance in ("1.E-2", "1.E-7"):
+        deck = pressed(folder / "deck.inp", rows, tolerance, analysis, cards)
+        counts.append(instructions("run", "--quiet", deck, "--out", folder))
+        with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+            passes.append(file["history/iterations"][()].sum())
+            size = file["run"].attrs
+            equations = int(size["equations_thermal"] + size["equations_mechanical"])
+    assert passes[1] > 100 + passes[0]
+    return (counts[1] - counts[0]) / (passes[1] - passes[0]), equations
+
+
+@MEASURED
+@pytest.mark.parametrize(("analysis", "cards"), [
+    (", STEADY STATE, DIRECT", STEADY), (", LOCAL ERROR=1.", [])], ids=["steady", "transient"])
+def test_a_pass_does_not_see_the_mesh_behind(tmp_path, analysis, cards):
+    """Ten times the equations behind the same contact points."""
+    (small, few), (large, many) = (cost_of_a_pass(tmp_path, rows, analysis, cards)
+                                   for rows in (2, 24))
+    assert many > 10 * few
+    assert large == pytest.approx(small, rel=0.03)
+
+
+@MEASURED
+@pytest.mark.parametrize("how", [", DIRECT", ", LOCAL ERROR=1.E-3"], ids=["fixed", "by error"])
+def test_an_increment_of_heat_alone_takes_few_back_substitutions(tmp_path, how):
+    """At most five, attempts that are repeated included; each eliminates and substitutes."""
+    deck = two.write_deck(
+        tmp_path / "deck.inp", ["*SOLVER, TYPE=SKYLINE"], two.bodies(),
+        [card.replace(two.COUPLED, "*HEAT TRANSFER") for card in two.heated(
+            *QUIET, how=how, pressed=(), times="0.01, 2.")])
+    found = profile("run", "--quiet", deck, "--out", tmp_path, path=tmp_path / "deck.out")
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        increments = len(file["history/time"])
+    assert increments > 50
+    for kernel in ("eliminate", "substitute"):
+        assert 2 * increments < found.called["column_panels", kernel] <= 5 * increments

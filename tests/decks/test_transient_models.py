@@ -1,0 +1,285 @@
+"""Models of steps that store heat: what ties, relates and divides bodies leaves a course that it has
+without, and heat that goes in without going out is heat in the bodies."""
+
+from itertools import pairwise
+
+import h5py
+import numpy as np
+import pytest
+import transients as two
+from deck_runs import assert_alike, datasets, solve
+from physics import nodes_of
+from transients import HIGH, LOW, XS
+
+OTHER = [0.0, 0.25, 0.7, 1.0]
+TIGHT = ["*FIXED POINT, TOL=1.E-12"]
+PARTS = {"upper": (XS, [0.5, 1.0]), "middle": (XS, [0.0, 0.2, 0.5])}
+OTHERS = {"upper": (OTHER, [0.5, 1.0]), "middle": (XS, [0.0, 0.2, 0.5])}
+PLACES = nodes_of(two.bodies(**PARTS))
+EQUAL = ["*EQUATION", *(
+    line for n, place in PLACES.items() for m, other in PLACES.items() for dof in (2, 11)
+    for line in ("2", f"{n}, {dof}, 1., {m}, {dof}, -1.") if n < 1000 and m > 2000
+    and place == other)]
+GRIP = ["*NODE, NSET=GRIP", "9000, 0.3, 1.5", "*COUPLING, REF NODE=9000, SURFACE=UPPER.TOP, "
+        "CONSTRAINT NAME=GRIP", "*KINEMATIC", "2", "*BOUNDARY", "9000, 1, 1", "9000, 6, 6"]
+BY_GRIP = ("*BOUNDARY", f"9000, 2, 2, {two.PRESSED!r}")
+
+# Cards of model and contact, and how the step presses the blocks.
+FORMS = {
+    "mortar points": (two.bodies(), two.contact(pairing="SURFACES"), {}),
+    "mortar points on other meshes":
+        (two.bodies(upper=(OTHER, HIGH)), two.contact(pairing="SURFACES"), {}),
+    "a tie": (two.bodies(**PARTS) + two.TIE, two.contact("MIDDLE.BOTTOM"), {}),
+    "a tie of other meshes": (two.bodies(**OTHERS) + two.TIE, two.contact("MIDDLE.BOTTOM"), {}),
+    "equations": (two.bodies(**PARTS) + EQUAL, two.contact("MIDDLE.BOTTOM"), {}),
+    "a coupling": (two.bodies() + GRIP, two.contact(), {"pressed": BY_GRIP}),
+    "MUMPS": (two.bodies() + ["*SOLVER, TYPE=MUMPS"], two.contact(), {}),
+}
+STEPS = {"fixed": {}, "by error": {"how": ", LOCAL ERROR=1.E-3"}}
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """Return the results of two blocks of one mesh with node pairs, for each kind of step."""
+    folder = tmp_path_factory.mktemp("plain")
+    return {name: solve(two.two_blocks(folder / f"{name}.inp", **step))
+            for name, step in STEPS.items()}
+
+
+def model(path, form, *cards, **of_step):
+    """Write the deck of a form; return its path."""
+    bodies, contact, pressing = FORMS[form]
+    return two.write_deck(path, bodies, contact, TIGHT, cards, two.heated(**pressing, **of_step))
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("form", FORMS)
+def test_a_form_leaves_the_course(tmp_path, plain, form, step):
+    found = solve(model(tmp_path / "deck.inp", form, **STEPS[step]))
+    one, other = two.course(plain[step]), two.course(found)
+    assert 0.3 * max(one["pressure"]) < np.ptp(one["pressure"])   # heat and contact are coupled
+    two.assert_same_course(one, other)
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("refine", [
+    "*REFINE, LEVELS=1", "*REFINE, LEVELS=1, SURFACE=UPPER.BOTTOM"], ids=["all", "faces"])
+def test_divided_elements_are_those_of_a_finer_mesh(tmp_path, refine, step):
+    """A surface in contact has its other face divided, too."""
+    def halved(points, everywhere="SURFACE" not in refine):
+        return sorted([*points, *((a + b) / 2 for a, b in pairwise(points)
+                                  if everywhere or 0.0 in (a, b))])
+
+    parts = two.bodies(upper=(halved(XS, True), halved(HIGH)),
+                       lower=(halved(XS, True), halved(LOW)))
+    written = two.write_deck(tmp_path / "written.inp", parts, two.contact(), TIGHT,
+                             two.heated(**STEPS[step]))
+    divided = two.two_blocks(tmp_path / "divided.inp", refine, **STEPS[step])
+    two.assert_same_course(two.course(solve(written)), two.course(solve(divided)))
+
+
+SCHEMES = {"IMPLICIT": 1.0, "CRANK-NICOLSON": 0.5, "GALERKIN": 2 / 3}
+ENTERING = two.HOT_FILM * (two.HOT - two.START) + two.COLD_FILM * (two.COLD - two.START)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("form", [*FORMS, "hanging nodes"])
+def test_heat_that_is_stored_is_in_the_bodies(tmp_path, form, scheme):
+    """The mean over an increment is a part of the rate at its end, the rest of that at its start;
+    the films alone act at first."""
+    cards = [f"*THERMAL SCHEME, TYPE={scheme}"]
+    if form == "hanging nodes":
+        deck = two.two_blocks(tmp_path / "deck.inp", *cards,
+                              "*ELSET, ELSET=CORNER", "1, 1001", "*REFINE, LEVELS=2, ELSET=CORNER")
+    else:
+        deck = model(tmp_path / "deck.inp", form, *cards)
+    result = solve(deck)
+    times, heat = two.content(result)
+    stored, entering, leaving = two.history(result, "heat_stored", "heat_in", "heat_out")
+    np.testing.assert_allclose(entering - leaving, stored, rtol=0, atol=1e-9 * entering.max())
+    part = SCHEMES[scheme]
+    mean = part * stored + (1 - part) * np.array([ENTERING, *stored[:-1]])
+    sizes = np.diff(times, prepend=0.0)
+    np.testing.assert_allclose(np.cumsum(mean * sizes), heat, rtol=1e-9)
+
+
+@pytest.mark.parametrize("form", [*FORMS, "node pairs"])
+def test_heat_balances_with_the_default_scheme_and_increments_by_error(tmp_path, form):
+    deck = (two.two_blocks(tmp_path / "deck.inp", how="") if form == "node pairs"
+            else model(tmp_path / "deck.inp", form, how=""))
+    result = solve(deck)
+    stored, entering, leaving, time = two.history(result, "heat_stored", "heat_in", "heat_out", "time")
+    np.testing.assert_allclose(entering - leaving, stored, rtol=0, atol=1e-9 * entering.max())
+    times, heat = two.content(result)
+    # Over increments that err by a thousandth the trapezoidal sum of the rates is near the heat.
+    sizes = np.diff(time, prepend=0.0)
+    before = np.array([ENTERING, *stored[:-1]])
+    np.testing.assert_allclose(np.cumsum((stored + before) / 2 * sizes), heat, rtol=2e-2)
+
+
+HOT = f"11, 11, {two.HOT!r}"
+CORNER = ["*ELSET, ELSET=CORNER", "5", "*REFINE, LEVELS=1, ELSET=CORNER"]
+TIED = two.bodies(**PARTS) + two.TIE
+# Bodies, slave, prescribed temperatures, and the integral of shape functions of the nodes there: a
+# sixth of the elements beside them. Hanging nodes have 3/8 and -1/8 of the corner above them, and a
+# third of half the small elements beside.
+JUMPS = {
+    "given": (two.bodies(), "UPPER.BOTTOM", [f"UPPER.TOP, {HOT}"], 0.5 / 6),
+    "above hanging nodes": (two.bodies() + CORNER, "UPPER.BOTTOM", [f"UPPER.TOP, {HOT}"],
+                            0.6 * 0.5 / 6 + 0.4 * 0.25 / 6 + 0.2 * 0.25 / 3 * (3 / 8 - 1 / 8)),
+    "by a coupling": (two.bodies() + GRIP[:-4] + ["11"], "UPPER.BOTTOM", [f"9000, {HOT}"], 0.5 / 6),
+    "of a master": (TIED, "MIDDLE.BOTTOM", [f"MIDDLE.TOP, {HOT}"], (0.5 + 0.3) / 6),
+    "of a slave": (TIED, "MIDDLE.BOTTOM", [f"UPPER.BOTTOM, {HOT}"], (0.5 + 0.3) / 6),
+    "of a face in contact": (two.bodies(), "UPPER.BOTTOM", [f"UPPER.BOTTOM, {HOT}"], 0.2 / 6),
+}
+
+
+@pytest.mark.parametrize("jump", JUMPS)
+def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
+    bodies, slave, hot, beside = JUMPS[jump]
+    result = solve(two.write_deck(tmp_path / "deck.inp", bodies, two.contact(slave), TIGHT,
+                                  ["*THERMAL SCHEME, TYPE=IMPLICIT"],
+                                  two.heated("*BOUNDARY", *hot)))
+    times, heat = two.content(result)
+    stored, = two.history(result, "heat_stored")
+    at_once = beside * two.CAPACITY["UPPER"] * (two.HOT - two.START)
+    np.testing.assert_allclose(at_once + np.cumsum(stored * np.diff(times, prepend=0.0)), heat,
+                               rtol=1e-9)
+
+
+# Steps and methods
+
+STEADY = [f"{two.COUPLED}, STEADY STATE", "0.1, 0.2"]
+OTHER_STEPS = {
+    "a static step before": ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}",
+                             "*END STEP"],
+    "a transient of heat alone before": [
+        "*STEP, INC=1000", "*HEAT TRANSFER, DIRECT", "0.05, 0.3", "*DFLUX", "UPPER, BF, 100.", "*END STEP"],
+    "a coupled transient before": two.heated("*DFLUX", "UPPER, BF, 50.", times="0.03, 0.3"),
+}
+
+
+@pytest.mark.parametrize("before", OTHER_STEPS)
+@pytest.mark.parametrize("scheme", ["IMPLICIT", "EXPLICIT"])
+def test_heat_is_kept_from_step_to_step(tmp_path, before, scheme):
+    """What the step before stored is where the next one begins."""
+    result = solve(two.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}",
+                                  *OTHER_STEPS[before]))
+    times, heat = two.content(result)
+    stored, = two.history(result, "heat_stored")
+    gained = np.cumsum(np.nan_to_num(stored) * np.diff(times, prepend=0.0))
+    np.testing.assert_allclose(gained, heat, rtol=1e-9, atol=1e-9 * heat.max())
+    assert heat[-1] > 0
+
+
+def test_a_steady_step_between_transients_stores_nothing_and_what_follows_starts_from_it(tmp_path):
+    """Loads that act at once as they are find the steady state, and nothing changes."""
+    steady = two.heated(times="0.1, 0.2", how=", STEADY STATE")
+    result = solve(two.two_blocks(tmp_path / "deck.inp", *two.heated(times="0.05, 0.1"), *steady))
+    time, stored, entering = two.history(result, "time", "heat_stored", "heat_in")
+    assert np.isnan(stored[(time > 0.1 + 1e-9) & (time < 0.3 + 1e-9)]).all()
+    last = time > 0.3 + 1e-9
+    np.testing.assert_allclose(stored[last], 0.0, atol=1e-7 * entering[-1])
+    np.testing.assert_allclose(entering[last], entering[~last][-1], rtol=1e-7)
+
+
+def test_faces_that_are_removed_conduct_nothing_and_conduct_again_when_added(tmp_path):
+    steps = []
+    for change in ("REMOVE", "ADD"):
+        steps += ["*STEP, INC=1000", f"{two.COUPLED}, DIRECT", "0.05, 0.2",
+                  f"*MODEL CHANGE, TYPE=CONTACT PAIR, {change}", "UPPER.BOTTOM, LOWER.TOP", "*END STEP"]
+    bodies = two.bodies(held=["LOWER.BOTTOM, 1, 2", "LOWER, 1", "UPPER, 1"])
+    deck = two.write_deck(tmp_path / "deck.inp", bodies, two.contact(), TIGHT,
+                          ["*THERMAL SCHEME, TYPE=IMPLICIT"], two.heated(times="0.05, 0.2"), steps)
+    result = solve(deck)
+    times, heat = two.content(result)
+    stored, = two.history(result, "heat_stored")
+    with h5py.File(result) as file:
+        crossing = file["contact/FACE/heat_rate"][()]
+    np.testing.assert_allclose(np.cumsum(stored * np.diff(times, prepend=0.0)), heat, rtol=1e-9)
+    removed = (times > 0.2 + 1e-9) & (times < 0.4 + 1e-9)
+    assert np.abs(crossing[removed]).max() == 0.0
+    assert np.abs(crossing[~removed]).min() > 0.1
+
+
+def test_a_scheme_that_is_given_is_that_of_its_coefficients(tmp_path):
+    names = "*THERMAL SCHEME, TYPE=GALERKIN", "*THERMAL SCHEME, TYPE=FREE"
+    given = "4., 1., 3., 2., 1., 1., 2., 4."   # six times as large
+    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), "contact", "VTKHDF/PointData")
+             for cards in (names[:1], (names[1], given))]
+    assert_alike(*found, 1e-9)
+
+
+@pytest.mark.parametrize("start", ["BOTH", "OPEN", "CLOSED"])
+def test_the_start_of_the_iteration_leaves_the_solution(tmp_path, start):
+    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), "contact", "VTKHDF/PointData")
+             for cards in ((), (f"*START, FROM={start}",))]
+    assert_alike(*found, 1e-9)
+
+
+def mirrored(cards):
+    """Return the cards with x turned round: elements begin at their other lower corner."""
+    turned, inside = [], ""
+    for card in cards:
+        if card.startswith("*"):
+            inside = card.split(",")[0]
+        elif inside == "*NODE":
+            number, x, y = card.split(", ")
+            card = f"{number}, {1.0 - float(x):.15g}, {y}"
+        elif inside == "*ELEMENT":
+            number, a, b, c, d, ab, bc, cd, da = card.split(", ")
+            card = ", ".join((number, b, a, d, c, ab, da, cd, bc))
+        elif inside == "*SURFACE":
+            card = card[:-1] + {"2": "4", "4": "2"}.get(card[-1], card[-1])
+        turned.append(card)
+    return turned
+
+
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_a_mirrored_twin_finds_the_same(tmp_path, pairing):
+    """Two blocks that rub on each other and are heated on one side: all fields vary along x."""
+    found = []
+    for turn, sign in ((lambda cards: cards, 1), (mirrored, -1)):
+        bodies = turn(two.bodies(held=["LOWER.BOTTOM, 1, 2", "UPPER.TOP, 1"]))
+        cards = two.contact(pairing=pairing, laws=["*FRICTION", "0.2", *two.LAWS])
+        slide = ("*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", f"UPPER.TOP, 1, 1, {sign * 4e-3!r}")
+        deck = two.write_deck(tmp_path / f"{pairing}{sign}.inp", bodies, cards, TIGHT, two.heated(
+            "*CFLUX", "1, 11, 20.", pressed=slide, how=""))
+        with h5py.File(solve(deck)) as file:
+            face = file["contact/FACE"]
+            rows = np.argsort(sign * face["x"][()])
+            found.append({name: face[name][()][:, rows] for name in (
+                "pressure", "heat_flux", "slave_temperature", "gap", "status")})
+            found[-1]["shear"] = sign * face["shear"][()][:, rows]
+            found[-1] |= {name: file[f"history/{name}"][()] for name in two.OF_BODIES}
+    assert np.ptp(found[0]["heat_flux"][-1]) > 0.1 * np.abs(found[0]["heat_flux"][-1]).max()
+    assert {1, 2} <= set(found[0]["status"].ravel())
+    assert_alike(*found, 1e-8)
+
+
+@pytest.mark.parametrize("kind", ["CPE8R", "CPS8", "CAX8", "CPE6", "CPE4", "CPE3", "CAX4"])
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_heat_balances_in_elements_of_all_kinds(tmp_path, kind, pairing):
+    """A uniform source heats insulated bodies as a whole: the heat that is stored is known."""
+    bodies = two.bodies(kind, held=["LOWER.BOTTOM, 2", "LOWER, 1", "UPPER, 1"])
+    step = ["*STEP, INC=100000", two.COUPLED, "0.05, 0.5", "*BOUNDARY",
+            f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*DFLUX", "UPPER, BF, 30.", "*END STEP"]
+    result = solve(two.write_deck(tmp_path / "deck.inp", bodies, two.contact(pairing=pairing), TIGHT,
+                                  step))
+    volume = np.pi if "CAX" in kind else 1.0
+    time, stored, entering, leaving = two.history(result, "time", "heat_stored", "heat_in", "heat_out")
+    np.testing.assert_allclose(stored, 30.0 * volume, rtol=1e-9)
+    np.testing.assert_allclose(entering, 30.0 * volume, rtol=1e-9)
+    np.testing.assert_allclose(leaving, 0.0, atol=1e-9)
+
+
+def test_mumps_gives_what_skyline_does(tmp_path):
+    found = {}
+    for solver in ("SKYLINE", "MUMPS"):
+        deck = two.two_blocks(tmp_path / f"{solver}.inp", f"*SOLVER, TYPE={solver}", how="")
+        found[solver] = datasets(solve(deck), "contact", "history", "VTKHDF/PointData")
+        with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+            assert file["run"].attrs["solver"].upper() == solver
+        for name in ("heat_imbalance", "heat_imbalance_pointwise", "force_imbalance"):
+            assert found[solver].pop(f"history/{name}").max() < 1e-9
+    assert_alike(found["SKYLINE"], found["MUMPS"], 1e-10)

@@ -1,0 +1,204 @@
+"""Runs with steps that store heat: increments that are repeated, signals, batches, checks, settings."""
+
+import csv
+import re
+import signal
+import subprocess
+import time
+from contextlib import suppress
+from itertools import takewhile
+
+import h5py
+import numpy as np
+import pytest
+import transients as two
+from deck_runs import PROGRAM, assert_alike, datasets, run, solve
+from physics import judge, material, mesh
+
+TIGHT = ["*FIXED POINT, TOL=1.E-12"]
+EVERYWHERE = "contact", "history", "VTKHDF/PointData"
+ROUNDING = "heat_imbalance", "heat_imbalance_pointwise", "force_imbalance"
+
+# Increments that fail, and why: what the deck has beside the two blocks, and the start of its words.
+FEW_PASSES = ["*FIXED POINT, METHOD=PICARD, TOL=1.E-12, MAXITER=4"]
+ABSOLUTE = ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-20."]
+APART = two.contact(laws=["*GAP LAW, TYPE=GAS", "2.E-3, 5.E-3", "*GAP LAW, TYPE=POWER", "0.4, 0.5, 1."
+                          ]) + ["*CLEARANCE, MASTER=LOWER.TOP, SLAVE=UPPER.BOTTOM, VALUE=1.E-3"]
+SLIDING = two.bodies(held=["LOWER.BOTTOM, 1, 2"])
+RUBBING = two.contact(laws=["*FRICTION", "0.2", *two.LAWS])
+SLIDE = ("*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "UPPER.TOP, 1, 1, 0.004")
+STILL = ("*BOUNDARY", "UPPER.TOP, 2, 2, 0.")
+REPEATED = {
+    "too few passes": (two.bodies(), two.contact(), FEW_PASSES, {"how": ", LOCAL ERROR=1."},
+                       "the conductance does not converge"),
+    "error in time": (two.bodies(), two.contact(), [], {"how": ""}, "its temperatures err by"),
+    "DELTMX": (two.bodies(), two.contact(), [], {"how": ", LOCAL ERROR=1., DELTMX=4."},
+               "a temperature changes by"),
+    "touch": (two.bodies(), APART, [], {"how": ", LOCAL ERROR=1.", "pressed": STILL},
+              "contact pair FACE touches or parts"),
+    "with friction": (SLIDING, RUBBING, [], {"how": "", "pressed": SLIDE}, "its temperatures err by"),
+    "with heat of strains": (ABSOLUTE + two.bodies(), two.contact(), [],
+                             {"how": ", DILATATION=YES"}, "its temperatures err by"),
+}
+
+
+def attempts(result):
+    """Return the reasons of the attempts that failed, as the listing gives them."""
+    listing = " ".join(result.with_suffix(".lst").read_text().split())
+    return re.findall(r"attempt \d+ of size \S+, to time \S+, failed: ([^;.]*)", listing)
+
+
+@pytest.mark.parametrize("steps", [1, 2])
+@pytest.mark.parametrize("case", REPEATED)
+def test_an_increment_that_is_repeated_starts_from_the_same_state(tmp_path, case, steps):
+    """A run whose increments end at the same instants, none of which fails, finds the same."""
+    bodies, contact, method, step, reason = REPEATED[case]
+    first = f"{two.PERIOD!r}, {two.PERIOD!r}"
+    heated = two.heated(times=first, **step)
+    again = two.heated(times=first, **step | {"pressed": ()})[:-1] + ["*DFLUX", "LOWER, BF, 90.",
+                                                                     "*END STEP"]
+    course = heated + (again if steps == 2 else [])
+    result = solve(two.write_deck(tmp_path / "repeated.inp", bodies, contact, TIGHT, method, course))
+    assert any(words.startswith(reason) for words in attempts(result)), attempts(result)
+    time, = two.history(result, "time")
+    points = ["*TIME POINTS, NAME=ENDS, TIME=TOTAL TIME", *map(repr, time.tolist())]
+    at_once = two.write_deck(
+        tmp_path / "once.inp", bodies, contact, TIGHT, points,
+        [re.sub(r", (LOCAL ERROR|DELTMX)=[^,]*", "", card) + ", LOCAL ERROR=1."
+         if card.startswith(two.COUPLED) else card
+         for card in course for card in (
+             [card, "*NODE FILE, FREQUENCY=1, TIME POINTS=ENDS"]
+             if card == first else [card])])
+    once = solve(at_once)
+    assert attempts(once) == []
+    found, expected = datasets(result, *EVERYWHERE), datasets(once, *EVERYWHERE)
+    for name in (*ROUNDING, "iterations"):
+        del found[f"history/{name}"], expected[f"history/{name}"]
+    assert_alike(expected, found, 1e-9)
+
+
+# Signals
+
+LONG, BEFORE, PATIENCE = 200000, 100, 60.0   # increments, those before a signal; seconds
+FIXED = {"how": ", DIRECT", "times": f"1.E-5, {1e-5 * LONG!r}"}
+
+
+def lines_of(sta):
+    """Return the lines of a .sta file without its heading, and without one that is being written."""
+    with suppress(FileNotFoundError):
+        return sta.read_text().rpartition("\n")[0].splitlines()[1:]
+    return []
+
+
+@pytest.fixture(scope="module")
+def first_increments(tmp_path_factory):
+    """Return a function that gives what the long run has found after some increments."""
+    folder = tmp_path_factory.mktemp("first")
+
+    def call(count):
+        alone = two.two_blocks(folder / f"{count}.inp", how=", DIRECT", times=f"1.E-5, {1e-5 * count!r}")
+        return datasets(solve(alone), *EVERYWHERE)
+
+    return call
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL"])
+def test_what_a_run_wrote_before_a_signal_is_valid(tmp_path, first_increments, name):
+    """Its increments are those of a run that ends there; a kill may leave one more than its .sta."""
+    deck = two.two_blocks(tmp_path / "deck.inp", **FIXED)
+    process = subprocess.Popen([PROGRAM, "run", "--quiet", str(deck), "--out", str(tmp_path)],
+                               text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    until = time.monotonic() + PATIENCE
+    while len(lines_of(tmp_path / "deck.sta")) < BEFORE:
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.002)
+    process.send_signal(getattr(signal, name))
+    _, said = process.communicate(timeout=PATIENCE)
+    named = len(lines_of(tmp_path / "deck.sta"))
+    found = datasets(tmp_path / "deck.vtkhdf", *EVERYWHERE)
+    count = len(found["history/time"])
+    assert BEFORE <= count < LONG
+    if name == "SIGKILL":
+        assert process.returncode == -signal.SIGKILL
+        assert named <= count <= named + 1
+    else:
+        assert process.returncode == 5
+        assert f"{deck}: error: ended by {name} after increment {count} (time " in said
+        assert count == named
+        assert not list(tmp_path.glob("*.tmp"))
+    expected = first_increments(count)
+    for each in ROUNDING:
+        del found[f"history/{each}"], expected[f"history/{each}"]
+    assert_alike(expected, found, 1e-12)
+
+
+# Batches and settings
+
+def test_a_batch_finds_what_single_runs_do(tmp_path):
+    """To the last bit, beside a deck that does not converge."""
+    decks = [two.two_blocks(tmp_path / "fixed.inp"), two.two_blocks(tmp_path / "free.inp", how=""),
+             two.write_deck(tmp_path / "fails.inp", two.bodies(), two.contact(), [
+                 "*FIXED POINT, METHOD=PICARD, TOL=1.E-12, MAXITER=2"], two.heated())]
+    single = [datasets(solve(deck), *EVERYWHERE) for deck in decks[:2]]
+    for jobs in (1, 2):
+        folder = tmp_path / f"jobs{jobs}"
+        process = run("run", *decks, "--out", folder, "--jobs", jobs)
+        assert process.returncode == 2
+        with (folder / "thercon-batch.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        assert [row["outcome"] for row in rows] == ["solved", "solved", "not converged"]
+        for deck, row, expected in zip(decks, rows, single, strict=False):
+            found = datasets(folder / f"{deck.stem}.vtkhdf", *EVERYWHERE)
+            assert int(row["increments"]) == len(found["history/time"])
+            assert_alike(expected, found, 0.0)
+
+
+def test_settings_of_a_sweep_are_those_of_decks_of_their_own(tmp_path):
+    """The film's temperature and the first increment are parameters of one deck."""
+    def deck(name, hot, first, cards=()):
+        step = [card.replace(f"F, {two.HOT!r}", f"F, {hot}")
+                for card in two.heated(times=f"{first}, {two.PERIOD!r}", how="")]
+        return two.write_deck(tmp_path / name, two.bodies(), two.contact(), TIGHT, cards, step)
+
+    swept = deck("swept.inp", "<HOT>", "<FIRST>", ["*PARAMETER", f"HOT = {two.HOT!r}", "FIRST = 0.05"])
+    found = []
+    for hot, first in ((60.0, 0.05), (90.0, 0.01)):
+        one = datasets(solve(swept, "--set", f"HOT={hot}", "--set", f"FIRST={first}"), *EVERYWHERE)
+        found.append(one["history/heat_in"][-1])
+        assert_alike(datasets(solve(deck("own.inp", hot, first)), *EVERYWHERE), one, 0.0)
+    assert found[1] > 1.2 * found[0]
+
+
+# Checks
+
+def squeezed(share, dilatation="YES"):
+    """Return a block that is squeezed at a steady rate and stores heat of a source; T0 is 300."""
+    young, poisson, alpha, period, rate = 1000.0, 0.25, 1e-3, 2.0, 0.004
+    beta = young * alpha / (1 - 2 * poisson)
+    heat, width, height = 7.0, 0.5, 1.0
+    cards = ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-280.",
+             *mesh("BODY", [0.0, 0.2, width], [0.0, height]),
+             *material("BODY", (young, poisson), alpha, 1.0, 1.0, 50.0),
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.",
+             "*STEP, AMPLITUDE=RAMP", f"{two.COUPLED}, DIRECT, DILATATION={dilatation}",
+             f"0.25, {period!r}", "*BOUNDARY", "BODY, 1", "BODY.BOTTOM, 2",
+             f"BODY.TOP, 2, 2, {-rate * period!r}", "*AMPLITUDE, NAME=ALL", "0., 1., 10., 1.",
+             "*DFLUX, AMPLITUDE=ALL", f"BODY, BF, {heat!r}", "*END STEP"]
+    at = cards.index("*AMPLITUDE, NAME=ALL")
+    cards = cards[at:at + 2] + cards[:at] + cards[at + 2:]
+    of_strains = -300.0 * beta * rate * width
+    source = heat * width * height
+    rows = [("heat_in", "", "LAST", source, 1e-9), ("heat_out", "", "LAST", 0.0, 1e-9, "ABS")]
+    if dilatation == "NO":
+        return cards, [*rows, ("heat_stored", "", "LAST", share * source, 1e-9)]
+    for when in ("0.25", "LAST"):
+        rows += [("heat_dilatation", "", when, share * of_strains, 1e-9),
+                 ("heat_stored", "", when, share * (source - of_strains), 1e-9)]
+    return cards, rows
+
+
+@pytest.mark.parametrize("dilatation", ["YES", "NO"])
+def test_stored_heat_and_heat_of_strains_are_judged(tmp_path, dilatation):
+    """T0 beta:eps' of a block that cannot widen, and what a source gives beside it."""
+    judge(tmp_path, *squeezed(1.0, dilatation))
+    judge(tmp_path, *squeezed(1.01, dilatation), status=4)
