@@ -294,6 +294,28 @@ def test_every_expansion_about_an_axis(tmp_path, k):
     follows(tmp_path, make, 1.0, 1.1)
 
 
+@pytest.mark.changes("EXPANSION", "EXPANSION, ZERO")
+def test_secants_of_a_table_begin_at_zero(tmp_path):
+    """A free square: alpha(T) (T - ZERO) - alpha(T0) (T0 - ZERO), coefficients linear between rows."""
+    cards = mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS8")
+    start, warm, slope = 50.0, 80.0, 2e-7
+
+    def make(zero):
+        def alpha(temperature):
+            return 1e-5 + slope * temperature
+
+        strain = alpha(warm) * (warm - zero) - alpha(start) * (start - zero)
+        return [*cards, "*MATERIAL, NAME=M", "*ELASTIC", "2.E5, 0.3", f"*EXPANSION, ZERO={zero!r}",
+                f"{alpha(0.0)!r}, 0.", f"{alpha(200.0)!r}, 200.",
+                "*SOLID SECTION, ELSET=BODY, MATERIAL=M", "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
+                f"BODY, {start!r}", *static("*BOUNDARY", "BODY.LEFT, 1", "BODY.BOTTOM, 2",
+                                            "*TEMPERATURE", f"BODY, {warm!r}")], [
+            ("U1", "BODY.RIGHT", "LAST", strain, 1e-8), ("U2", "BODY.TOP", "LAST", strain, 1e-8),
+            ("S11", "BODY", "LAST", 0.0, 1e-6, "ABS")]
+
+    follows(tmp_path, make, 20.0, 0.0)
+
+
 @pytest.mark.changes("CONDUCTIVITY")
 def test_conductivities_about_an_axis(tmp_path):
     """The first along the radius, the second along the axis; round it no heat flows."""

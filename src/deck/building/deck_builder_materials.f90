@@ -1,7 +1,7 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *ORIENTATION and
 !> *SOLID SECTION, which give elements their material, its axes and their thickness.
 module deck_builder_materials
-   use card_parameters, only: choose, parameter_place, take_parameter
+   use card_parameters, only: choose, has_parameter, parameter_place, take_parameter
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
       take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
@@ -101,6 +101,10 @@ contains
          end if
          call read_rows(cards, card, context, report, property, valid)
          call take_parameter(card, 'ZERO', report, material%no_strain)
+         if (valid .and. has_parameter(card, 'ZERO')) then
+            if (size(property%temperature) == 1) call context%note('*EXPANSION: ZERO= is '// &
+               'ignored: with a single row strains begin at the initial temperature')
+         end if
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
          call build_conductivity(cards, card, context, report, property, valid)
@@ -164,8 +168,9 @@ contains
       if (property%symmetry == engineering) call refuse_not_positive(cards, card, property, &
          moduli, report, valid)
       do row = 1, size(property%temperature)
-         if (valid) call check_elasticity(field_place(cards%data(first_card(card, property, row)), &
-            merge(2, 1, property%symmetry == isotropic)), property, row, report, valid)
+         if (.not. valid .and. property%symmetry /= isotropic) cycle
+         call check_elasticity(field_place(cards%data(first_card(card, property, row)), merge(2, &
+            1, property%symmetry == isotropic)), property, row, report, valid)
       end do
    end subroutine build_elasticity
 
@@ -181,9 +186,9 @@ contains
       associate (constants => property%values(:, row))
          select case (property%symmetry)
          case (isotropic)
-            valid = constants(2) > -1.0_dp .and. constants(2) < 0.5_dp
-            if (.not. valid) call report%error(place, &
-               'Poisson''s ratio must lie between -1 and 0.5')
+            if (constants(2) > -1.0_dp .and. constants(2) < 0.5_dp) return
+            valid = .false.
+            call report%error(place, 'Poisson''s ratio must lie between -1 and 0.5')
             return
          case (engineering)
             d = engineering_elasticity(constants)
