@@ -86,7 +86,7 @@ def test_every_attempt_is_on_record(deck):
     listing = result.with_suffix(".lst").read_text()
     assert len(re.findall(r"^ +attempt \d+ of size .* not kept: the conductance", listing, re.M)) \
         == cuts.sum()
-    assert "attempt 1 of size 1, to time 1, failed" in listing
+    assert "attempt 1 of size 1, to time 1, not kept" in listing
     blocks = re.findall(r"iterations (\d+) +cut-backs (\d+)", listing)
     assert [(int(a), int(b)) for a, b in blocks] == list(zip(iterations, cuts, strict=True))
 
@@ -207,7 +207,7 @@ def test_given_smallest_increment_is_obeyed(deck):
     assert process.returncode == 2
     assert "increment size 0.1, the smallest that the step allows" in process.stderr
     attempts = np.array([[float(x) for x in found] for found in re.findall(
-        r"attempt \d+ of size (\S+), to time (\S+), failed", path.with_suffix(".lst").read_text())])
+        r"attempt \d+ of size (\S+), to time (\S+), not kept", path.with_suffix(".lst").read_text())])
     assert attempts[:, 0].min() == 0.1
 
 

@@ -43,9 +43,9 @@ REPEATED = {
 
 
 def attempts(result):
-    """Return the reasons of the attempts that failed, as the listing gives them."""
+    """Return the reasons of the attempts that are not kept, as the listing gives them."""
     listing = " ".join(result.with_suffix(".lst").read_text().split())
-    return re.findall(r"attempt \d+ of size \S+, to time \S+, failed: ([^;.]*)", listing)
+    return re.findall(r"attempt \d+ of size \S+, to time \S+, not kept: ([^;.]*)", listing)
 
 
 @pytest.mark.parametrize("steps", [1, 2])
