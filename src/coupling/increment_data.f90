@@ -6,6 +6,7 @@ module increment_data
    use edge_heat, only: edge_integral_type, edge_heat_type
    use field_problem, only: field_load_type, solved_loads_type
    use fixed_point, only: pass_type
+   use friction_heating, only: friction_heating_type
    use kinds, only: dp
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
@@ -34,6 +35,7 @@ module increment_data
       real(dp), allocatable :: omega_before(:)       !! (m) omega_(i-1)
       logical, allocatable :: resting(:)             !! (m) contact points that rest
       type(edge_heat_type) :: edge   !! heat at edges; none where (3.4) takes past conductances
+      type(friction_heating_type) :: friction        !! heat of friction, made as the trial found
       real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
@@ -47,6 +49,7 @@ module increment_data
    type :: increment_workspace_type
       type(field_load_type) :: heat                  !! load of (3.4)
       type(field_load_type) :: force                 !! load of (2.4)
+      type(friction_heating_type) :: friction        !! heat of friction; nothing allocated for none
       !> Loads of earlier increments, of (3.4) and of (2.4).
       type(solved_loads_type), allocatable :: known(:)
       real(dp), allocatable :: supported(:) !! (nodes) what prescribed temperatures alone make

@@ -12,6 +12,7 @@
 module heat_storage
    use edge_heat, only: supplied_heat
    use errors, only: error_type, set_error, status_no_convergence
+   use friction_heating, only: friction_at_start
    use heat_reduction, only: heat_reduction_type
    use kinds, only: dp
    use load_histories, only: step_clock_type
@@ -39,6 +40,8 @@ module heat_storage
       real(dp), allocatable :: temperature(:)              !! (nodes) T* of its equation
       real(dp), allocatable :: displacement(:)             !! (2 nodes) u* likewise
       real(dp), allocatable :: jump(:)   !! (nodes) of temperatures where the step begins
+      !> (m) slip that counts as made before it; unallocated for none [length]
+      real(dp), allocatable :: slip_before(:)
       logical :: is_last = .true.                          !! whether the increment ends with it
    end type stage_type
 
@@ -140,6 +143,10 @@ contains
          rates%conducted = bodies%thermal%matrix%multiply(state%temperature)
          rates%entering = state%sources%net_heat(state%temperature)
          rates%crossing = heat_across(bodies%points%weight, state%carrying, state%jump)
+         if (allocated(bodies%points%heated)) then
+            rates%made = friction_at_start(bodies, state%contact, state%friction_heat)
+            state%friction_heat = rates%made
+         end if
          do i = 1, bodies%capacity%row_count
             stores(i) = by%start(i + 1) > by%start(i)
             associate (row => bodies%capacity%value(bodies%capacity%row_start(i): &

@@ -9,6 +9,7 @@ module increments
    use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: solved_loads_type
    use balances, only: sound_imbalance
+   use friction_heating, only: nodal_friction_heat, slips_before
    use heat_reduction, only: heat_reduction_type
    use heat_storage, only: begin_storage, measure_changes, stage_type, strain_heat_type, &
       strain_rate
@@ -339,6 +340,8 @@ contains
                   (next%temperature - before%temperature)
                stage%displacement = before%displacement + (1/stage_part - 1)* &
                   (next%displacement - before%displacement)
+               if (allocated(self%bodies%points%heated)) stage%slip_before = slips_before( &
+                  self%bodies, next%contact)
                stage%size = clock%step_time - stage%clock%step_time
                stage%clock = clock
                stage%is_last = .true.
@@ -433,8 +436,12 @@ contains
       workspace%record%increment = record%increment
       associate (step => model%steps(self%control%step), bodies => self%bodies)
          call begin_increment(bodies, step, before, next, data)
-         if (step%is_transient) call data%equation%hold_heat(bodies%capacity, stage%duration, &
-            stage%temperature, before%stored)
+         if (step%is_transient) then
+            call data%equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
+               before%stored)
+            data%friction%duration = stage%duration
+            if (allocated(stage%slip_before)) data%friction%slip_before = stage%slip_before
+         end if
          if (allocated(strain_heat%taken_up)) data%equation%taken_up = strain_heat%taken_up
          if (solves_heat(step%analysis)) then
             call reduce_heat(self, model, data%equation%left_film(bodies%capacity), error)
@@ -461,8 +468,13 @@ contains
             workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
          call recover_fields(bodies, self%heats(self%in_use), self%loads, data, workspace, next)
-         if (step%is_transient) next%stored = data%equation%stored_rate(bodies%capacity, &
-            next%temperature)
+         if (step%is_transient) then
+            next%stored = data%equation%stored_rate(bodies%capacity, next%temperature)
+            associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
+               if (allocated(data%friction%made)) next%stored = next%stored - b(1)/a(1)* &
+                  nodal_friction_heat(bodies, data%friction%late_start(before%friction_heat))
+            end associate
+         end if
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
       end associate
    end subroutine solve_fields
