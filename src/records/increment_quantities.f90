@@ -31,8 +31,8 @@ module increment_quantities
       description='heat that bodies store: in and friction less out and dilatation'), &
       quantity_type('heat_dilatation', of_history, 'power', needs_dilatation, label='dilatation', &
       description='heat that strains take up, the term with T0 beta of (1.2)'), &
-      quantity_type('heat_friction', of_history, 'power', needs_friction_heat, label='heat of friction', &
-      description='heat that friction makes'), &
+      quantity_type('heat_friction', of_history, 'power', needs_friction_heat, &
+      label='heat of friction', description='heat that friction makes'), &
       quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance', &
       description='imbalance of the heat balance that the scheme solves, over the largest rate'), &
       quantity_type('heat_imbalance_pointwise', of_history, '-', needs_heat, &
