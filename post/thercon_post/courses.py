@@ -12,12 +12,12 @@ LABELS = {
     "temperature": ("Temperature of the faces", "temperature"),
     "heat": ("Heat rate", "power"),
 }
-HEAT = {"heat_in": "into the model", "heat_out": "out of it", "heat_stored": "stored",
-        "heat_dilatation": "taken up by strains"}
+HEAT = {"heat_in": "into the model", "heat_friction": "of friction", "heat_out": "out of it",
+        "heat_stored": "stored", "heat_dilatation": "taken up by strains"}
 FACES = {"slave_temperature": "slave", "master_temperature": "master"}
 DECADES = 1e-3  # of the largest heat rate, the smallest that a logarithmic axis shows
 ORDER = {"master": 1, "out of it": 1, "stored": 2, "through the contact": 3,
-         "taken up by strains": 4}
+         "taken up by strains": 4, "of friction": 5}
 NOTHING = 1e-6  # of the largest of a panel: curves below it are not drawn
 LOOKS = [  # dashes show what lies below them
     (style.BLACK, "-"),
@@ -25,6 +25,7 @@ LOOKS = [  # dashes show what lies below them
     (style.VERMILION, (0, (2, 2))),
     (style.GREEN, "-."),
     (style.ORANGE, ":"),
+    (style.SKY, (0, (6, 2))),
 ]
 
 

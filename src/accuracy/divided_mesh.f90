@@ -162,13 +162,13 @@ contains
       call keep_to_equations(self%division, self%model)
       self%run = fresh_run
       self%heat = fresh_heat
-      self%run%heats(1)%forms_on_demand = .true.
-      self%heat%forms_on_demand = .true.
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) then
          deallocate (self%is_divided)
          return
       end if
+      self%run%heats(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
+      self%heat%forms_on_demand = self%run%heats(1)%forms_on_demand
       call self%run%loads%prepare(self%model)
       self%initial = make_initial_state(self%model, self%run%bodies)
       self%run%state = self%initial

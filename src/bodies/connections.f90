@@ -3,13 +3,14 @@
 !> contact points, made when a step begins.
 module connections
    use conductance_laws, only: conductance_law_type, is_constant, varies_with_temperature
-   use contact_definitions, only: is_removed, latest_friction, pairing_nodes, tie_definition_type
+   use contact_definitions, only: is_removed, latest_friction, makes_friction_heat, pairing_nodes, &
+      tie_definition_type
    use contact_pairs, only: make_contact_points, make_tie_points
    use contact_points, only: contact_points_type, contact_row_type
    use element_kinds, only: side_node_count
    use equations, only: equation_type
    use errors, only: error_type
-   use friction_laws, only: friction_law_type, unlimited
+   use friction_laws, only: friction_heat_type, friction_law_type, unlimited
    use local_refinement, only: hanging_rows
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -38,6 +39,9 @@ module connections
       integer, allocatable :: interface_start(:)     !! (interfaces + 1) first contact point of each
       !> (m, nodes) mean of both faces; no sums where no conductance law varies with the temperature
       type(sum_list_type) :: mean
+      !> (n) contact points that friction may heat; unallocated without *GAP HEAT GENERATION
+      integer, allocatable :: heated(:)
+      type(sum_list_type) :: heat_shares   !! (n, nodes) parts of their heat that enter nodes
       !> (interfaces) whether heat is integrated to the edge of contact
       logical, allocatable :: resolves_edge(:)
       type(hat_geometry_type), allocatable :: mortar(:) !! (interfaces) their hat functions
@@ -62,6 +66,10 @@ module connections
       !> (m) whether the interface is removed: its contact points are open whatever their gaps, and
       !> have neither friction nor conductance
       logical, allocatable :: removed(:)
+      !> (n) heat of friction of points%heated, and the friction that makes it where they slide out
+      !> of the plane: in the plane these have none
+      type(friction_heat_type), allocatable :: heat(:)
+      type(friction_law_type), allocatable :: heating_friction(:)
    contains
       procedure :: conductance_at
    end type contact_laws_type
@@ -153,6 +161,7 @@ contains
             end associate
          end do
       end if
+      call share_heat(interfaces, model, row)
       row%ties = joined_ties(model%mesh, model%ties, of_ties)
       row%hanging = hanging_rows(model%mesh)
       allocate (row%equations(0), row%partners(0))
@@ -165,6 +174,30 @@ contains
          interfaces(i)%mortar = hat_geometry_type()
       end do
    end subroutine join_points
+
+   !> Which contact points friction may heat, and how their heat enters the faces.
+   pure subroutine share_heat(interfaces, model, row)
+      type(contact_points_type), intent(in) :: interfaces(:)
+      type(model_type), intent(in) :: model
+      type(connections_type), intent(inout) :: row
+      integer :: i, k
+
+      if (.not. makes_friction_heat(model%interactions, model%contacts)) return
+      allocate (row%heated(0))
+      call row%heat_shares%reserve(0, 0)
+      do i = 1, size(interfaces)
+         associate (slave => interfaces(i)%slave_mean, master => interfaces(i)%master_mean, &
+            law => model%interactions(model%contacts(i)%interaction)%heat)
+            if (law%efficiency <= 0.0_dp) cycle
+            do k = 1, slave%count
+               call row%heat_shares%add([slave%values_of(k), master%values_of(k)], &
+                  [law%slave_share*slave%coefficients_of(k), (1.0_dp - law%slave_share)* &
+                  master%coefficients_of(k)])
+            end do
+            row%heated = [row%heated, (k, k=row%interface_start(i), row%interface_start(i + 1) - 1)]
+         end associate
+      end do
+   end subroutine share_heat
 
    !> Puts the points of all ties in one row.
    pure function joined_ties(mesh, ties, of_tie) result(row)
@@ -236,18 +269,19 @@ contains
    end function means
 
    !> The laws of a step.
-   pure function laws_of_step(model, interface_start, weight, step) result(laws)
+   pure function laws_of_step(model, points, step) result(laws)
       type(model_type), intent(in) :: model
-      integer, intent(in) :: interface_start(:)    !! (interfaces + 1) first contact point of each
-      real(dp), intent(in) :: weight(:)            !! (m) tributary areas [length^2]
+      type(connections_type), intent(in) :: points
       integer, intent(in) :: step                  !! index of the step
       type(contact_laws_type) :: laws
       integer :: i
 
-      allocate (laws%conductance(size(weight)), laws%friction(size(weight)))
-      allocate (laws%removed(size(weight)), source=.false.)
+      associate (m => size(points%weight))
+         allocate (laws%conductance(m), laws%friction(m))
+         allocate (laws%removed(m), source=.false.)
+      end associate
       do i = 1, size(model%contacts)
-         associate (first => interface_start(i), last => interface_start(i + 1) - 1, &
+         associate (first => points%interface_start(i), last => points%interface_start(i + 1) - 1, &
             interaction => model%interactions(model%contacts(i)%interaction))
             laws%removed(first:last) = is_removed(model%steps(:step)%changes, i)
             if (any(laws%removed(first:last))) cycle
@@ -258,9 +292,36 @@ contains
       end do
       laws%nodal_friction = laws%friction
       laws%nodal_friction%largest_shear = unlimited
-      where (laws%friction%largest_shear < unlimited .and. weight > 0.0_dp) &
-         laws%nodal_friction%largest_shear = laws%friction%largest_shear*weight
+      where (laws%friction%largest_shear < unlimited .and. points%weight > 0.0_dp) &
+         laws%nodal_friction%largest_shear = laws%friction%largest_shear*points%weight
+      call take_friction_heat(model, points, laws)
    end function laws_of_step
+
+   !> The heat of friction. Faces that slide out of the plane have no friction in it.
+   pure subroutine take_friction_heat(model, points, laws)
+      type(model_type), intent(in) :: model
+      type(connections_type), intent(in) :: points
+      type(contact_laws_type), intent(inout) :: laws  !! with the friction of the step
+      type(friction_heat_type) :: heat(size(points%weight))
+      integer :: i
+
+      if (.not. any(model%interactions%heat%efficiency > 0.0_dp .or. &
+         model%interactions%heat%leaves_plane())) return
+      do i = 1, size(model%contacts)
+         heat(points%interface_start(i):points%interface_start(i + 1) - 1) = &
+            model%interactions(model%contacts(i)%interaction)%heat
+      end do
+      where (heat%angular_velocity > 0.0_dp) &
+         heat%speed = heat%angular_velocity*abs(model%mesh%coordinates(1, points%slave))
+      if (allocated(points%heated)) then
+         laws%heat = heat(points%heated)
+         laws%heating_friction = laws%nodal_friction(points%heated)
+      end if
+      where (heat%leaves_plane())
+         laws%friction = friction_law_type()
+         laws%nodal_friction = friction_law_type()
+      end where
+   end subroutine take_friction_heat
 
    !> The conductance laws with the values that they have at temperatures of the faces.
    pure function conductance_at(self, mean, jump) result(laws)

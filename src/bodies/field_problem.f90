@@ -307,27 +307,35 @@ contains
       type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: forces(:)                   !! (dofs)
       real(dp) :: values(size(forces))                    !! (dofs)
-      real(dp) :: condensed(problem%map%tail, 1), rhs(problem%map%equations, 1), &
-         solution(problem%map%equations, 1)
+      real(dp) :: condensed(problem%map%tail, 1), welded(size(forces), 1)
 
-      rhs(:, 1) = problem%map%restrict(forces)
-      call self%solver%condense(rhs, condensed, solution)
-      values = problem%map%expand(solution(:, 1), 0.0_dp*forces)
+      call self%condense_forces(problem, reshape(forces, shape(welded)), condensed, welded)
+      values = welded(:, 1)
    end function welded_response
 
-   !> Nodal forces condensed on the tail.
-   subroutine condense_forces(self, problem, forces, condensed)
+   !> Nodal forces condensed on the tail, and the values that they make where the tail is zero.
+   subroutine condense_forces(self, problem, forces, condensed, welded)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: forces(:, :)                !! (dofs, columns)
       real(dp), intent(out) :: condensed(:, :)            !! (tail, columns)
+      real(dp), intent(out), optional :: welded(:, :)     !! (dofs, columns)
       real(dp) :: rhs(problem%map%equations, size(forces, 2))
+      real(dp), allocatable :: solution(:, :)
       integer :: k
 
       do k = 1, size(forces, 2)
          rhs(:, k) = problem%map%restrict(forces(:, k))
       end do
-      call self%solver%condense(rhs, condensed)
+      if (.not. present(welded)) then
+         call self%solver%condense(rhs, condensed)
+         return
+      end if
+      allocate (solution, mold=rhs)
+      call self%solver%condense(rhs, condensed, solution)
+      do k = 1, size(forces, 2)
+         welded(:, k) = problem%map%expand(solution(:, k), 0.0_dp*forces(:, k))
+      end do
    end subroutine condense_forces
 
    !> Frees the factors; the order of the unknowns stays.

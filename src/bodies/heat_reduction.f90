@@ -41,6 +41,11 @@ module heat_reduction
       real(dp), allocatable :: jump_load(:, :)
       !> (m, thermal tail) mean temperature of the faces per jump; formed where laws vary with it
       real(dp), allocatable :: jump_mean(:, :)
+      !> Of unit heat at each of the n contact points that friction may heat: (thermal tail, n)
+      !> condensed heat; (mechanical tail, n) condensed mechanical load of the temperatures that it
+      !> makes without jumps; (m, n) mean temperature of the faces, formed where laws vary with it.
+      !> Formed where heat depends on the mechanics of the step
+      real(dp), allocatable :: friction_heat(:, :), friction_load(:, :), friction_mean(:, :)
       !> (nodes) ranks in nested dissection of both fields as numbered; known where one elimination
       !> of both was made
       integer, allocatable :: node_rank(:)
@@ -50,6 +55,7 @@ module heat_reduction
       integer, private :: ranked_displacements = 0   !! numbering of those in node_rank
       !> numbering and values of equilibrium in jump_load, 0 without it
       integer, private :: equilibrium(2) = 0
+      integer, private :: friction_equilibrium(2) = 0   !! the same of friction_load
       logical, private :: is_balanced = .false.   !! whether jump_load is
    contains
       procedure :: serves
@@ -71,7 +77,8 @@ contains
       type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
 
       serves = self%is_of(bodies%thermal, film) .and. (.not. bodies%is_coupled .or. &
-         self%forms_on_demand .or. (has_loads(self, bodies) .and. self%is_balanced))
+         self%forms_on_demand .or. (has_loads(self, bodies) .and. self%is_balanced .and. &
+         has_friction_loads(self, bodies)))
    end function serves
 
    !> Whether the loads of the jumps are those of the bodies' supports.
@@ -82,6 +89,15 @@ contains
       has_loads = allocated(self%jump_load) .and. all(self%equilibrium == &
          [bodies%mechanical%numbering, bodies%mechanical%values])
    end function has_loads
+
+   !> Whether the loads of the heat of friction are those of the bodies' supports, if there are any.
+   pure logical function has_friction_loads(self, bodies)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+
+      has_friction_loads = .not. allocated(bodies%points%heated) .or. &
+         all(self%friction_equilibrium == [bodies%mechanical%numbering, bodies%mechanical%values])
+   end function has_friction_loads
 
    !> Reduces heat for given films, as far as it does not serve for films, supports and step.
    !> Errors: bodies whose temperature nothing determines, a failure of the solver.
@@ -110,11 +126,13 @@ contains
                'with a coefficient above 0 at this time fixes it'
             return
          end if
+         self%friction_equilibrium = 0
          if (allocated(self%jump_mean)) deallocate (self%jump_mean)
          if (bodies%points%vary_with_temperature()) call form_jump_mean(self, bodies)
       end if
       if (allocated(of_loads)) call move_alloc(of_loads, error)
       if (allocated(error) .or. .not. bodies%is_coupled .or. self%forms_on_demand) return
+      if (.not. has_friction_loads(self, bodies)) call form_friction(self, bodies)
       if (.not. has_loads(self, bodies)) call loads_by_solves(bodies%thermal, self, &
          bodies%mechanical, bodies%equilibrium, bodies%thermal_load, self%jump_load)
       self%equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
@@ -237,6 +255,44 @@ contains
          if (.not. any(bodies%jump_index == k)) self%jump_mean(:, k) = 0.0_dp
       end do
    end subroutine form_jump_mean
+
+   !> What unit heat at each contact point that friction may heat makes.
+   subroutine form_friction(self, bodies)
+      class(heat_reduction_type), intent(inout) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), allocatable :: forces(:, :), heat(:, :), temperature(:, :)
+      real(dp) :: unit(size(bodies%points%heated))
+      integer :: first, k, last, n, nodes
+
+      nodes = bodies%thermal%matrix%row_count
+      n = size(bodies%points%heated)
+      if (allocated(self%friction_heat)) deallocate (self%friction_heat, self%friction_load, &
+         self%friction_mean)
+      allocate (self%friction_heat(bodies%thermal%map%tail, n), self%friction_load( &
+         bodies%mechanical%map%tail, n), self%friction_mean(size(bodies%points%slave), n))
+      do first = 1, n, columns_at_once
+         last = min(first + columns_at_once - 1, n)
+         allocate (forces(bodies%thermal_load%row_count, last - first + 1), heat(nodes, &
+            last - first + 1), temperature(nodes, last - first + 1))
+         heat = 0.0_dp
+         do k = first, last
+            unit = 0.0_dp
+            unit(k) = 1.0_dp
+            call bodies%points%heat_shares%add_shares(unit, heat(:, k - first + 1))
+         end do
+         call self%condense_forces(bodies%thermal, heat, self%friction_heat(:, first:last), &
+            temperature)
+         call bodies%thermal_load%multiply_columns(temperature, forces)
+         call bodies%equilibrium%condense_forces(bodies%mechanical, forces, &
+            self%friction_load(:, first:last))
+         do k = first, last
+            self%friction_load(:, k) = balanced_jump(self%friction_load(:, k), bodies)
+            self%friction_mean(:, k) = bodies%points%means(temperature(:, k - first + 1))
+         end do
+         deallocate (forces, heat, temperature)
+      end do
+      self%friction_equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
+   end subroutine form_friction
 
    !> Conductance of the bodies about each contact point alone; 0 where both temperatures are
    !> prescribed. A contact point that closes a cycle, whose jump only the others hold, has that of

@@ -98,7 +98,7 @@ contains
       end if
       call join_points(self%interfaces, self%ties, model, self%points)
       deallocate (self%ties)
-      self%laws = laws_of_step(model, self%points%interface_start, self%points%weight, 1)
+      self%laws = laws_of_step(model, self%points, 1)
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
@@ -138,12 +138,13 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: heat, mechanics
 
-      self%laws = laws_of_step(model, self%points%interface_start, self%points%weight, step)
+      self%laws = laws_of_step(model, self%points, step)
       associate (held => loads%displacement%active, held_temperature => loads%temperature%active, &
          has_friction => self%laws%friction%coefficient > 0.0_dp)
          mechanics = solves_mechanics(model%steps(step)%analysis)
          heat = solves_heat(model%steps(step)%analysis)
-         self%is_coupled = heat .and. mechanics .and. .not. all(is_constant(self%laws%conductance))
+         self%is_coupled = heat .and. mechanics .and. (allocated(self%points%heated) .or. &
+            .not. all(is_constant(self%laws%conductance)))
          if (mechanics .and. allocated(self%held)) mechanics = any(self%held .neqv. held) .or. &
             any(self%has_friction .neqv. has_friction)
          if (heat .and. allocated(self%held_temperature)) then

@@ -40,7 +40,7 @@ module closing_instant
    use kinds, only: dp
    implicit none
    private
-   public :: contact_response, make_tangent, solve_increment
+   public :: contact_change_type, contact_response, make_tangent, solve_increment
 
    integer, parameter :: most_passes = 60  !! passes over the closing laws
    !> of these, with the contact points holding that are closed
@@ -53,6 +53,14 @@ module closing_instant
    real(dp), parameter :: nothing = 1.0e-12_dp !! part of a compliance or of a motion that is none
    real(dp), parameter :: undriven = 1.0e-10_dp !! part of the forces that drives no motion
    real(dp), parameter :: together = 1.0e-12_dp !! part of the largest gap that is none at an event
+
+   !> Changes of a contact state, a column for each change of its load.
+   type :: contact_change_type
+      real(dp), allocatable :: gap(:, :)      !! (m, n) of the gaps [length]
+      real(dp), allocatable :: force(:, :)    !! (m, n) of the compressive forces [force]
+      !> (m, n) of the shear forces, and of the slip in the increment; where they are asked for
+      real(dp), allocatable :: shear(:, :), slip(:, :)
+   end type contact_change_type
 
    !> Contact points on their way through the increment, 2n rows: n normal, then n tangential ones.
    type :: way_type
@@ -356,14 +364,14 @@ contains
          alone*maxval(abs(new%compliance - old%compliance)))
    end function law_change
 
-   !> Changes of gaps and normal forces with the condensed load, one column a change of load.
-   pure subroutine contact_response(system, tangent, state, load, gap, force)
+   !> Changes of the contact with the condensed load, one column a change of load.
+   pure subroutine contact_response(system, tangent, state, load, change, with_slip)
       type(contact_system_type), intent(in) :: system !! the reduced system
       type(contact_workspace_type), intent(in) :: tangent !! of the state, as make_tangent left it
       type(contact_state_type), intent(in) :: state   !! a solution
       real(dp), intent(in) :: load(:, :)              !! (tail, n) changes of c [force]
-      real(dp), intent(out) :: gap(:, :)              !! (m, n) changes of the gaps [length]
-      real(dp), intent(out) :: force(:, :) !! (m, n) changes of the compressive forces [force]
+      type(contact_change_type), intent(out) :: change
+      logical, intent(in) :: with_slip                !! whether shear and slip are asked for
       real(dp), dimension(size(load, 1), size(load, 2)) :: taken_up, motion
       integer :: k
 
@@ -372,18 +380,42 @@ contains
       motion = 0.0_dp
       motion(tangent%rows%free, :) = taken_up(tangent%rows%free, :)
       taken_up = load - product_of(system%schur, motion)
-      gap = 0.0_dp
-      force = 0.0_dp
+      associate (m => size(state%contact_state), n => size(load, 2))
+         allocate (change%gap(m, n), change%force(m, n), source=0.0_dp)
+         do k = 1, m
+            associate (row => system%normal(k))
+               if (state%contact_state(k) == contact_open) then
+                  change%gap(k, :) = -motion(row, :)
+               else
+                  change%force(k, :) = taken_up(row, :)
+               end if
+            end associate
+         end do
+      end associate
+      if (with_slip) call add_slip(system, tangent, state, motion, -taken_up, change)
+   end subroutine contact_response
+
+   !> Changes of shear and slip.
+   pure subroutine add_slip(system, tangent, state, motion, lambda, change)
+      type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(in) :: tangent
+      type(contact_state_type), intent(in) :: state
+      real(dp), intent(in) :: motion(:, :), lambda(:, :)   ! (tail, n) changes of d and of forces
+      type(contact_change_type), intent(inout) :: change
+      integer :: k
+
+      allocate (change%shear, change%slip, source=0.0_dp*change%gap)
       do k = 1, size(state%contact_state)
-         associate (row => system%normal(k))
-            if (state%contact_state(k) == contact_open) then
-               gap(k, :) = -motion(row, :)
-            else
-               force(k, :) = taken_up(row, :)
-            end if
+         if (state%contact_state(k) == contact_open .or. system%tangent(k) == 0) cycle
+         associate (row => system%tangent(k), law => tangent%closing(k))
+            change%shear(k, :) = lambda(row, :)
+            change%slip(k, :) = motion(row, :)
+            if (law%acts) change%slip(k, :) = (1.0_dp - law%fraction)*motion(row, :) + &
+               matmul(system%on_tail(law%compliance + law%rate), lambda)
+            change%slip(k, :) = change%slip(k, :) + system%compliance(k)*lambda(row, :)
          end associate
       end do
-   end subroutine contact_response
+   end subroutine add_slip
 
    !> The factors of a solution, the instants of closing following its load.
    pure subroutine make_tangent(system, work, state, tangent, sound)

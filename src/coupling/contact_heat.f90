@@ -32,6 +32,8 @@ module contact_heat
       integer, allocatable :: active(:)        !! (n) the contact points
       real(dp), allocatable :: of_tail(:, :)   !! (tail, n)
       real(dp), allocatable :: heat(:)         !! (n) load of the tail per omega
+      !> (points that friction may heat, n) their heat, where it follows
+      real(dp), allocatable :: made(:, :)
    end type jump_derivatives_type
 
    integer, parameter :: most_steps = 100            !! solutions of (3.4)
@@ -61,6 +63,8 @@ contains
          of_point = data%equation%contact_diagonal(omega)
          history = data%equation%contact_history(omega)
          x = workspace%heat%condensed
+         if (allocated(workspace%friction%made)) x = x + matmul(heat%friction_heat, &
+            workspace%friction%parts(2, :)*workspace%friction%made)
          diagonal = 0.0_dp
          do k = 1, size(omega)
             if (tail_index(k) == 0) cycle
@@ -184,6 +188,8 @@ contains
             if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
                heat%jump_mean(:, bodies%jump_index(k))*jump(k)
          end do
+         if (allocated(workspace%friction%made)) faces%mean = faces%mean + &
+            matmul(heat%friction_mean, workspace%friction%parts(2, :)*workspace%friction%made)
          workspace%pass%graph%law = bodies%laws%conductance_at(faces%mean, faces%jump)
       end associate
    end subroutine take_temperatures
@@ -284,21 +290,25 @@ contains
 
       derivative = 0.0_dp
       derivative(:, by_omega%active) = changes_by_temperature(bodies, heat, workspace, coordinate, &
-         by_omega%of_tail)
+         by_omega%of_tail, by_omega%made)
    end function derivative_by_temperature
 
-   !> dW with the unknowns of the thermal tail.
-   function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail) result(change)
+   !> dW with the unknowns of the thermal tail, and with the heat of friction.
+   function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, made) &
+      result(change)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       real(dp), intent(in) :: of_tail(:, :)                    !! (thermal tail, n)
+      real(dp), intent(in), optional :: made(:, :)             !! (heats, n)
       real(dp) :: change(size(coordinate), size(of_tail, 2))   !! (m, n)
       real(dp) :: by_faces(2)
       integer :: k
 
       change = product_of(heat%jump_mean, of_tail)
+      if (present(made)) change = change + product_of(heat%friction_mean, &
+         workspace%friction%entering_part(made))
       do k = 1, size(coordinate)
          by_faces = graph_derivatives(workspace%pass%graph(k), coordinate(k))
          change(k, :) = by_faces(1)*change(k, :)

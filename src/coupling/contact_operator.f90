@@ -6,7 +6,7 @@
 !> history with d = weight (a2 omega_i + a3 omega)/a1; the condensed load follows by J dtheta, gaps
 !> and forces by the contact system with the conditions that hold.
 module contact_operator
-   use closing_instant, only: contact_response, make_tangent, solve_increment
+   use closing_instant, only: contact_change_type, contact_response, make_tangent, solve_increment
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance, conductance_derivative, conductance_law_type
    use contact_heat, only: jump_derivatives_type, settle_conductance, take_temperatures, &
@@ -16,13 +16,15 @@ module contact_operator
    use contact_tractions, only: pressures
    use contact_workspace, only: contact_workspace_type
    use dense, only: product_of
-   use errors, only: check_finite, error_type, status_no_convergence
+   use errors, only: check_finite, error_type, set_error, status_no_convergence
    use fixed_point, only: pass_type
+   use friction_tangent, only: friction_tangent_type
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use temperature_laws, only: law_jumps
+   use text, only: to_text
    implicit none
    private
    public :: contact_operator_pass, law_conductance, law_pressure, kept_contact, residual_floor, &
@@ -31,6 +33,12 @@ module contact_operator
    !> Smallest stiffness of a contact point, of the largest one, that scales its overlap: a contact
    !> point alone that holds a body has none.
    real(dp), parameter :: least_stiffness = 1.0e-6_dp
+
+   ! Newton's method for the heat of friction.
+   integer, parameter :: most_steps = 100            !! contact states
+   real(dp), parameter :: rounding = 1.0e-12_dp      !! part of the largest heat that is none
+   real(dp), parameter :: converged = 1.0e-10_dp     !! the same, where it falls no more
+   real(dp), parameter :: shortest = 0.02_dp         !! part of a step below which none is tried
 
 contains
 
@@ -46,6 +54,32 @@ contains
       type(increment_workspace_type), intent(inout) :: workspace !! loads in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
+      type(error_type), allocatable, intent(out) :: error
+      logical :: settles
+
+      settles = allocated(workspace%pass%coordinate) .and. bodies%points%vary_with_temperature()
+      if (allocated(workspace%friction%made)) then
+         call settle_friction(bodies, heat, data, workspace, jump, state, error)
+      else
+         call find_contact(bodies, heat, data, workspace, jump, state, error)
+      end if
+      if (allocated(error)) return
+      if (bodies%points%vary_with_temperature() .and. .not. settles) call take_temperatures( &
+         bodies, heat, data, jump, workspace)
+      workspace%pass%image = conductance(workspace%pass%graph%law, state%contact_state /= &
+         contact_open, state%gap, law_pressure(bodies, state))
+      call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
+   end subroutine contact_operator_pass
+
+   !> Jumps and contact state of a pass, with the heat that friction makes as it is given.
+   !> Errors: as solve_increment; jumps overflow.
+   subroutine find_contact(bodies, heat, data, workspace, jump, state, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
+      real(dp), intent(out) :: jump(:)
+      type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: load(size(data%welded_load))                   ! condensed, with the jumps
       integer :: k
@@ -67,15 +101,83 @@ contains
             load = load + heat%jump_load(:, k)*workspace%on_tail(k)
          end do
       end if
+      if (allocated(workspace%friction%made)) load = load + matmul(heat%friction_load, &
+         workspace%friction%parts(2, :)*workspace%friction%made)
       call solve_increment(bodies%equilibrium%contact, data%previous, load, workspace%contact, &
          workspace%held, state, error)
-      if (allocated(error)) return
-      if (bodies%points%vary_with_temperature() .and. .not. settles) call take_temperatures( &
-         bodies, heat, data, jump, workspace)
-      workspace%pass%image = conductance(workspace%pass%graph%law, state%contact_state /= &
-         contact_open, state%gap, law_pressure(bodies, state))
-      call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
-   end subroutine contact_operator_pass
+   end subroutine find_contact
+
+   !> The same where the heat that friction makes is that of the contact state which it leads to, by
+   !> Newton's method at the conductances of the pass, with shorter steps where a whole one does not
+   !> help; where none does, the heat that was found is taken.
+   !> Errors: as find_contact; no convergence.
+   subroutine settle_friction(bodies, heat, data, workspace, jump, state, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace !! a guess of the heat in
+      real(dp), intent(out) :: jump(:)
+      type(contact_state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
+      real(dp), dimension(size(workspace%friction%made)) :: base, found, rest, step
+      real(dp) :: last, part, residual
+      integer :: i
+
+      part = 1.0_dp
+      last = huge(last)
+      do i = 1, most_steps
+         call find_contact(bodies, heat, data, workspace, jump, state, error)
+         if (allocated(error)) return
+         associate (made => workspace%friction%made)
+            rest = workspace%friction%found(bodies, state) - made
+            residual = maxval(abs(rest))/max(maxval(abs(made)), maxval(abs(made + rest)), &
+               tiny(1.0_dp))
+            if (residual <= rounding) return
+            if (residual <= converged .and. norm2(rest) >= 0.5_dp*last) return
+            if (all(workspace%friction%parts(2, :) <= 0.0_dp)) then
+               made = made + rest
+               return
+            end if
+            if (norm2(rest) < last) then
+               base = made
+               found = rest
+               step = friction_step(bodies, heat, workspace, state, rest)
+               last = norm2(rest)
+               part = 1.0_dp
+            else if (part > shortest) then
+               part = 0.5_dp*part
+            else
+               ! Contact points change to and fro in the way of any step.
+               step = found
+               last = huge(last)
+               part = 1.0_dp
+            end if
+            made = base + part*step
+         end associate
+      end do
+      call set_error(error, status_no_convergence, 'the heat of friction and the contact '// &
+         'do not converge together, as where each makes the other grow without limit; last '// &
+         'residual '//to_text(residual))
+   end subroutine settle_friction
+
+   !> Newton's step of the heats; to those that were found where the derivative does not exist.
+   function friction_step(bodies, heat, workspace, state, rest) result(step)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_workspace_type), intent(in) :: workspace
+      type(contact_state_type), intent(in) :: state
+      real(dp), intent(in) :: rest(:)       ! (n) heats found less those given
+      real(dp) :: step(size(rest))
+      type(friction_tangent_type) :: tangent
+      real(dp), allocatable :: change(:, :)
+
+      step = rest
+      call tangent%make(bodies, heat, workspace, state)
+      if (.not. tangent%exists) return
+      change = reshape(rest(tangent%active), [size(tangent%active), 1])
+      call tangent%lu%solve(change)
+      step(tangent%active) = change(:, 1)
+   end function friction_step
 
    !> chi: the conductance of a contact state, eq. (1.8).
    pure function law_conductance(bodies, temperature, jump, state) result(omega)
@@ -213,14 +315,15 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
-      type(jump_derivatives_type), intent(in) :: by_omega     !! of the last pass
+      !> of the last pass; receives how the heat of friction follows
+      type(jump_derivatives_type), intent(inout) :: by_omega
       type(contact_state_type), intent(in) :: state
       real(dp), allocatable, intent(out) :: derivative(:, :)  !! (m, m)
       !> (m) conductance that the bodies put in series with each contact point, 1 where that means
       !> nothing
       real(dp), allocatable, intent(out) :: body(:)
       type(contact_workspace_type) :: tangent
-      real(dp), allocatable :: change(:, :)
+      real(dp), allocatable :: change(:, :), load(:, :)
       integer :: k, m, n
       logical :: sound
 
@@ -238,10 +341,12 @@ contains
          end do
          where (body <= 0.0_dp) body = 1.0_dp
          call make_tangent(bodies%equilibrium%contact, workspace%contact, state, tangent, sound)
+         if (sound) load = product_of(heat%jump_load, by_omega%of_tail)
+         if (sound .and. allocated(workspace%friction%made)) call follow_friction(bodies, heat, &
+            workspace, state, by_omega, load, sound)
          if (sound) then
             allocate (change(m, n))
-            call opening_changes(bodies, heat, workspace%pass%graph, tangent, state, &
-               by_omega%of_tail, change)
+            call opening_changes(bodies, workspace%pass%graph, tangent, state, load, change)
             derivative(:, active) = change
          else
             deallocate (derivative)
@@ -249,31 +354,54 @@ contains
       end associate
    end subroutine opening_derivative
 
-   !> Changes of the openings with the unknowns of the thermal tail.
-   pure subroutine opening_changes(bodies, heat, graph, tangent, state, of_tail, change)
+   !> Adds to the changes with the conductances what the heat of friction makes that follows them.
+   subroutine follow_friction(bodies, heat, workspace, state, by_omega, load, exists)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
+      type(increment_workspace_type), intent(in) :: workspace
+      type(contact_state_type), intent(in) :: state
+      type(jump_derivatives_type), intent(inout) :: by_omega
+      real(dp), intent(inout) :: load(:, :)             ! (mechanical tail, n)
+      logical, intent(out) :: exists                    ! whether the heat has a derivative
+      type(friction_tangent_type) :: of_heat
+      type(contact_change_type) :: change
+
+      call of_heat%make(bodies, heat, workspace, state)
+      exists = of_heat%exists
+      if (.not. exists) return
+      call contact_response(bodies%equilibrium%contact, of_heat%contact, state, load, change, &
+         with_slip=.true.)
+      allocate (by_omega%made(size(workspace%friction%made), size(load, 2)))
+      call of_heat%follow(workspace%friction%changes(bodies, state, change), by_omega%of_tail, &
+         load, by_omega%made)
+   end subroutine follow_friction
+
+   !> Changes of the openings with the condensed mechanical load.
+   pure subroutine opening_changes(bodies, graph, tangent, state, load, change, of_contact)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(conductance_graph_type), intent(in) :: graph(:)    !! (m) graphs of the conductance
       type(contact_workspace_type), intent(in) :: tangent     !! of the state, by make_tangent
       type(contact_state_type), intent(in) :: state
-      real(dp), intent(in) :: of_tail(:, :)                   !! (thermal tail, n)
+      real(dp), intent(in) :: load(:, :)                      !! (mechanical tail, n) [force]
       real(dp), intent(out) :: change(:, :)                   !! (m, n) [length]
-      real(dp), dimension(size(change, 1), size(change, 2)) :: gap, force
+      type(contact_change_type), intent(out), optional :: of_contact   !! with slips
+      type(contact_change_type) :: found
       integer :: k
 
-      call contact_response(bodies%equilibrium%contact, tangent, state, &
-         product_of(heat%jump_load, of_tail), gap, force)
+      call contact_response(bodies%equilibrium%contact, tangent, state, load, found, &
+         present(of_contact))
       change = 0.0_dp
       associate (weight => bodies%points%weight)
          do k = 1, size(graph)
             if (weight(k) <= 0.0_dp) cycle
             if (state%contact_state(k) == contact_open) then
-               change(k, :) = gap(k, :)
+               change(k, :) = found%gap(k, :)
             else
-               change(k, :) = -force(k, :)/(weight(k)*graph(k)%modulus)
+               change(k, :) = -found%force(k, :)/(weight(k)*graph(k)%modulus)
             end if
          end do
       end associate
+      if (present(of_contact)) of_contact = found
    end subroutine opening_changes
 
 end module contact_operator

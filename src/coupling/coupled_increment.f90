@@ -4,7 +4,7 @@
 module coupled_increment
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use arnoldi, only: arnoldi_type
-   use closing_instant, only: make_tangent
+   use closing_instant, only: contact_change_type, make_tangent
    use conductance_graph, only: conductance_graph_type
    use contact_heat, only: changes_by_temperature, derivative_by_temperature, heat_by_omega, &
       jump_derivatives, jump_derivatives_type
@@ -12,9 +12,10 @@ module coupled_increment
    use contact_workspace, only: contact_workspace_type
    use controls, only: method_picard, start_both, start_closed, start_given, start_open, &
       start_previous
-   use dense, only: lu_type
+   use dense, only: lu_type, product_of
    use errors, only: error_type
    use fixed_point, only: predicted_conductance
+   use friction_tangent, only: friction_tangent_type
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: contact_scales_type, increment_data_type, increment_workspace_type
    use increment_iteration, only: iterate
@@ -196,9 +197,10 @@ contains
       workspace%record%coupling_gain_max = 0.0_dp
       associate (graph => workspace%pass%graph, opening => workspace%pass%opening)
          if (.not. (any(abs(graph%derivative(graph%coordinate_of_opening(opening))) > 0.0_dp) .or. &
-            any(next%resting) .or. bodies%points%vary_with_temperature())) return
+            any(next%resting) .or. bodies%points%vary_with_temperature() .or. &
+            allocated(workspace%friction%made))) return
       end associate
-      if (.not. all(next%resting)) then
+      if (.not. all(next%resting) .or. allocated(workspace%friction%made)) then
          workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
          workspace%record%coupling_gain_max = workspace%record%coupling_gain
          call find_gains(bodies, heat, data, workspace, next, gains)
@@ -223,6 +225,9 @@ contains
                if (data%equation%duration > 0.0_dp) then
                   call record%warn('det(I - U'') is negative: the increment is too long to '// &
                      'show a mode that grows, the state does not last; take shorter increments')
+               else if (allocated(workspace%friction%made)) then
+                  ! Heat of friction has no bound: the other solutions may be at infinity.
+                  call record%warn('det(I - U'') is negative: the branch is unstable')
                else
                   call record%warn('det(I - U'') is negative: the branch is unstable, and '// &
                      'there are at least two other solutions')
@@ -241,6 +246,7 @@ contains
       type(solution_state_type), intent(in) :: next
       real(dp), allocatable :: derivative(:, :), body(:), by_temperature(:, :)
       type(jump_derivatives_type) :: by_omega
+      type(friction_tangent_type) :: of_friction
 
       is_unstable = .false.
       call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
@@ -251,10 +257,16 @@ contains
             bodies, heat, workspace, graph%coordinate_of_opening(opening), by_omega)
          is_unstable = is_one_of_several(graph, opening, derivative, next%resting, by_temperature)
       end associate
+      if (.not. allocated(workspace%friction%made)) return
+      ! The determinant is that of I - U' with the heat of friction following, times that of the
+      ! heat at constant conductances.
+      call of_friction%make(bodies, heat, workspace, next%contact)
+      if (of_friction%exists) is_unstable = is_unstable .neqv. of_friction%lu%negative_determinant()
    end function is_unstable
 
    !> The gains of a solution: eigenvalues of U', of which only the outer ones are found. The
-   !> conductance of a contact point that rests is no variable of U'.
+   !> conductance of a contact point that rests is no variable of U'; the heat that friction makes
+   !> at a contact point is one.
    !>
    !> Laws and jumps make rows and columns of U' differ by orders of magnitude. The method works on
    !> a similar matrix without that, which is nearly normal: its eigenvalues are as sharp as their
@@ -267,14 +279,19 @@ contains
       type(solution_state_type), intent(in) :: solution        !! that the last pass found
       type(arnoldi_type), intent(out) :: gains                 !! none found where U' does not exist
       type(contact_workspace_type) :: tangent
+      type(contact_change_type) :: of_contact
       real(dp), dimension(size(solution%jump)) :: coordinate, rate, scale, slope
-      real(dp), allocatable :: change(:, :), of_tail(:, :)
-      integer, allocatable :: free(:)
+      real(dp), allocatable :: change(:, :), made(:, :), of_tail(:, :)
+      real(dp) :: heat_scale
+      integer, allocatable :: free(:), heated(:)
       integer :: k
       logical :: sound
 
       free = pack([(k, k=1, size(rate))], .not. solution%resting)
-      if (size(free) == 0) return
+      heated = [integer ::]
+      if (allocated(workspace%friction%made)) heated = pack([(k, k=1, &
+         size(workspace%friction%made))], workspace%friction%parts(2, :) > 0.0_dp)
+      if (size(free) + size(heated) == 0) return
       call make_tangent(bodies%equilibrium%contact, workspace%contact, solution%contact, tangent, &
          sound)
       if (.not. sound) return
@@ -283,22 +300,50 @@ contains
          slope = graph%derivative(coordinate)
          rate = heat_by_omega(bodies, data, workspace, solution%jump)
          scale = sqrt(of_largest(slope)/of_largest(rate))
+         heat_scale = max(maxval(abs(rate)), tiny(1.0_dp)**0.25_dp)
          allocate (of_tail(bodies%thermal%map%tail, 1), change(size(rate), 1))
-         call gains%begin(size(free), no_gain)
+         if (size(heated) > 0) allocate (made(size(workspace%friction%made), 1))
+         call gains%begin(size(free) + size(heated), no_gain)
          do while (gains%wants_product)
             of_tail = 0.0_dp
             do k = 1, size(free)
                if (index(free(k)) > 0) of_tail(index(free(k)), 1) = rate(free(k))*scale(free(k))* &
                   gains%vector(k)
             end do
+            if (size(heated) > 0) then
+               call take_heated_product()
+               cycle
+            end if
             call workspace%tail%solve_columns(of_tail)
-            call opening_changes(bodies, heat, graph, tangent, solution%contact, of_tail, change)
+            call opening_changes(bodies, graph, tangent, solution%contact, &
+               product_of(heat%jump_load, of_tail), change)
             change(:, 1) = slope*change(:, 1)
             if (bodies%points%vary_with_temperature()) change = change + &
                changes_by_temperature(bodies, heat, workspace, coordinate, of_tail)
             call gains%take(change(free, 1)/scale(free))
          end do
       end associate
+   contains
+      !> The same with heats of friction behind the conductances.
+      subroutine take_heated_product()
+         real(dp), allocatable :: entering(:, :)
+
+         associate (friction => workspace%friction)
+            made = 0.0_dp
+            made(heated, 1) = heat_scale*gains%vector(size(free) + 1:)
+            entering = friction%entering_part(made)
+            of_tail = of_tail + product_of(heat%friction_heat, entering)
+            call workspace%tail%solve_columns(of_tail)
+            call opening_changes(bodies, workspace%pass%graph, tangent, solution%contact, &
+               product_of(heat%jump_load, of_tail) + product_of(heat%friction_load, entering), &
+               change, of_contact)
+            change(:, 1) = slope*change(:, 1)
+            if (bodies%points%vary_with_temperature()) change = change + &
+               changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, made)
+            made = friction%changes(bodies, solution%contact, of_contact)
+         end associate
+         call gains%take([change(free, 1)/scale(free), made(heated, 1)/heat_scale])
+      end subroutine take_heated_product
    end subroutine find_gains
 
    !> Moduli in the largest one, none of them 0.

@@ -279,7 +279,8 @@ contains
    end function joined_conductance
 
    !> Heat that the supports of each node must supply, without the forces of ties: K T - Q plus what
-   !> is stored and what leaves through the contact points, at edges where it crosses.
+   !> is stored and what leaves through the contact points, at edges where it crosses, less what
+   !> friction makes there.
    pure function supplied_heat(bodies, at_edge, rates) result(heat)
       type(reduced_bodies_type), intent(in) :: bodies
       type(edge_heat_type), intent(in) :: at_edge
@@ -292,6 +293,7 @@ contains
       heat = rates%conducted - rates%entering
       if (allocated(rates%stored)) heat = heat + rates%stored
       call bodies%points%difference%add_shares(undivided, heat)
+      if (allocated(rates%made)) call bodies%points%heat_shares%add_shares(-rates%made, heat)
       if (allocated(at_edge%point)) call at_edge%jump%add_shares(rates%crossing(at_edge%point), &
          heat)
       call bodies%thermal%map%carry_over(heat)

@@ -6,6 +6,7 @@ module increment_data
    use edge_heat, only: edge_integral_type, edge_heat_type
    use field_problem, only: field_load_type, solved_loads_type
    use fixed_point, only: pass_type
+   use friction_heating, only: friction_heating_type
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use solution_report, only: solution_report_type
@@ -35,6 +36,7 @@ module increment_data
       real(dp), allocatable :: omega_before(:)       !! (m) omega_(i-1)
       logical, allocatable :: resting(:)             !! (m) contact points that rest
       type(edge_heat_type) :: edge   !! heat at edges; none where (3.4) takes past conductances
+      type(friction_heating_type) :: friction        !! heat of friction, made as the trial found
       real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
       !> (m) omega*^0 where the increment was solved before with other corrections of its operators
       real(dp), allocatable :: omega_start(:)
@@ -56,6 +58,8 @@ module increment_data
       !> (nodes) heat contents likewise, where properties follow temperatures [energy]
       real(dp), allocatable :: content(:)
       real(dp), allocatable :: jump(:)   !! (nodes) of temperatures where the step begins
+      !> (m) slip that counts as made before it; unallocated for none [length]
+      real(dp), allocatable :: slip_before(:)
       logical :: dilates = .false.                         !! whether strains take up heat
       logical :: is_last = .true.                          !! whether the increment ends with it
    end type stage_type
@@ -64,6 +68,7 @@ module increment_data
    type :: increment_workspace_type
       type(field_load_type) :: heat                  !! load of (3.4)
       type(field_load_type) :: force                 !! load of (2.4)
+      type(friction_heating_type) :: friction        !! heat of friction; nothing allocated for none
       !> Loads of earlier increments, of (3.4) and of (2.4).
       type(solved_loads_type), allocatable :: known(:)
       real(dp), allocatable :: supported(:) !! (nodes) what prescribed temperatures alone make

@@ -13,6 +13,7 @@ module increment_solution
    use edge_heat, only: joined_conductance
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use fixed_point, only: pass_type
+   use friction_heating, only: begin_friction, nodal_friction_heat
    use heat_reduction, only: heat_reduction_type
    use held_points, only: tangential_positions
    use increment_data, only: increment_data_type, increment_workspace_type
@@ -55,8 +56,7 @@ contains
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
       if (solves_heat(data%analysis)) then
          associate (given => loads%temperature%value)
-            workspace%heat = heat%load_of(bodies%thermal, &
-               data%equation%history(bodies%thermal%matrix), given)
+            workspace%heat = heat%load_of(bodies%thermal, history_of_heat(bodies, data), given)
             call heat%condense_load(bodies%thermal, workspace%heat, workspace%known(of_heat), &
                next%temperature)
             data%held_jump = bodies%points%jumps(given)
@@ -73,11 +73,25 @@ contains
             if (allocated(error)) return
          end if
       end if
+      if (solves_heat(data%analysis) .and. bodies%is_coupled) workspace%friction = data%friction
       if (solves_mechanics(data%analysis)) call solve_equilibrium(bodies, heat, loads, data, &
          workspace, next, error)
       if (allocated(error)) return
+      if (allocated(workspace%friction%made)) data%friction%made = workspace%friction%made
+      if (allocated(data%friction%made)) next%friction_heat = data%friction%made
       next%carrying = data%equation%carrying(joined_conductance(next%omega, next%edge))
    end subroutine solve_points
+
+   !> Right-hand side of (3.4) divided by a1, with the heat of friction that is known before.
+   pure function history_of_heat(bodies, data) result(rhs)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
+      real(dp), allocatable :: rhs(:)                            ! (nodes) [power]
+
+      rhs = data%equation%history(bodies%thermal%matrix)
+      if (allocated(data%friction%made)) rhs = rhs + nodal_friction_heat(bodies, &
+         data%friction%load_at_start())
+   end function history_of_heat
 
    !> Contact and conductance of an increment whose heat is loaded or solved.
    !> Errors: as solve_points.
@@ -147,6 +161,10 @@ contains
          previous%edge%without(bodies%laws%removed)
       if (previous%increment_size > 0.0_dp) data%size_ratio = &
          next%increment_size/previous%increment_size
+      if (.not. allocated(bodies%points%heated)) return
+      call begin_friction(bodies, data%equation, step%analysis, data%previous, &
+         previous%friction_heat, data%friction)
+      data%friction%duration = next%increment_size
    end subroutine begin_increment
 
    !> Contact points that the step removes are open, those without friction slip freely.
@@ -333,6 +351,9 @@ contains
       if (.not. solves_mechanics(data%analysis)) return
       if (bodies%is_coupled) then
          call add_jumps(bodies, heat, workspace, next%temperature)
+         if (allocated(workspace%friction%made)) next%temperature = next%temperature + &
+            heat%welded_response(bodies%thermal, nodal_friction_heat(bodies, &
+            workspace%friction%parts(2, :)*workspace%friction%made))
          workspace%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
             unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
             next%force_excess), &

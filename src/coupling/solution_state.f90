@@ -20,6 +20,7 @@ module solution_state
       real(dp), allocatable :: carrying(:)          !! (m) conductance by which heat crossed last
       real(dp), allocatable :: omega_before(:)      !! (m) conductance an increment earlier
       real(dp), allocatable :: jump(:)              !! (m) T_xi - T_eta [temperature]
+      real(dp), allocatable :: friction_heat(:)     !! (n) heat of friction, or none [power]
       real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
       real(dp), allocatable :: displacement(:)      !! (2 nodes) [length]
       real(dp), allocatable :: smallest_gap(:)      !! (m) smallest gap so far [length]
@@ -114,6 +115,7 @@ contains
       call reals(self, 'edge_share', state%edge%jump%coefficient)
       if (allocated(state%edge%point)) state%edge%jump%count = size(state%edge%point)
       call reals(self, 'jump', state%jump)
+      call reals(self, 'friction_heat', state%friction_heat)
       call reals(self, 'temperature', state%temperature)
       call reals(self, 'stored', state%stored)
       call reals(self, 'operators_at', state%operators_at)

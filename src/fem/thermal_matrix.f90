@@ -46,6 +46,7 @@ module thermal_matrix
       real(dp), allocatable :: entering(:)          !! (nodes) by loads and films, Q - F T [power]
       real(dp), allocatable :: crossing(:)          !! (m) from slave to master [power]
       real(dp), allocatable :: stored(:)            !! (nodes) by heat capacities, or none [power]
+      real(dp), allocatable :: made(:)              !! (n) by friction at contact points [power]
    end type heat_rates_type
 
    !> Eq. (3.4) of one increment, from what is known at its start.

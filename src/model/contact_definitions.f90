@@ -2,14 +2,14 @@
 !> changes of it: friction, contact pairs that are removed or added, interferences.
 module contact_definitions
    use conductance_laws, only: conductance_law_type
-   use friction_laws, only: friction_law_type
+   use friction_laws, only: friction_heat_type, friction_law_type
    use kinds, only: dp
    use named_items, only: named_type
    implicit none
    private
    public :: interaction_type, contact_definition_type, tie_definition_type
    public :: friction_change_type, pair_change_type, interference_type, contact_changes_type
-   public :: latest_friction, is_removed, brings_friction
+   public :: latest_friction, is_removed, brings_friction, makes_friction_heat
    public :: pairing_by_faces, pairing_nodes, pairing_surfaces, pairing_name
 
    integer, parameter :: pairing_by_faces = 0    !! nodes where the faces match, else surfaces
@@ -19,6 +19,7 @@ module contact_definitions
    !> One *SURFACE INTERACTION.
    type, extends(named_type) :: interaction_type
       type(friction_law_type) :: friction     !! Coulomb's law
+      type(friction_heat_type) :: heat        !! heat of this friction
       type(conductance_law_type) :: law       !! conductance law
    end type interaction_type
 
@@ -119,6 +120,14 @@ contains
       if (.not. allocated(changes%frictions)) return
       brings = any(changes%frictions%friction%coefficient > 0.0_dp)
    end function brings_friction
+
+   !> Whether friction makes heat at some interface.
+   pure logical function makes_friction_heat(interactions, contacts)
+      type(interaction_type), intent(in) :: interactions(:)
+      type(contact_definition_type), intent(in) :: contacts(:)
+
+      makes_friction_heat = any(interactions(contacts%interaction)%heat%efficiency > 0.0_dp)
+   end function makes_friction_heat
 
    !> Whether an interface is removed, after the changes of some steps in their order.
    pure function is_removed(changes, contact) result(removed)

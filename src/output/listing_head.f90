@@ -1,12 +1,13 @@
 !> The head of the listing: the summary of the run, what is modelled and why, sizes, interfaces.
 module listing_head
+   use contact_definitions, only: makes_friction_heat
    use contact_points, only: contact_points_type
    use deck_outcomes, only: counts_of_checks, end_of_run
    use interface_warnings, only: gap_range
    use listing_text, only: page_width, print_title, print_wrapped
    use model, only: model_type
-   use model_words, only: closed_law_words, friction_words, from_to, open_law_words, open_words, &
-      pairing_words, points_words
+   use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
+      open_law_words, open_words, pairing_words, points_words
    use run_summaries, only: in_listing, or_blank, run_entries, run_entry_type, run_summary_type
    use steps, only: solves_heat
    use summary, only: summary_type
@@ -113,6 +114,8 @@ contains
          associate (interaction => model%interactions(model%contacts(i)%interaction))
             call print_entry(unit, 'coefficient of friction', friction_words(interaction%friction))
             if (.not. has_heat) cycle
+            if (makes_friction_heat(model%interactions, model%contacts(i:i))) call print_entry( &
+               unit, 'heat of friction', friction_heat_words(interaction%heat))
             call print_entry(unit, 'conductance, open', open_law_words(interaction%law))
             call print_entry(unit, 'conductance, closed', closed_law_words(interaction%law))
          end associate

@@ -9,7 +9,8 @@ module listing_increments
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, page_width, print_wrapped
-   use quantity_types, only: needs_coupling, needs_dilatation, needs_heat, needs_mechanics, &
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
+      needs_heat, needs_mechanics, &
       needs_nothing, needs_storage, &
       of_bodies, of_history, of_interface, quantity_type
    use records, only: attempt_record_type, contact_record_type, increment_record_type, &
@@ -158,6 +159,9 @@ contains
          history_line(needs_storage, record)
       if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_dilatation)) then
          write (unit, '(a)') history_line(needs_dilatation, record)
+      end if
+      if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_friction)) then
+         write (unit, '(a)') history_line(needs_friction_heat, record)
       end if
       if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
       associate (work => record%work)

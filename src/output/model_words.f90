@@ -5,14 +5,15 @@ module model_words
    use contact_points, only: contact_points_type
    use kinds, only: dp
    use element_kinds, only: axisymmetric, plane_stress
-   use friction_laws, only: friction_law_type, rough_coefficient, unlimited
+   use friction_laws, only: friction_heat_type, friction_law_type, rough_coefficient, unlimited
    use materials, only: follows_temperature, material_type, of_expansion, thermal_strain
    use model, only: model_type
    use steps, only: analysis_heat, analysis_static
    use text, only: append, counted, string_type, to_text
    implicit none
    private
-   public :: expansion_words, material_words, friction_words, open_law_words, closed_law_words
+   public :: expansion_words, material_words, friction_words, friction_heat_words
+   public :: open_law_words, closed_law_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
 
 contains
@@ -191,6 +192,24 @@ contains
       if (friction%largest_shear < unlimited) words = words//', no shear above '// &
          to_text(friction%largest_shear)
    end function friction_words
+
+   !> The heat of friction.
+   pure function friction_heat_words(heat) result(words)
+      type(friction_heat_type), intent(in) :: heat
+      character(:), allocatable :: words   !! such as 0.9 of the work of slip, 0.5 on the slave
+
+      words = 'none'
+      if (heat%efficiency <= 0.0_dp) return
+      words = to_text(heat%efficiency)//' of the work of '
+      if (heat%angular_velocity > 0.0_dp) then
+         words = words//'turning about the axis with '//to_text(heat%angular_velocity)
+      else if (heat%speed >= 0.0_dp) then
+         words = words//'sliding out of the plane with '//to_text(heat%speed)
+      else
+         words = words//'slip'
+      end if
+      words = words//', '//to_text(heat%slave_share)//' of it on the slave'
+   end function friction_heat_words
 
    !> The open side of a law.
    pure function open_law_words(law) result(words)

@@ -7,7 +7,7 @@
 !> The first publishing replaces the files of an earlier run. A draft publishes its end only.
 module results
    use accuracy_rounds, only: accuracy_rounds_type
-   use contact_definitions, only: pairing_name
+   use contact_definitions, only: makes_friction_heat, pairing_name
    use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
@@ -16,7 +16,8 @@ module results
    use hdf5_writer, only: end_hdf5, start_hdf5
    use kinds, only: dp, long
    use model, only: model_type
-   use quantity_types, only: needs_coupling, needs_dilatation, needs_heat, needs_mechanics, &
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
+      needs_heat, needs_mechanics, &
       needs_nothing, needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, &
       of_interface, of_passes, quantity_type
    use records, only: increment_record_type
@@ -103,7 +104,7 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      logical :: has(0:needs_dilatation), has_errors
+      logical :: has(0:needs_friction_heat), has_errors
       integer :: i, expected, n
 
       call start_hdf5(error)
@@ -236,7 +237,7 @@ contains
    pure function what_is_solved(model, has_contact) result(has)
       type(model_type), intent(in) :: model
       logical, intent(in) :: has_contact
-      logical :: has(0:needs_dilatation)
+      logical :: has(0:needs_friction_heat)
 
       associate (analysis => model%steps%analysis)
          has(needs_nothing) = .true.
@@ -245,6 +246,8 @@ contains
          has(needs_mechanics) = any(solves_mechanics(analysis))
          has(needs_storage) = any(model%steps%is_transient)
          has(needs_dilatation) = any(model%steps%dilates)
+         has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
+            model%interactions, model%contacts)
          has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &
             solves_mechanics(analysis))
       end associate

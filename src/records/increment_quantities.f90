@@ -2,7 +2,8 @@
 module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
-   use quantity_types, only: needs_coupling, needs_dilatation, needs_heat, needs_mechanics, &
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
+      needs_heat, needs_mechanics, &
       needs_storage, of_bodies, of_elements, &
       of_history, of_passes, quantity_type
    use field_recovery, only: error_record_type
@@ -27,9 +28,11 @@ module increment_quantities
       quantity_type('heat_out', of_history, 'power', needs_heat, label='out', &
       description='sum of those that are negative, as a magnitude'), &
       quantity_type('heat_stored', of_history, 'power', needs_storage, label='stored', &
-      description='heat that the bodies store; without DILATATION in is the sum of out and this'), &
+      description='heat that bodies store: in and friction less out and dilatation'), &
       quantity_type('heat_dilatation', of_history, 'power', needs_dilatation, label='dilatation', &
       description='heat that strains take up, the term with T0 beta of (1.2)'), &
+      quantity_type('heat_friction', of_history, 'power', needs_friction_heat, &
+      label='heat of friction', description='heat that friction makes'), &
       quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance', &
       description='imbalance of the heat balance that the scheme solves, over the largest rate'), &
       quantity_type('heat_imbalance_pointwise', of_history, '-', needs_heat, &
@@ -98,6 +101,8 @@ contains
          value = record%heat_stored
       case ('heat_dilatation')
          value = record%heat_dilatation
+      case ('heat_friction')
+         value = record%heat_friction
       case ('heat_imbalance')
          value = record%heat_imbalance
       case ('heat_imbalance_pointwise')

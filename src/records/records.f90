@@ -104,6 +104,7 @@ module records
       real(dp) :: useful_increment = 0.0_dp  !! shorter ones overshoot beside a jump [time]
       real(dp) :: heat_stored = 0.0_dp       !! by heat capacities; NaN in a steady step [power]
       real(dp) :: heat_dilatation = 0.0_dp   !! by strains; NaN without DILATATION [power]
+      real(dp) :: heat_friction = 0.0_dp     !! made by friction; NaN without it [power]
       real(dp) :: heat_imbalance = 0.0_dp    !! of (3.4), relative to the largest rate
       !> Of (3.3) at the end of the increment, relative to the largest rate.
       real(dp) :: heat_imbalance_pointwise = 0.0_dp

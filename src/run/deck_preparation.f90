@@ -158,7 +158,7 @@ contains
             simulation%state%temperature)
          associate (points => simulation%bodies%points)
             call check_step(cards%keywords(begins(step))%place, model, simulation, &
-               laws_of_step(model, points%interface_start, points%weight, step), loads, step, &
+               laws_of_step(model, points, step), loads, step, &
                report)
          end associate
          if (report%has_errors()) return

@@ -4,7 +4,7 @@ module run_description
    use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: command_type
    use conductance_laws, only: is_constant
-   use contact_definitions, only: brings_friction
+   use contact_definitions, only: brings_friction, interaction_type, makes_friction_heat
    use contact_points, only: contact_points_type
    use controls, only: solver_mumps
    use deck_preparation, only: prepare_deck, read_deck_type
@@ -14,8 +14,8 @@ module run_description
    use kinds, only: dp
    use messages, only: print_line
    use model, only: model_type
-   use model_words, only: closed_law_words, friction_words, from_to, open_law_words, open_words, &
-      pairing_words, points_words
+   use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
+      open_law_words, open_words, pairing_words, points_words
    use run_summaries, only: in_check, run_entries, run_entry_type, run_summary_type
    use steps, only: analysis_coupled, solves_heat, solves_mechanics
    use text, only: counted, to_text
@@ -47,7 +47,7 @@ contains
    subroutine name_physics(model, run)
       type(model_type), intent(in) :: model
       type(run_summary_type), intent(inout) :: run
-      character(:), allocatable :: why_off
+      character(:), allocatable :: why_off, why_on
       logical :: has_heat, has_mechanics, has_contact, has_friction, has_law
       integer :: i
 
@@ -76,11 +76,15 @@ contains
       if (has_contact .and. .not. has_mechanics) why_off = 'no step solves mechanics'
       call name('friction', has_friction .and. (has_mechanics .or. .not. has_contact), &
          '*FRICTION', why_off)
-      why_off = 'no conductance of gap, pressure or temperature'
+      why_on = 'a conductance of gap, pressure or temperature'
+      why_off = 'no '//why_on(3:)
+      if (makes_friction_heat(model%interactions, model%contacts)) then
+         if (.not. has_law) why_on = 'heat of friction'
+         has_law = .true.
+      end if
       if (has_law) why_off = 'no step solves heat and mechanics together'
       call name('coupling', has_law .and. any(model%steps%analysis == analysis_coupled), &
-         '*COUPLED TEMPERATURE-DISPLACEMENT and a conductance of gap, pressure or temperature', &
-         why_off)
+         '*COUPLED TEMPERATURE-DISPLACEMENT and '//why_on, why_off)
    contains
       subroutine name(part, is_on, why_on, why_off)
          character(*), intent(in) :: part, why_on, why_off
@@ -184,8 +188,9 @@ contains
       do i = 1, size(model%interactions)
          associate (interaction => model%interactions(i))
             call line('interaction '//interaction%name, 'friction '// &
-               friction_words(interaction%friction)//'; conductance, open: '// &
-               open_law_words(interaction%law)//'; closed: '//closed_law_words(interaction%law))
+               friction_words(interaction%friction)//heat_of_friction(interaction)// &
+               '; conductance, open: '//open_law_words(interaction%law)//'; closed: '// &
+               closed_law_words(interaction%law))
          end associate
       end do
       do i = 1, size(simulation%bodies%interfaces)
@@ -198,6 +203,16 @@ contains
       if (run%has_biot) call line('contact Biot number', from_to(run%contact_biot)// &
          ' at the initial gaps')
    end subroutine print_deck
+
+   !> Words on the heat of friction of an interaction; empty for none.
+   pure function heat_of_friction(interaction) result(words)
+      type(interaction_type), intent(in) :: interaction
+      character(:), allocatable :: words
+
+      words = ''
+      if (interaction%heat%efficiency > 0.0_dp) words = '; heat of friction '// &
+         friction_heat_words(interaction%heat)
+   end function heat_of_friction
 
    subroutine line(name, value)
       character(*), intent(in) :: name, value

@@ -18,7 +18,7 @@ module balances
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use text, only: to_text
-   use thermal_matrix, only: heat_across, heat_equation_type, heat_rates_type
+   use thermal_matrix, only: heat_across, heat_rates_type
    use transforms, only: on_nodes
    implicit none
    private
@@ -71,6 +71,7 @@ contains
       rates%crossing = heat_across(bodies%points%weight, next%carrying, next%jump)
       record%heat_stored = ieee_value(1.0_dp, ieee_quiet_nan)
       record%heat_dilatation = record%heat_stored
+      record%heat_friction = record%heat_stored
       if (data%equation%duration > 0.0_dp) then
          rates%stored = next%stored
          record%heat_stored = sum(next%stored)
@@ -79,12 +80,17 @@ contains
             record%heat_stored = record%heat_stored - next%dilatation
          end if
       end if
+      if (allocated(data%friction%made)) then
+         rates%made = data%friction%entering()
+         record%heat_friction = sum(rates%made)
+      end if
       residual = supplied_heat(bodies, next%edge, rates)
       call sum_rates(loads, next%temperature, residual, record)
       associate (held => loads%temperature%active, body => model%mesh%node_body)
          scale = max(record%heat_in, record%heat_out, abs(sum(rates%crossing)), &
             maxval(abs(residual), mask=held), maxval(abs(rates%entering)), &
             noise*bodies%thermal%largest_entry*norm2(next%temperature), tiny(1.0_dp))
+         if (allocated(rates%made)) scale = max(scale, sum(abs(rates%made)))
          if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)), &
             content_noise*maxval(abs(data%equation%content_old))/data%equation%duration)
          if (allocated(data%equation%taken_up)) scale = max(scale, &
@@ -98,6 +104,8 @@ contains
             supplied_heat(bodies, next%edge, rates), held, body, [.true.], scale)
          rates = data%equation%rates(bodies%thermal%matrix, bodies%capacity, next%temperature, &
             omega, next%jump)
+         if (allocated(data%friction%made)) rates%made = data%equation%scheme%a(1)* &
+            data%friction%load()
          record%heat_imbalance = imbalance(rates%conducted, supplied_heat(bodies, next%edge, &
             rates), held, body, [.true.], scale)
          call warn_of_imbalances(bodies, held, data, next%is_out_of_balance, record)
@@ -119,7 +127,7 @@ contains
       if (data%equation%duration > 0.0_dp) return
       at_start = 0.0_dp
       if (data%equation%never_damps() .and. .not. data%before%keeps_imbalance) at_start = &
-         start_imbalance(bodies, held, data%equation)
+         start_imbalance(bodies, held, data)
       if (at_start > equilibrium) then
          call record%warn('heat starts out of equilibrium, (K + G) T - Q is ', at_start, &
             ' of the largest rate; the scheme of (3.4), amplification '// &
@@ -135,17 +143,21 @@ contains
 
    !> Largest residual of (K + G) T - Q in any row that is not prescribed, at the start of an
    !> increment, relative to the largest rate.
-   pure real(dp) function start_imbalance(bodies, held, equation) result(relative)
+   pure real(dp) function start_imbalance(bodies, held, data) result(relative)
       type(reduced_bodies_type), intent(in) :: bodies
       logical, intent(in) :: held(:)
-      type(heat_equation_type), intent(in) :: equation
+      type(increment_data_type), intent(in) :: data
       type(heat_rates_type) :: rates
       real(dp) :: scale
 
-      rates = equation%rates_at_start(bodies%thermal%matrix)
-      scale = max(maxval(abs(rates%conducted)), maxval(abs(equation%old%load)), &
+      rates = data%equation%rates_at_start(bodies%thermal%matrix)
+      scale = max(maxval(abs(rates%conducted)), maxval(abs(data%equation%old%load)), &
          maxval([0.0_dp, abs(rates%crossing)]), noise*bodies%thermal%largest_entry* &
-         maxval(abs(equation%temperature_old)), tiny(1.0_dp))
+         maxval(abs(data%equation%temperature_old)), tiny(1.0_dp))
+      if (allocated(data%friction%old)) then
+         rates%made = data%friction%old
+         scale = max(scale, sum(abs(rates%made)))
+      end if
       relative = maxval([0.0_dp, pack(abs(supplied_heat(bodies, edge_heat_type(), rates)), &
          .not. held)])/scale
    end function start_imbalance

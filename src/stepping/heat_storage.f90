@@ -11,6 +11,7 @@
 !> Math. 20 (1996) 21.
 module heat_storage
    use edge_heat, only: supplied_heat
+   use friction_heating, only: friction_at_start
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: stage_type
    use kinds, only: dp
@@ -67,6 +68,10 @@ contains
             corrections%heat_beyond(model, bodies, state%temperature)
          rates%entering = state%sources%net_heat(state%temperature)
          rates%crossing = heat_across(bodies%points%weight, state%carrying, state%jump)
+         if (allocated(bodies%points%heated)) then
+            rates%made = friction_at_start(bodies, state%contact, state%friction_heat)
+            state%friction_heat = rates%made
+         end if
          do i = 1, bodies%capacity%row_count
             stores(i) = by%start(i + 1) > by%start(i)
             associate (row => bodies%capacity%value(bodies%capacity%row_start(i): &

@@ -84,6 +84,7 @@ contains
             record%heat_in = ieee_value(1.0_dp, ieee_quiet_nan)
             record%heat_stored = record%heat_in
             record%heat_dilatation = record%heat_in
+            record%heat_friction = record%heat_in
             record%heat_out = record%heat_in
             record%heat_imbalance = record%heat_in
             record%heat_imbalance_pointwise = record%heat_in

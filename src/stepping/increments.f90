@@ -9,6 +9,7 @@ module increments
    use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: solved_loads_type
    use balances, only: sound_imbalance
+   use friction_heating, only: nodal_friction_heat, slips_before
    use heat_reduction, only: heat_reduction_type
    use heat_storage, only: begin_storage, measure_changes, strain_rate
    use increment_checks, only: check_heat, check_record, warn_of_choices, warn_of_tables
@@ -348,6 +349,8 @@ contains
                   (next%displacement - before%displacement)
                if (self%corrections%corrects) stage%content = stage%content + (1/stage_part - 1)* &
                   (self%corrections%true_contents(model, next%temperature) - stage%content)
+               if (allocated(self%bodies%points%heated)) stage%slip_before = slips_before( &
+                  self%bodies, next%contact)
                stage%size = clock%step_time - stage%clock%step_time
                stage%clock = clock
                stage%is_last = .true.
@@ -473,8 +476,12 @@ contains
       workspace%record%increment = record%increment
       associate (step => model%steps(self%control%step), bodies => self%bodies)
          call begin_increment(bodies, step, before, next, data)
-         if (step%is_transient) call data%equation%hold_heat(bodies%capacity, stage%duration, &
-            stage%temperature, before%stored)
+         if (step%is_transient) then
+            call data%equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
+               before%stored)
+            data%friction%duration = stage%duration
+            if (allocated(stage%slip_before)) data%friction%slip_before = stage%slip_before
+         end if
          if (self%corrections%corrects) call self%corrections%give(data%equation, next)
          if (allocated(omega_start)) data%omega_start = omega_start
          if (solves_heat(step%analysis)) then
@@ -502,8 +509,13 @@ contains
             workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
          call recover_fields(bodies, self%heats(self%in_use), self%loads, data, workspace, next)
-         if (step%is_transient) next%stored = data%equation%stored_rate(bodies%capacity, &
-            next%temperature)
+         if (step%is_transient) then
+            next%stored = data%equation%stored_rate(bodies%capacity, next%temperature)
+            associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
+               if (allocated(data%friction%made)) next%stored = next%stored - b(1)/a(1)* &
+                  nodal_friction_heat(bodies, data%friction%late_start(before%friction_heat))
+            end associate
+         end if
          self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
       end associate
    end subroutine solve_fields

@@ -251,6 +251,7 @@ def test_courses_are_means_and_ranges_over_the_face_and_the_rates_of_the_model(d
         contact, history = file["contact/CYLINDER"], file["history"]
         count = len(history["time"])
         history["heat_in"] = np.linspace(5.0, 1.0, count)
+        history["heat_friction"] = np.linspace(0.5, 2.0, count)
         history["heat_stored"] = np.where(np.arange(count) < 1, np.nan, 0.5)  # a step stores none
         history["heat_out"] = np.full(count, 1e-9)  # rounding, which has no curve
         pressure, weight = contact["pressure"][()], contact["weight"][()]
@@ -264,6 +265,7 @@ def test_courses_are_means_and_ranges_over_the_face_and_the_rates_of_the_model(d
     np.testing.assert_array_equal(numbers(drawn["pressure_max"]), pressure.max(axis=1))
     np.testing.assert_array_equal(numbers(drawn["gap_min"]), gap.min(axis=1))
     np.testing.assert_allclose(numbers(drawn["heat_into_the_model"]), np.linspace(5.0, 1.0, count))
+    np.testing.assert_allclose(numbers(drawn["heat_of_friction"]), np.linspace(0.5, 2.0, count))
     assert np.isnan(numbers(drawn["heat_stored"])[0])
 
 

@@ -351,18 +351,65 @@ ALL, 20.
 """
 
 
+RUBBED = """*NODE, NSET=ALL
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+5, 0., 1.
+6, 1., 1.
+7, 1., 2.
+8, 0., 2.
+*ELEMENT, TYPE=CPE4, ELSET=BODIES
+1, 1, 2, 3, 4
+2, 5, 6, 7, 8
+*SURFACE, NAME=LOWER
+1, S3
+*SURFACE, NAME=UPPER
+2, S1
+*MATERIAL, NAME=STEEL
+*ELASTIC
+2.1E11, 0.3
+*CONDUCTIVITY
+50.
+*SOLID SECTION, ELSET=BODIES, MATERIAL=STEEL
+*SURFACE INTERACTION, NAME=DRY
+*FRICTION
+0.2
+*GAP CONDUCTANCE
+1000., 0.
+*GAP HEAT GENERATION
+1., 0.5, 3.
+*CONTACT PAIR, INTERACTION=DRY, NAME=FACE
+UPPER, LOWER
+*STEP
+*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
+1., 1.
+*BOUNDARY
+1, 1, 2
+2, 2
+8, 1
+1, 11
+2, 11
+*DLOAD
+2, P3, 1.E6
+*END STEP
+"""
+
+
 def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     """Names in the first columns of its tables are datasets, or attributes of /run."""
     shutil.copy(EXAMPLES / "press_fit.inp", tmp_path)
     shutil.copy(EXAMPLES / "press_fit.mesh", tmp_path)
     status, said = run(tmp_path / "press_fit.inp", "--accuracy", "1%")
     assert status == 0, said
-    (tmp_path / "stretched.inp").write_text(STRETCHED)
-    status, said = run(tmp_path / "stretched.inp")
-    assert status == 0, said
+    for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED)):
+        (tmp_path / f"{name}.inp").write_text(deck)
+        status, said = run(tmp_path / f"{name}.inp")
+        assert status == 0, said
     names = set()
     for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
-                 tmp_path / "press_fit.vtkhdf", tmp_path / "stretched.vtkhdf"):
+                 *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "stretched", "rubbed"))):
         with h5py.File(path) as file:
             names |= {name.rpartition("/")[2] for name in every_dataset(file)}
             names |= set(file["run"].attrs) if "run" in file else set()

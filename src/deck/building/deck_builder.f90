@@ -8,6 +8,7 @@ module deck_builder
       heatless
    use deck_builder_contact, only: build_contacts, build_ties
    use deck_builder_equations, only: build_couplings, build_equations, build_transforms
+   use deck_builder_gap_heat, only: check_friction_heat
    use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures, &
       build_time_points
    use deck_builder_interactions, only: build_interactions
@@ -151,6 +152,7 @@ contains
       if (.not. report%has_errors()) then
          call check_usage(cards, context, model, report)
          call check_heat_paths(cards, model, report)
+         call check_friction_heat(cards, context, model, report)
          call check_constants(cards, model, report)
       end if
       call note_defaults(cards, context, model)

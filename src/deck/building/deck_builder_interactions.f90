@@ -7,6 +7,7 @@ module deck_builder_interactions
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
    use deck_builder_gap_conductance, only: build_gap_conductance, join_gap_conductance
+   use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
    use deck_builder_gap_laws, only: build_gap_law
    use deck_context, only: deck_context_type, name_last
    use deck_report, only: deck_report_type
@@ -14,7 +15,7 @@ module deck_builder_interactions
    use deck_structure, only: card_count
    use friction_laws, only: friction_law_type, rough_coefficient
    use kinds, only: dp
-   use model, only: model_type, physical_constants_type
+   use model, only: model_type
    use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
       radiation_ends
    use text, only: to_text, to_upper
@@ -36,6 +37,7 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(model_type), intent(inout) :: model             !! receives the interactions
       type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
+      type(interaction_type) :: interaction
       type(place_type) :: law_place
       integer :: k, n, errors
       logical :: repeated
@@ -54,11 +56,13 @@ contains
                if (repeated) call report%lose('surface interaction')
                law_place = card%place
                call ignore_thickness(cards, card, context, report)
-               call build_laws(cards, k, model%constants, context, report, &
-                  model%interactions(n), law_place)
+               interaction = model%interactions(n)
+               call build_laws(cards, k, model, context, report, interaction, law_place)
+               model%interactions(n) = interaction
                if (report%error_count() > errors .or. card%flawed) cycle
                call check_law(card, law_place, model%interactions(n), report)
-            case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'SURFACE BEHAVIOR')
+            case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'GAP HEAT GENERATION', &
+               'GAP RADIATION', 'SURFACE BEHAVIOR')
                if (n == 0 .and. len(card%meant) == 0) then
                   call report%missing(card%place, '*'//card%name// &
                      ' has no *SURFACE INTERACTION before it')
@@ -91,35 +95,40 @@ contains
    end subroutine ignore_thickness
 
    !> Reads the laws behind one *SURFACE INTERACTION.
-   subroutine build_laws(cards, place, constants, context, report, interaction, law_place)
+   subroutine build_laws(cards, place, model, context, report, interaction, law_place)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: place
-      type(physical_constants_type), intent(in) :: constants
+      type(model_type), intent(in) :: model          ! with its mesh
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
       type(conductance_law_type) :: table
-      integer :: friction, k
+      integer :: friction, heat, k, radiation
 
       friction = 0
+      heat = 0
+      radiation = 0
       do k = place + 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
             if (card%name == 'SURFACE BEHAVIOR') call check_behavior(card, context, report)
-            if (card%last_data < card%first_data .and. card%name /= 'FRICTION') cycle
-            if (card%name == 'GAP LAW' .or. card%name == 'GAP CONDUCTANCE') then
+            if (card%last_data < card%first_data .and. .not. any(card%name == &
+               ['FRICTION           ', 'GAP HEAT GENERATION'])) cycle
+            if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
                law_place = field_place(cards%data(card%first_data), 1)
             end if
             select case (card%name)
             case ('FRICTION')
-               if (friction > 0) call report%error(card%place, 'a second *FRICTION in one '// &
-                  'surface interaction; the first is on '// &
-                  report%source%words_of(cards%keywords(friction)%place)//': leave one of them out')
-               friction = k
+               call count_once(cards, k, friction, report)
                call build_friction(cards, card, context, report, interaction%friction)
+            case ('GAP HEAT GENERATION')
+               call count_once(cards, k, heat, report)
+               call build_friction_heat(cards, card, model, report, interaction%heat)
+            case ('GAP RADIATION')
+               call count_once(cards, k, radiation, report)
             case ('GAP LAW')
-               call build_gap_law(cards, card, interaction%name, constants, context, report, &
+               call build_gap_law(cards, card, interaction%name, model%constants, context, report, &
                   interaction%law)
             case ('GAP CONDUCTANCE')
                if (has_parameter(card, 'CLEARANCE')) then
@@ -134,7 +143,24 @@ contains
          end associate
       end do
       call join_gap_conductance(table, interaction%name, context, interaction%law)
+      if (radiation > 0) call build_gap_radiation(cards, cards%keywords(radiation), &
+         model%constants, context, report, interaction%law)
    end subroutine build_laws
+
+   !> Takes the keyword card of a law that a surface interaction has once.
+   subroutine count_once(cards, k, taken, report)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: k
+      integer, intent(inout) :: taken         ! the card before, 0 for none; receives this one
+      type(deck_report_type), intent(inout) :: report
+
+      associate (card => cards%keywords(k))
+         if (taken > 0) call report%error(card%place, 'a second *'//card%name//' in one '// &
+            'surface interaction; the first is on '// &
+            report%source%words_of(cards%keywords(taken)%place)//': leave one of them out')
+      end associate
+      taken = k
+   end subroutine count_once
 
    !> Ignores parameters of a penalty; laws of pressure and overclosure that are no penalty are
    !> refused.

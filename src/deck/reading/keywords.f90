@@ -65,7 +65,7 @@ module keywords
       '~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/'// &
       '~DIRECTIONS=/~VARIABLE='
 
-   type(keyword_type), parameter :: known_keywords(78) = [ &
+   type(keyword_type), parameter :: known_keywords(80) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -97,6 +97,8 @@ module keywords
          'ROUGH/TAUMAX=/~SLIP TOLERANCE=/~ELASTIC SLIP='), &
       keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, 'PRESSURE/CLEARANCE'), &
       keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
+      keyword_type('GAP HEAT GENERATION', built, in_model, 0, 1, 'ANGULAR VELOCITY='), &
+      keyword_type('GAP RADIATION', built, in_model, 1, many, ''), &
       keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
          'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT'), &
       keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
@@ -163,7 +165,7 @@ module keywords
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(85) = [ &
+   type(advice_type), parameter :: advice(83) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -193,9 +195,6 @@ module keywords
       advice_type(refused, '', 'NODAL THICKNESS', 'give the thickness on *SOLID SECTION'), &
       advice_type(refused, '', 'DISTRIBUTION', &
          'give the axes of each element set on an *ORIENTATION of its own'), &
-      advice_type(refused, '', 'GAP HEAT GENERATION', 'friction makes no heat'), &
-      advice_type(refused, '', 'GAP RADIATION', &
-         'gaps radiate by EMISSIVITY= of *GAP LAW, such as *GAP LAW, TYPE=GAS, EMISSIVITY=0.8'), &
       advice_type(refused, '', 'VIEWFACTOR', 'only contact gaps radiate'), &
       advice_type(refused, 'CONTACT PAIR', 'CONTACT', &
          'there is no general contact; name the faces of each *CONTACT PAIR'), &
