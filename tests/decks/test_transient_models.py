@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 import pytest
 import transients as two
+from calculix import thercon
 from deck_runs import assert_alike, datasets, solve
 from physics import nodes_of
 from transients import HIGH, LOW, XS
@@ -59,6 +60,16 @@ def test_a_form_leaves_the_course(tmp_path, plain, form, step):
     one, other = two.course(plain[step]), two.course(found)
     assert 0.3 * max(one["pressure"]) < np.ptp(one["pressure"])   # heat and contact are coupled
     two.assert_same_course(one, other)
+
+
+def test_a_node_of_no_element_has_no_part_in_absolute_temperatures(tmp_path):
+    """It starts at 0, which is absolute zero here, and the bodies above it."""
+    zero = ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0."]
+    plain, gripped = (solve(two.write_deck(
+        tmp_path / f"{name}.inp", zero, bodies, two.contact(), TIGHT,
+        two.heated(how=", DILATATION=YES", **pressing)))
+        for name, bodies, pressing in (("plain", two.bodies(), {}), ("grip", *FORMS["a coupling"][::2])))
+    two.assert_same_course(two.course(plain), two.course(gripped))
 
 
 @pytest.mark.parametrize("step", STEPS)
@@ -255,6 +266,24 @@ def test_a_mirrored_twin_finds_the_same(tmp_path, pairing):
     assert np.ptp(found[0]["heat_flux"][-1]) > 0.1 * np.abs(found[0]["heat_flux"][-1]).max()
     assert {1, 2} <= set(found[0]["status"].ravel())
     assert_alike(*found, 1e-8)
+
+
+@pytest.mark.parametrize("scheme", ["L-STABLE", "CRANK-NICOLSON"])
+def test_reactions_of_prescribed_temperatures_are_the_heat_that_enters(tmp_path, scheme):
+    """With the heat that the nodes there store; a film takes the rest at the other end."""
+    prints = [line for name in ("UPPER.TOP", "LOWER.BOTTOM") for line in (
+        f"*NODE PRINT, NSET={name}, TOTALS=ONLY", "RFL")]
+    deck = two.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}", "*AMPLITUDE, NAME=A",
+                          "0., 0.2, 0.25, 1., 0.5, 0.7", pressed=(
+                              "*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*BOUNDARY, AMPLITUDE=A",
+                              f"UPPER.TOP, 11, 11, {two.HOT!r}", *prints))
+    tables = thercon(deck)
+    time, stored = two.history(deck.with_suffix(".vtkhdf"), "time", "heat_stored")
+    top, bottom = ([tables[t, f"RFL@{name}"][()] for t in sorted({t for t, _ in tables})]
+                   for name in ("UPPER.TOP", "LOWER.BOTTOM"))
+    assert len(top) == len(time)
+    np.testing.assert_allclose(np.add(top, bottom), stored, atol=1e-6 * np.abs(top).max())
+    assert np.ptp(np.sign(top)) == 2 and np.max(bottom) < 0
 
 
 @pytest.mark.parametrize("kind", ["CPE8R", "CPS8", "CAX8", "CPE6", "CPE4", "CPE3", "CAX4"])
