@@ -274,7 +274,7 @@ def test_reactions_of_prescribed_temperatures_are_the_heat_that_enters(tmp_path,
     prints = [line for name in ("UPPER.TOP", "LOWER.BOTTOM") for line in (
         f"*NODE PRINT, NSET={name}, TOTALS=ONLY", "RFL")]
     deck = two.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}", "*AMPLITUDE, NAME=A",
-                          "0., 0.2, 0.25, 1., 0.5, 0.7", pressed=(
+                          "0., 0.2, 0.25, 1., 0.5, 0.2", pressed=(
                               "*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*BOUNDARY, AMPLITUDE=A",
                               f"UPPER.TOP, 11, 11, {two.HOT!r}", *prints))
     tables = thercon(deck)
@@ -283,7 +283,7 @@ def test_reactions_of_prescribed_temperatures_are_the_heat_that_enters(tmp_path,
                    for name in ("UPPER.TOP", "LOWER.BOTTOM"))
     assert len(top) == len(time)
     np.testing.assert_allclose(np.add(top, bottom), stored, atol=1e-6 * np.abs(top).max())
-    assert np.ptp(np.sign(top)) == 2 and np.max(bottom) < 0
+    assert min(top) < 0 < max(top) and max(bottom) < 0
 
 
 @pytest.mark.parametrize("kind", ["CPE8R", "CPS8", "CAX8", "CPE6", "CPE4", "CPE3", "CAX4"])
