@@ -183,6 +183,35 @@ def test_heat_is_kept_from_step_to_step(tmp_path, before, scheme):
     assert heat[-1] > 0
 
 
+@pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN"])
+def test_temperatures_that_are_released_and_prescribed_again_leave_the_balance(tmp_path, scheme):
+    """Hot from the first step on, free in the second, and at another temperature in the third."""
+    again = 25.0
+    quiet = {"pressed": (), "times": "0.02, 0.1"}
+    result = solve(two.two_blocks(
+        tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}",
+        *two.heated("*BOUNDARY", f"UPPER.TOP, {HOT}", times="0.02, 0.1"),
+        *two.heated("*BOUNDARY, OP=NEW", "UPPER, 1", "LOWER, 1", "LOWER.BOTTOM, 2",
+                    f"UPPER.TOP, 2, 2, {two.PRESSED!r}", **quiet),
+        **quiet | {"pressed": ("*BOUNDARY", f"UPPER.TOP, 11, 11, {again!r}")}))
+    times, heat = two.content(result)
+    stored, = two.history(result, "heat_stored")
+    with h5py.File(result) as file:
+        y = file["VTKHDF/Points"][:, 1]
+        top = file["VTKHDF/PointData/temperature"][()].reshape(len(times), -1)[:, y == 1.0][:, 0]
+    ends = [round(t / 0.02) - 1 for t in (0.1, 0.2)]
+    share = 0.5 / 6 * two.CAPACITY["UPPER"]
+    jumps = {0: two.HOT - two.START, ends[1] + 1: again - top[ends[1]]}
+    part = SCHEMES[scheme]
+    before = np.concatenate([[np.nan], stored[:-1]])
+    mean = part * stored + (1 - part) * before if part < 1 else stored
+    for row in range(len(times)):
+        gained = heat[row] - (heat[row - 1] if row else 0.0) - share * jumps.get(row, 0.0)
+        if part < 1 and row in (0, ends[0] + 1, ends[1] + 1):
+            continue   # the rate at the start of a step is not that of the step before
+        assert gained == pytest.approx(0.02 * mean[row], rel=1e-9, abs=1e-9 * heat.max())
+
+
 def test_a_steady_step_between_transients_stores_nothing_and_what_follows_starts_from_it(tmp_path):
     """Loads that act at once as they are find the steady state, and nothing changes."""
     steady = two.heated(times="0.1, 0.2", how=", STEADY STATE")
