@@ -1,5 +1,5 @@
-"""Models of steps that store heat: what ties, relates and divides bodies leaves a course that it has
-without, and heat that goes in without going out is heat in the bodies."""
+"""Models of steps that store heat: what ties, relates and divides bodies leaves their course, and
+heat that goes in without going out is heat in the bodies."""
 
 from itertools import pairwise
 
@@ -13,6 +13,7 @@ from physics import nodes_of
 from transients import HIGH, LOW, XS
 
 OTHER = [0.0, 0.25, 0.7, 1.0]
+FIELDS = "contact", "VTKHDF/PointData"
 TIGHT = ["*FIXED POINT, TOL=1.E-12"]
 PARTS = {"upper": (XS, [0.5, 1.0]), "middle": (XS, [0.0, 0.2, 0.5])}
 OTHERS = {"upper": (OTHER, [0.5, 1.0]), "middle": (XS, [0.0, 0.2, 0.5])}
@@ -65,10 +66,11 @@ def test_a_form_leaves_the_course(tmp_path, plain, form, step):
 def test_a_node_of_no_element_has_no_part_in_absolute_temperatures(tmp_path):
     """It starts at 0, which is absolute zero here, and the bodies above it."""
     zero = ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0."]
+    forms = {"plain": (two.bodies(), {}), "grip": FORMS["a coupling"][::2]}
     plain, gripped = (solve(two.write_deck(
         tmp_path / f"{name}.inp", zero, bodies, two.contact(), TIGHT,
         two.heated(how=", DILATATION=YES", **pressing)))
-        for name, bodies, pressing in (("plain", two.bodies(), {}), ("grip", *FORMS["a coupling"][::2])))
+        for name, (bodies, pressing) in forms.items())
     two.assert_same_course(two.course(plain), two.course(gripped))
 
 
@@ -119,11 +121,11 @@ def test_heat_balances_with_the_default_scheme_and_increments_by_error(tmp_path,
     deck = (two.two_blocks(tmp_path / "deck.inp", how="") if form == "node pairs"
             else model(tmp_path / "deck.inp", form, how=""))
     result = solve(deck)
-    stored, entering, leaving, time = two.history(result, "heat_stored", "heat_in", "heat_out", "time")
+    stored, entering, leaving = two.history(result, "heat_stored", "heat_in", "heat_out")
     np.testing.assert_allclose(entering - leaving, stored, rtol=0, atol=1e-9 * entering.max())
     times, heat = two.content(result)
     # Over increments that err by a thousandth the trapezoidal sum of the rates is near the heat.
-    sizes = np.diff(time, prepend=0.0)
+    sizes = np.diff(times, prepend=0.0)
     before = np.array([ENTERING, *stored[:-1]])
     np.testing.assert_allclose(np.cumsum((stored + before) / 2 * sizes), heat, rtol=2e-2)
 
@@ -162,10 +164,10 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
 
 STEADY = [f"{two.COUPLED}, STEADY STATE", "0.1, 0.2"]
 OTHER_STEPS = {
-    "a static step before": ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}",
-                             "*END STEP"],
+    "a static step before": ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY",
+                             f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*END STEP"],
     "a transient of heat alone before": [
-        "*STEP, INC=1000", "*HEAT TRANSFER, DIRECT", "0.05, 0.3", "*DFLUX", "UPPER, BF, 100.", "*END STEP"],
+        "*STEP", "*HEAT TRANSFER, DIRECT", "0.05, 0.3", "*DFLUX", "UPPER, BF, 100.", "*END STEP"],
     "a coupled transient before": two.heated("*DFLUX", "UPPER, BF, 50.", times="0.03, 0.3"),
 }
 
@@ -226,8 +228,9 @@ def test_a_steady_step_between_transients_stores_nothing_and_what_follows_starts
 def test_faces_that_are_removed_conduct_nothing_and_conduct_again_when_added(tmp_path):
     steps = []
     for change in ("REMOVE", "ADD"):
-        steps += ["*STEP, INC=1000", f"{two.COUPLED}, DIRECT", "0.05, 0.2",
-                  f"*MODEL CHANGE, TYPE=CONTACT PAIR, {change}", "UPPER.BOTTOM, LOWER.TOP", "*END STEP"]
+        steps += ["*STEP", f"{two.COUPLED}, DIRECT", "0.05, 0.2",
+                  f"*MODEL CHANGE, TYPE=CONTACT PAIR, {change}", "UPPER.BOTTOM, LOWER.TOP",
+                  "*END STEP"]
     bodies = two.bodies(held=["LOWER.BOTTOM, 1, 2", "LOWER, 1", "UPPER, 1"])
     deck = two.write_deck(tmp_path / "deck.inp", bodies, two.contact(), TIGHT,
                           ["*THERMAL SCHEME, TYPE=IMPLICIT"], two.heated(times="0.05, 0.2"), steps)
@@ -245,14 +248,14 @@ def test_faces_that_are_removed_conduct_nothing_and_conduct_again_when_added(tmp
 def test_a_scheme_that_is_given_is_that_of_its_coefficients(tmp_path):
     names = "*THERMAL SCHEME, TYPE=GALERKIN", "*THERMAL SCHEME, TYPE=FREE"
     given = "4., 1., 3., 2., 1., 1., 2., 4."   # six times as large
-    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), "contact", "VTKHDF/PointData")
+    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), *FIELDS)
              for cards in (names[:1], (names[1], given))]
     assert_alike(*found, 1e-9)
 
 
 @pytest.mark.parametrize("start", ["BOTH", "OPEN", "CLOSED"])
 def test_the_start_of_the_iteration_leaves_the_solution(tmp_path, start):
-    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), "contact", "VTKHDF/PointData")
+    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), *FIELDS)
              for cards in ((), (f"*START, FROM={start}",))]
     assert_alike(*found, 1e-9)
 
@@ -282,7 +285,8 @@ def test_a_mirrored_twin_finds_the_same(tmp_path, pairing):
     for turn, sign in ((lambda cards: cards, 1), (mirrored, -1)):
         bodies = turn(two.bodies(held=["LOWER.BOTTOM, 1, 2", "UPPER.TOP, 1"]))
         cards = two.contact(pairing=pairing, laws=["*FRICTION", "0.2", *two.LAWS])
-        slide = ("*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", f"UPPER.TOP, 1, 1, {sign * 4e-3!r}")
+        slide = ("*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}",
+                 f"UPPER.TOP, 1, 1, {sign * 4e-3!r}")
         deck = two.write_deck(tmp_path / f"{pairing}{sign}.inp", bodies, cards, TIGHT, two.heated(
             "*CFLUX", "1, 11, 20.", pressed=slide, how=""))
         with h5py.File(solve(deck)) as file:
@@ -302,10 +306,11 @@ def test_reactions_of_prescribed_temperatures_are_the_heat_that_enters(tmp_path,
     """With the heat that the nodes there store; a film takes the rest at the other end."""
     prints = [line for name in ("UPPER.TOP", "LOWER.BOTTOM") for line in (
         f"*NODE PRINT, NSET={name}, TOTALS=ONLY", "RFL")]
-    deck = two.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}", "*AMPLITUDE, NAME=A",
-                          "0., 0.2, 0.25, 1., 0.5, 0.2", pressed=(
-                              "*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*BOUNDARY, AMPLITUDE=A",
-                              f"UPPER.TOP, 11, 11, {two.HOT!r}", *prints))
+    course = ["*AMPLITUDE, NAME=A", "0., 0.2, 0.25, 1., 0.5, 0.2"]
+    held = ["*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*BOUNDARY, AMPLITUDE=A",
+            f"UPPER.TOP, {HOT}"]
+    deck = two.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}", *course,
+                          pressed=(*held, *prints))
     tables = thercon(deck)
     time, stored = two.history(deck.with_suffix(".vtkhdf"), "time", "heat_stored")
     top, bottom = ([tables[t, f"RFL@{name}"][()] for t in sorted({t for t, _ in tables})]
@@ -322,10 +327,10 @@ def test_heat_balances_in_elements_of_all_kinds(tmp_path, kind, pairing):
     bodies = two.bodies(kind, held=["LOWER.BOTTOM, 2", "LOWER, 1", "UPPER, 1"])
     step = ["*STEP, INC=100000", two.COUPLED, "0.05, 0.5", "*BOUNDARY",
             f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*DFLUX", "UPPER, BF, 30.", "*END STEP"]
-    result = solve(two.write_deck(tmp_path / "deck.inp", bodies, two.contact(pairing=pairing), TIGHT,
-                                  step))
+    result = solve(two.write_deck(tmp_path / "deck.inp", bodies, two.contact(pairing=pairing),
+                                  TIGHT, step))
     volume = np.pi if "CAX" in kind else 1.0
-    time, stored, entering, leaving = two.history(result, "time", "heat_stored", "heat_in", "heat_out")
+    stored, entering, leaving = two.history(result, "heat_stored", "heat_in", "heat_out")
     np.testing.assert_allclose(stored, 30.0 * volume, rtol=1e-9)
     np.testing.assert_allclose(entering, 30.0 * volume, rtol=1e-9)
     np.testing.assert_allclose(leaving, 0.0, atol=1e-9)

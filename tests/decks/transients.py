@@ -1,8 +1,8 @@
 """A deck of two blocks that store heat, in many forms.
 
 The upper block is pressed on the lower one, and films warm its top and cool the bottom of the other
-one from time 0 on. Both are held across, so that all fields follow y whatever the meshes. The closed
-law follows the pressure, which expansion changes, so that heat and contact are coupled.
+one from time 0 on. Both are held across, so that all fields follow y whatever the meshes. The
+closed law follows the pressure, which expansion changes: heat and contact are coupled.
 """
 
 import h5py
@@ -31,9 +31,9 @@ OF_BODIES = "heat_in", "heat_out", "heat_stored"
 
 
 def bodies(kind="CPE8", upper=(XS, HIGH), lower=(XS, LOW), middle=None, held=None, apart=1000):
-    """Return the cards of both blocks, corners at xs and ys, and of what is held; where a middle one
-    is given it is the lower part of the upper one, and another card joins it. Numbers of nodes and
-    elements of the parts are apart."""
+    """Return the cards of both blocks, corners at xs and ys, and of what is held; a middle one is
+    the lower part of the upper one, and another card joins it. Numbers of nodes and elements of
+    the parts are apart."""
     parts = {"UPPER": upper, "LOWER": lower} | ({"MIDDLE": middle} if middle else {})
     cards, starts = [], ["*INITIAL CONDITIONS, TYPE=TEMPERATURE"]
     for k, (name, (xs, ys)) in enumerate(parts.items()):
@@ -47,7 +47,8 @@ def bodies(kind="CPE8", upper=(XS, HIGH), lower=(XS, LOW), middle=None, held=Non
 def contact(slave="UPPER.BOTTOM", pairing="NODES", laws=LAWS):
     """Return the cards of the interface."""
     return ["*SURFACE INTERACTION, NAME=FACES", *laws,
-            f"*CONTACT PAIR, INTERACTION=FACES, NAME=FACE, PAIRING={pairing}", f"{slave}, LOWER.TOP"]
+            f"*CONTACT PAIR, INTERACTION=FACES, NAME=FACE, PAIRING={pairing}",
+            f"{slave}, LOWER.TOP"]
 
 
 def heated(*cards, times=f"{FIRST!r}, {PERIOD!r}", how=", DIRECT",
