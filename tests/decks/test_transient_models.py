@@ -37,7 +37,8 @@ FORMS = {
     "a coupling": (two.bodies() + GRIP, two.contact(), {"pressed": BY_GRIP}),
     "MUMPS": (two.bodies() + ["*SOLVER, TYPE=MUMPS"], two.contact(), {}),
 }
-STEPS = {"fixed": {}, "by error": {"how": ", LOCAL ERROR=1.E-3"}}
+STEPS = {"fixed": {}, "by error": {"how": ", LOCAL ERROR=1.E-3"},
+         "with heat of strains": {"how": ", DIRECT, DILATATION=YES"}}
 
 
 @pytest.fixture(scope="module")
@@ -65,12 +66,11 @@ def test_a_form_leaves_the_course(tmp_path, plain, form, step):
 
 def test_a_node_of_no_element_has_no_part_in_absolute_temperatures(tmp_path):
     """It starts at 0, which is absolute zero here, and the bodies above it."""
-    zero = ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0."]
-    forms = {"plain": (two.bodies(), {}), "grip": FORMS["a coupling"][::2]}
+    forms = {"plain": ([], {}), "grip": (GRIP, FORMS["a coupling"][2])}
     plain, gripped = (solve(two.write_deck(
-        tmp_path / f"{name}.inp", zero, bodies, two.contact(), TIGHT,
+        tmp_path / f"{name}.inp", two.bodies(zero=0.0), cards, two.contact(), TIGHT,
         two.heated(how=", DILATATION=YES", **pressing)))
-        for name, (bodies, pressing) in forms.items())
+        for name, (cards, pressing) in forms.items())
     two.assert_same_course(two.course(plain), two.course(gripped))
 
 
@@ -114,6 +114,17 @@ def test_heat_that_is_stored_is_in_the_bodies(tmp_path, form, scheme):
     mean = part * stored + (1 - part) * np.array([ENTERING, *stored[:-1]])
     sizes = np.diff(times, prepend=0.0)
     np.testing.assert_allclose(np.cumsum(mean * sizes), heat, rtol=1e-9)
+
+
+@pytest.mark.parametrize("form", [*FORMS, "node pairs"])
+def test_heat_of_strains_is_in_the_balance(tmp_path, form):
+    """Beside what is stored, which is without it."""
+    of_step = {"how": ", DIRECT, DILATATION=YES"}
+    deck = (two.two_blocks(tmp_path / "deck.inp", **of_step) if form == "node pairs"
+            else model(tmp_path / "deck.inp", form, **of_step))
+    entering, *others = two.history(solve(deck), *two.OF_BODIES)
+    np.testing.assert_allclose(sum(others), entering, rtol=0, atol=1e-9 * entering.max())
+    assert np.abs(others[-1]).max() > 1e-5 * entering.max()
 
 
 @pytest.mark.parametrize("form", [*FORMS, "node pairs"])
@@ -295,7 +306,7 @@ def test_a_mirrored_twin_finds_the_same(tmp_path, pairing):
             found.append({name: face[name][()][:, rows] for name in (
                 "pressure", "heat_flux", "slave_temperature", "gap", "status")})
             found[-1]["shear"] = sign * face["shear"][()][:, rows]
-            found[-1] |= {name: file[f"history/{name}"][()] for name in two.OF_BODIES}
+            found[-1] |= {name: file[f"history/{name}"][()] for name in two.OF_BODIES[:3]}
     assert np.ptp(found[0]["heat_flux"][-1]) > 0.1 * np.abs(found[0]["heat_flux"][-1]).max()
     assert {1, 2} <= set(found[0]["status"].ravel())
     assert_alike(*found, 1e-8)

@@ -21,14 +21,13 @@ from thercon_post.cli import main as plot  # noqa: E402
 from thercon_post.report.cli import main as report  # noqa: E402
 
 UNITS = '*OPTIONS, UNITS="m Pa W C"'
-ABSOLUTE = "*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-20."
 
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
     """Return a result with increments by error: the first is a thousandth of the last."""
     folder = tmp_path_factory.mktemp("transient")
-    deck = two.two_blocks(folder / "deck.inp", UNITS, ABSOLUTE, how=", DILATATION=YES")
+    deck = two.two_blocks(folder / "deck.inp", UNITS, how=", DILATATION=YES")
     found = solve(deck)
     assert report([str(found), "--out", str(folder)]) == 0
     times, = two.history(found, "time")
