@@ -1,5 +1,5 @@
-"""What steps that store heat cost: a pass of the fixed point does not see the mesh behind the contact
-points, and an increment of heat alone takes few back substitutions.
+"""What steps that store heat cost: a pass of the fixed point does not see the mesh behind the
+contact points, and an increment of heat alone takes few back substitutions.
 
 Instructions are the same in every run, so that the difference of two runs is that of what differs.
 """
@@ -18,7 +18,7 @@ STEADY = ["*BOUNDARY", f"UPPER.TOP, 11, 11, {two.HOT!r}", f"LOWER.BOTTOM, 11, 11
 
 
 def pressed(path, rows, tolerance, analysis, cards=()):
-    """Write two blocks with so many rows of elements each, relaxed slowly to a tolerance; return its
+    """Write two blocks of so many rows of elements each, relaxed slowly to a tolerance; return the
     path."""
     high = [float(y) for y in np.linspace(0.0, 1.0, rows + 1)]
     low = [y - 1.0 for y in high]

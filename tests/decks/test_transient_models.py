@@ -1,5 +1,5 @@
-"""Models of steps that store heat: what ties, relates and divides bodies leaves a course that it has
-without, and heat that goes in without going out is heat in the bodies."""
+"""Models of steps that store heat: what ties, relates and divides bodies leaves their course, and
+heat that goes in without going out is heat in the bodies."""
 
 from itertools import pairwise
 
@@ -7,11 +7,13 @@ import h5py
 import numpy as np
 import pytest
 import transients as two
+from calculix import thercon
 from deck_runs import assert_alike, datasets, solve
 from physics import nodes_of
 from transients import HIGH, LOW, XS
 
 OTHER = [0.0, 0.25, 0.7, 1.0]
+FIELDS = "contact", "VTKHDF/PointData"
 TIGHT = ["*FIXED POINT, TOL=1.E-12"]
 PARTS = {"upper": (XS, [0.5, 1.0]), "middle": (XS, [0.0, 0.2, 0.5])}
 OTHERS = {"upper": (OTHER, [0.5, 1.0]), "middle": (XS, [0.0, 0.2, 0.5])}
@@ -35,7 +37,8 @@ FORMS = {
     "a coupling": (two.bodies() + GRIP, two.contact(), {"pressed": BY_GRIP}),
     "MUMPS": (two.bodies() + ["*SOLVER, TYPE=MUMPS"], two.contact(), {}),
 }
-STEPS = {"fixed": {}, "by error": {"how": ", LOCAL ERROR=1.E-3"}}
+STEPS = {"fixed": {}, "by error": {"how": ", LOCAL ERROR=1.E-3"},
+         "with heat of strains": {"how": ", DIRECT, DILATATION=YES"}}
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +62,16 @@ def test_a_form_leaves_the_course(tmp_path, plain, form, step):
     one, other = two.course(plain[step]), two.course(found)
     assert 0.3 * max(one["pressure"]) < np.ptp(one["pressure"])   # heat and contact are coupled
     two.assert_same_course(one, other)
+
+
+def test_a_node_of_no_element_has_no_part_in_absolute_temperatures(tmp_path):
+    """It starts at 0, which is absolute zero here, and the bodies above it."""
+    forms = {"plain": ([], {}), "grip": (GRIP, FORMS["a coupling"][2])}
+    plain, gripped = (solve(two.write_deck(
+        tmp_path / f"{name}.inp", two.bodies(zero=0.0), cards, two.contact(), TIGHT,
+        two.heated(how=", DILATATION=YES", **pressing)))
+        for name, (cards, pressing) in forms.items())
+    two.assert_same_course(two.course(plain), two.course(gripped))
 
 
 @pytest.mark.parametrize("step", STEPS)
@@ -104,15 +117,26 @@ def test_heat_that_is_stored_is_in_the_bodies(tmp_path, form, scheme):
 
 
 @pytest.mark.parametrize("form", [*FORMS, "node pairs"])
+def test_heat_of_strains_is_in_the_balance(tmp_path, form):
+    """Beside what is stored, which is without it."""
+    of_step = {"how": ", DIRECT, DILATATION=YES"}
+    deck = (two.two_blocks(tmp_path / "deck.inp", **of_step) if form == "node pairs"
+            else model(tmp_path / "deck.inp", form, **of_step))
+    entering, *others = two.history(solve(deck), *two.OF_BODIES)
+    np.testing.assert_allclose(sum(others), entering, rtol=0, atol=1e-9 * entering.max())
+    assert np.abs(others[-1]).max() > 1e-5 * entering.max()
+
+
+@pytest.mark.parametrize("form", [*FORMS, "node pairs"])
 def test_heat_balances_with_the_default_scheme_and_increments_by_error(tmp_path, form):
     deck = (two.two_blocks(tmp_path / "deck.inp", how="") if form == "node pairs"
             else model(tmp_path / "deck.inp", form, how=""))
     result = solve(deck)
-    stored, entering, leaving, time = two.history(result, "heat_stored", "heat_in", "heat_out", "time")
+    stored, entering, leaving = two.history(result, "heat_stored", "heat_in", "heat_out")
     np.testing.assert_allclose(entering - leaving, stored, rtol=0, atol=1e-9 * entering.max())
     times, heat = two.content(result)
     # Over increments that err by a thousandth the trapezoidal sum of the rates is near the heat.
-    sizes = np.diff(time, prepend=0.0)
+    sizes = np.diff(times, prepend=0.0)
     before = np.array([ENTERING, *stored[:-1]])
     np.testing.assert_allclose(np.cumsum((stored + before) / 2 * sizes), heat, rtol=2e-2)
 
@@ -151,10 +175,10 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
 
 STEADY = [f"{two.COUPLED}, STEADY STATE", "0.1, 0.2"]
 OTHER_STEPS = {
-    "a static step before": ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}",
-                             "*END STEP"],
+    "a static step before": ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY",
+                             f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*END STEP"],
     "a transient of heat alone before": [
-        "*STEP, INC=1000", "*HEAT TRANSFER, DIRECT", "0.05, 0.3", "*DFLUX", "UPPER, BF, 100.", "*END STEP"],
+        "*STEP", "*HEAT TRANSFER, DIRECT", "0.05, 0.3", "*DFLUX", "UPPER, BF, 100.", "*END STEP"],
     "a coupled transient before": two.heated("*DFLUX", "UPPER, BF, 50.", times="0.03, 0.3"),
 }
 
@@ -172,6 +196,35 @@ def test_heat_is_kept_from_step_to_step(tmp_path, before, scheme):
     assert heat[-1] > 0
 
 
+@pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN"])
+def test_temperatures_that_are_released_and_prescribed_again_leave_the_balance(tmp_path, scheme):
+    """Hot from the first step on, free in the second, and at another temperature in the third."""
+    again = 25.0
+    quiet = {"pressed": (), "times": "0.02, 0.1"}
+    result = solve(two.two_blocks(
+        tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}",
+        *two.heated("*BOUNDARY", f"UPPER.TOP, {HOT}", times="0.02, 0.1"),
+        *two.heated("*BOUNDARY, OP=NEW", "UPPER, 1", "LOWER, 1", "LOWER.BOTTOM, 2",
+                    f"UPPER.TOP, 2, 2, {two.PRESSED!r}", **quiet),
+        **quiet | {"pressed": ("*BOUNDARY", f"UPPER.TOP, 11, 11, {again!r}")}))
+    times, heat = two.content(result)
+    stored, = two.history(result, "heat_stored")
+    with h5py.File(result) as file:
+        y = file["VTKHDF/Points"][:, 1]
+        top = file["VTKHDF/PointData/temperature"][()].reshape(len(times), -1)[:, y == 1.0][:, 0]
+    ends = [round(t / 0.02) - 1 for t in (0.1, 0.2)]
+    share = 0.5 / 6 * two.CAPACITY["UPPER"]
+    jumps = {0: two.HOT - two.START, ends[1] + 1: again - top[ends[1]]}
+    part = SCHEMES[scheme]
+    before = np.concatenate([[np.nan], stored[:-1]])
+    mean = part * stored + (1 - part) * before if part < 1 else stored
+    for row in range(len(times)):
+        gained = heat[row] - (heat[row - 1] if row else 0.0) - share * jumps.get(row, 0.0)
+        if part < 1 and row in (0, ends[0] + 1, ends[1] + 1):
+            continue   # the rate at the start of a step is not that of the step before
+        assert gained == pytest.approx(0.02 * mean[row], rel=1e-9, abs=1e-9 * heat.max())
+
+
 def test_a_steady_step_between_transients_stores_nothing_and_what_follows_starts_from_it(tmp_path):
     """Loads that act at once as they are find the steady state, and nothing changes."""
     steady = two.heated(times="0.1, 0.2", how=", STEADY STATE")
@@ -186,8 +239,9 @@ def test_a_steady_step_between_transients_stores_nothing_and_what_follows_starts
 def test_faces_that_are_removed_conduct_nothing_and_conduct_again_when_added(tmp_path):
     steps = []
     for change in ("REMOVE", "ADD"):
-        steps += ["*STEP, INC=1000", f"{two.COUPLED}, DIRECT", "0.05, 0.2",
-                  f"*MODEL CHANGE, TYPE=CONTACT PAIR, {change}", "UPPER.BOTTOM, LOWER.TOP", "*END STEP"]
+        steps += ["*STEP", f"{two.COUPLED}, DIRECT", "0.05, 0.2",
+                  f"*MODEL CHANGE, TYPE=CONTACT PAIR, {change}", "UPPER.BOTTOM, LOWER.TOP",
+                  "*END STEP"]
     bodies = two.bodies(held=["LOWER.BOTTOM, 1, 2", "LOWER, 1", "UPPER, 1"])
     deck = two.write_deck(tmp_path / "deck.inp", bodies, two.contact(), TIGHT,
                           ["*THERMAL SCHEME, TYPE=IMPLICIT"], two.heated(times="0.05, 0.2"), steps)
@@ -205,14 +259,14 @@ def test_faces_that_are_removed_conduct_nothing_and_conduct_again_when_added(tmp
 def test_a_scheme_that_is_given_is_that_of_its_coefficients(tmp_path):
     names = "*THERMAL SCHEME, TYPE=GALERKIN", "*THERMAL SCHEME, TYPE=FREE"
     given = "4., 1., 3., 2., 1., 1., 2., 4."   # six times as large
-    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), "contact", "VTKHDF/PointData")
+    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), *FIELDS)
              for cards in (names[:1], (names[1], given))]
     assert_alike(*found, 1e-9)
 
 
 @pytest.mark.parametrize("start", ["BOTH", "OPEN", "CLOSED"])
 def test_the_start_of_the_iteration_leaves_the_solution(tmp_path, start):
-    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), "contact", "VTKHDF/PointData")
+    found = [datasets(solve(two.two_blocks(tmp_path / "deck.inp", *cards)), *FIELDS)
              for cards in ((), (f"*START, FROM={start}",))]
     assert_alike(*found, 1e-9)
 
@@ -242,7 +296,8 @@ def test_a_mirrored_twin_finds_the_same(tmp_path, pairing):
     for turn, sign in ((lambda cards: cards, 1), (mirrored, -1)):
         bodies = turn(two.bodies(held=["LOWER.BOTTOM, 1, 2", "UPPER.TOP, 1"]))
         cards = two.contact(pairing=pairing, laws=["*FRICTION", "0.2", *two.LAWS])
-        slide = ("*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", f"UPPER.TOP, 1, 1, {sign * 4e-3!r}")
+        slide = ("*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}",
+                 f"UPPER.TOP, 1, 1, {sign * 4e-3!r}")
         deck = two.write_deck(tmp_path / f"{pairing}{sign}.inp", bodies, cards, TIGHT, two.heated(
             "*CFLUX", "1, 11, 20.", pressed=slide, how=""))
         with h5py.File(solve(deck)) as file:
@@ -251,10 +306,29 @@ def test_a_mirrored_twin_finds_the_same(tmp_path, pairing):
             found.append({name: face[name][()][:, rows] for name in (
                 "pressure", "heat_flux", "slave_temperature", "gap", "status")})
             found[-1]["shear"] = sign * face["shear"][()][:, rows]
-            found[-1] |= {name: file[f"history/{name}"][()] for name in two.OF_BODIES}
+            found[-1] |= {name: file[f"history/{name}"][()] for name in two.OF_BODIES[:3]}
     assert np.ptp(found[0]["heat_flux"][-1]) > 0.1 * np.abs(found[0]["heat_flux"][-1]).max()
     assert {1, 2} <= set(found[0]["status"].ravel())
     assert_alike(*found, 1e-8)
+
+
+@pytest.mark.parametrize("scheme", ["L-STABLE", "CRANK-NICOLSON"])
+def test_reactions_of_prescribed_temperatures_are_the_heat_that_enters(tmp_path, scheme):
+    """With the heat that the nodes there store; a film takes the rest at the other end."""
+    prints = [line for name in ("UPPER.TOP", "LOWER.BOTTOM") for line in (
+        f"*NODE PRINT, NSET={name}, TOTALS=ONLY", "RFL")]
+    course = ["*AMPLITUDE, NAME=A", "0., 0.2, 0.25, 1., 0.5, 0.2"]
+    held = ["*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*BOUNDARY, AMPLITUDE=A",
+            f"UPPER.TOP, {HOT}"]
+    deck = two.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}", *course,
+                          pressed=(*held, *prints))
+    tables = thercon(deck)
+    time, stored = two.history(deck.with_suffix(".vtkhdf"), "time", "heat_stored")
+    top, bottom = ([tables[t, f"RFL@{name}"][()] for t in sorted({t for t, _ in tables})]
+                   for name in ("UPPER.TOP", "LOWER.BOTTOM"))
+    assert len(top) == len(time)
+    np.testing.assert_allclose(np.add(top, bottom), stored, atol=1e-6 * np.abs(top).max())
+    assert min(top) < 0 < max(top) and max(bottom) < 0
 
 
 @pytest.mark.parametrize("kind", ["CPE8R", "CPS8", "CAX8", "CPE6", "CPE4", "CPE3", "CAX4"])
@@ -264,10 +338,10 @@ def test_heat_balances_in_elements_of_all_kinds(tmp_path, kind, pairing):
     bodies = two.bodies(kind, held=["LOWER.BOTTOM, 2", "LOWER, 1", "UPPER, 1"])
     step = ["*STEP, INC=100000", two.COUPLED, "0.05, 0.5", "*BOUNDARY",
             f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "*DFLUX", "UPPER, BF, 30.", "*END STEP"]
-    result = solve(two.write_deck(tmp_path / "deck.inp", bodies, two.contact(pairing=pairing), TIGHT,
-                                  step))
+    result = solve(two.write_deck(tmp_path / "deck.inp", bodies, two.contact(pairing=pairing),
+                                  TIGHT, step))
     volume = np.pi if "CAX" in kind else 1.0
-    time, stored, entering, leaving = two.history(result, "time", "heat_stored", "heat_in", "heat_out")
+    stored, entering, leaving = two.history(result, "heat_stored", "heat_in", "heat_out")
     np.testing.assert_allclose(stored, 30.0 * volume, rtol=1e-9)
     np.testing.assert_allclose(entering, 30.0 * volume, rtol=1e-9)
     np.testing.assert_allclose(leaving, 0.0, atol=1e-9)

@@ -1,4 +1,4 @@
-"""Runs with steps that store heat: increments that are repeated, signals, batches, checks, settings."""
+"""Runs with steps that store heat: repeated increments, signals, batches, checks, settings."""
 
 import csv
 import re
@@ -6,7 +6,6 @@ import signal
 import subprocess
 import time
 from contextlib import suppress
-from itertools import takewhile
 
 import h5py
 import numpy as np
@@ -19,11 +18,9 @@ TIGHT = ["*FIXED POINT, TOL=1.E-12"]
 EVERYWHERE = "contact", "history", "VTKHDF/PointData"
 ROUNDING = "heat_imbalance", "heat_imbalance_pointwise", "force_imbalance"
 
-# Increments that fail, and why: what the deck has beside the two blocks, and the start of its words.
+# Increments that are repeated: bodies, contact, method, step, and how the reason begins.
 FEW_PASSES = ["*FIXED POINT, METHOD=PICARD, TOL=1.E-12, MAXITER=4"]
-ABSOLUTE = ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-20."]
-APART = two.contact(laws=["*GAP LAW, TYPE=GAS", "2.E-3, 5.E-3", "*GAP LAW, TYPE=POWER", "0.4, 0.5, 1."
-                          ]) + ["*CLEARANCE, MASTER=LOWER.TOP, SLAVE=UPPER.BOTTOM, VALUE=1.E-3"]
+APART = two.contact() + ["*CLEARANCE, MASTER=LOWER.TOP, SLAVE=UPPER.BOTTOM, VALUE=1.E-3"]
 SLIDING = two.bodies(held=["LOWER.BOTTOM, 1, 2"])
 RUBBING = two.contact(laws=["*FRICTION", "0.2", *two.LAWS])
 SLIDE = ("*BOUNDARY", f"UPPER.TOP, 2, 2, {two.PRESSED!r}", "UPPER.TOP, 1, 1, 0.004")
@@ -36,9 +33,10 @@ REPEATED = {
                "a temperature changes by"),
     "touch": (two.bodies(), APART, [], {"how": ", LOCAL ERROR=1.", "pressed": STILL},
               "contact pair FACE touches or parts"),
-    "with friction": (SLIDING, RUBBING, [], {"how": "", "pressed": SLIDE}, "its temperatures err by"),
-    "with heat of strains": (ABSOLUTE + two.bodies(), two.contact(), [],
-                             {"how": ", DILATATION=YES"}, "its temperatures err by"),
+    "with friction": (SLIDING, RUBBING, [], {"how": "", "pressed": SLIDE},
+                      "its temperatures err by"),
+    "with heat of strains": (two.bodies(), two.contact(), [], {"how": ", DILATATION=YES"},
+                             "its temperatures err by"),
 }
 
 
@@ -58,10 +56,11 @@ def test_an_increment_that_is_repeated_starts_from_the_same_state(tmp_path, case
     again = two.heated(times=first, **step | {"pressed": ()})[:-1] + ["*DFLUX", "LOWER, BF, 90.",
                                                                      "*END STEP"]
     course = heated + (again if steps == 2 else [])
-    result = solve(two.write_deck(tmp_path / "repeated.inp", bodies, contact, TIGHT, method, course))
+    result = solve(two.write_deck(tmp_path / "repeated.inp", bodies, contact, TIGHT, method,
+                                  course))
     assert any(words.startswith(reason) for words in attempts(result)), attempts(result)
-    time, = two.history(result, "time")
-    points = ["*TIME POINTS, NAME=ENDS, TIME=TOTAL TIME", *map(repr, time.tolist())]
+    ends, = two.history(result, "time")
+    points = ["*TIME POINTS, NAME=ENDS, TIME=TOTAL TIME", *map(repr, ends.tolist())]
     at_once = two.write_deck(
         tmp_path / "once.inp", bodies, contact, TIGHT, points,
         [re.sub(r", (LOCAL ERROR|DELTMX)=[^,]*", "", card) + ", LOCAL ERROR=1."
@@ -80,11 +79,11 @@ def test_an_increment_that_is_repeated_starts_from_the_same_state(tmp_path, case
 # Signals
 
 LONG, BEFORE, PATIENCE = 200000, 100, 60.0   # increments, those before a signal; seconds
-FIXED = {"how": ", DIRECT", "times": f"1.E-5, {1e-5 * LONG!r}"}
+FIXED = {"times": f"1.E-5, {1e-5 * LONG!r}"}
 
 
 def lines_of(sta):
-    """Return the lines of a .sta file without its heading, and without one that is being written."""
+    """Return the lines of a .sta file without its heading and one that is being written."""
     with suppress(FileNotFoundError):
         return sta.read_text().rpartition("\n")[0].splitlines()[1:]
     return []
@@ -96,7 +95,7 @@ def first_increments(tmp_path_factory):
     folder = tmp_path_factory.mktemp("first")
 
     def call(count):
-        alone = two.two_blocks(folder / f"{count}.inp", how=", DIRECT", times=f"1.E-5, {1e-5 * count!r}")
+        alone = two.two_blocks(folder / f"{count}.inp", times=f"1.E-5, {1e-5 * count!r}")
         return datasets(solve(alone), *EVERYWHERE)
 
     return call
@@ -104,7 +103,7 @@ def first_increments(tmp_path_factory):
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL"])
 def test_what_a_run_wrote_before_a_signal_is_valid(tmp_path, first_increments, name):
-    """Its increments are those of a run that ends there; a kill may leave one more than its .sta."""
+    """Its increments are those of a run that ends there; a kill may leave one more than .sta."""
     deck = two.two_blocks(tmp_path / "deck.inp", **FIXED)
     process = subprocess.Popen([PROGRAM, "run", "--quiet", str(deck), "--out", str(tmp_path)],
                                text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -160,7 +159,8 @@ def test_settings_of_a_sweep_are_those_of_decks_of_their_own(tmp_path):
                 for card in two.heated(times=f"{first}, {two.PERIOD!r}", how="")]
         return two.write_deck(tmp_path / name, two.bodies(), two.contact(), TIGHT, cards, step)
 
-    swept = deck("swept.inp", "<HOT>", "<FIRST>", ["*PARAMETER", f"HOT = {two.HOT!r}", "FIRST = 0.05"])
+    swept = deck("swept.inp", "<HOT>", "<FIRST>",
+                 ["*PARAMETER", f"HOT = {two.HOT!r}", "FIRST = 0.05"])
     found = []
     for hot, first in ((60.0, 0.05), (90.0, 0.01)):
         one = datasets(solve(swept, "--set", f"HOT={hot}", "--set", f"FIRST={first}"), *EVERYWHERE)

@@ -21,14 +21,13 @@ from thercon_post.cli import main as plot  # noqa: E402
 from thercon_post.report.cli import main as report  # noqa: E402
 
 UNITS = '*OPTIONS, UNITS="m Pa W C"'
-ABSOLUTE = "*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-20."
 
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
     """Return a result with increments by error: the first is a thousandth of the last."""
     folder = tmp_path_factory.mktemp("transient")
-    deck = two.two_blocks(folder / "deck.inp", UNITS, ABSOLUTE, how=", DILATATION=YES")
+    deck = two.two_blocks(folder / "deck.inp", UNITS, how=", DILATATION=YES")
     found = solve(deck)
     assert report([str(found), "--out", str(folder)]) == 0
     times, = two.history(found, "time")
@@ -44,9 +43,10 @@ def browser():
 
 
 LOOK = """const of = id => document.getElementById(id);
-    return {now: of('now').textContent, place: Number(of('load').value), label: document.querySelector(
-        'label[for=load]').textContent, range: of('range').textContent, marker: of('history-0')
-        .querySelector('.upright').getAttribute('d')}"""
+    return {now: of('now').textContent, place: Number(of('load').value),
+        label: document.querySelector('label[for=load]').textContent,
+        range: of('range').textContent,
+        marker: of('history-0').querySelector('.upright').getAttribute('d')}"""
 MOVE = """const slider = document.getElementById('load'); slider.value = arguments[0];
     slider.dispatchEvent(new Event('input', {bubbles: true}))"""
 
@@ -58,8 +58,9 @@ def test_the_slider_of_a_page_has_the_true_time(result, browser):
     with h5py.File(result) as file:
         warmest = file["VTKHDF/PointData/temperature"][()].reshape(len(times), -1).max(axis=1)
     browser.open(result.with_suffix(".html"))
-    browser.run("""const box = document.getElementById('quantity'); box.value = [...box.options].find(
-        each => each.textContent.startsWith('Temperature')).value;
+    browser.run("""const box = document.getElementById('quantity');
+        box.value = [...box.options].find(
+            each => each.textContent.startsWith('Temperature')).value;
         box.dispatchEvent(new Event('input', {bubbles: true}))""")
     seen = {-1: browser.run(LOOK)}
     browser.press("#load", "left")
@@ -73,7 +74,8 @@ def test_the_slider_of_a_page_has_the_true_time(result, browser):
         assert found["place"] == pytest.approx(times[row], rel=1e-12)
         number = row % len(times) + 1
         assert found["now"].startswith(f"{number} of {len(times)}: time ")
-        assert float(found["now"].split()[-1].replace("−", "-")) == pytest.approx(times[row], rel=1e-3)
+        shown = found["now"].split()[-1].replace("−", "-")
+        assert float(shown) == pytest.approx(times[row], rel=1e-3)
         assert f"largest {warmest[row]:.5g} at node" in found["range"]
     middle = times[-1] / 2
     browser.run(MOVE, str(middle))
@@ -111,7 +113,8 @@ def test_pictures_have_the_time_as_abscissa(result, tmp_path):
     zones = drawn(tmp_path, "deck.zones-pairs.csv")
     assert set(zones["load"]) == set(times)
     row = len(times) // 3
-    assert plot(["profiles", str(result), "--load", repr(float(times[row])), "--out", str(tmp_path)]) == 0
+    chosen = ["--load", repr(float(times[row]))]
+    assert plot(["profiles", str(result), *chosen, "--out", str(tmp_path)]) == 0
     (name,) = (path.name for path in tmp_path.glob("deck.profiles-*.csv"))
     with h5py.File(result) as file:
         np.testing.assert_allclose(drawn(tmp_path, name)["pressure"],
@@ -125,10 +128,11 @@ def test_results_of_other_increments_meet_in_their_histories(compare, tmp_path):
     bodies = [card.replace("2.0", "1.0") if before == "*SPECIFIC HEAT" else card
               for before, card in zip(["", *two.bodies()], two.bodies(), strict=False)]
     light = solve(two.write_deck(tmp_path / "light.inp", bodies, two.contact(), two.heated(how="")))
-    arguments = ("--only", "heat_in", "heat_stored", "normal_force", "--by", "curve", "--block", 2e-3)
+    quantities = "heat_in", "heat_stored", "normal_force"
+    arguments = ("--only", *quantities, "--by", "curve", "--block", 2e-3)
     status, said, _ = compare(fine, one, *arguments)
     assert status == 0, said
-    for quantity in ("heat_in", "heat_stored", "normal_force"):
+    for quantity in quantities:
         assert line_of(said, quantity)["by"] == "curve"
     assert compare(fine, light, *arguments)[0] == 1
     status, said, _ = compare(one, one, "--block", 0)

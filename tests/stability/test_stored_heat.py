@@ -130,8 +130,8 @@ def heated(analysis, times, top, *cards, first="*STEP, INC=100"):
 def ramped(length):
     """Return a step whose loads grow, in increments so many time constants long."""
     increment = length * CONSTANT
-    return heated("", f"{increment!r}, {COUNT * increment!r}", TOP, "*THERMAL SCHEME, TYPE=IMPLICIT",
-                  first="*STEP, INC=100, AMPLITUDE=RAMP")
+    return heated("", f"{increment!r}, {COUNT * increment!r}", TOP,
+                  "*THERMAL SCHEME, TYPE=IMPLICIT", first="*STEP, INC=100, AMPLITUDE=RAMP")
 
 
 def at_once(length, parts):
@@ -171,7 +171,7 @@ def long_increments(folder):
     table = Table("Long increments", ["case", "loads", "length", "increments", "compared",
                                       "deviation", "allowed", "verdict"],
                   text=f"""The cylinder and its coupled twin (input/cylinder) with a capacity of 3.6 J/(cm3 K) and TYPE=IMPLICIT, heated to {TOP:g} in {COUNT} loads: largest deviation from the steady run at any of them, of {", ".join(name.replace("_", " ") for name in COMPARED)}, relative to the largest value of each. Lengths are in time constants L^2/(pi^2 kappa) of the slowest mode, L the height of both bodies.
-Loads that grow over an increment leave temperatures behind by at most the inverse of its length. Loads at once, in steps of two increments, leave the square of that, 4e-6 of each of the {COUNT} parts for 1000 time constants. Friction remembers the way there: a point that has slid stays where the first increment moved it, so that shear, and pressure by it, keep what that one left over; the edge of stick is that of the last, small movement.""")
+An increment leaves 1/(1 + z) of a mode that decays by z, so that temperatures lag behind growing loads by at most the inverse of the length. Loads at once in steps of two increments leave the square of 1/500 of each of the {COUNT} parts where steps are 1000 time constants long. Friction depends on the path: points that have slid keep what the first of the two increments left over, in the shear and by it in the pressure, until they slide on, and the second one, which hardly moves them, makes some of them stick.""")
     for name in BODIES:
         steady = cylinder_course(folder, name, heated(", STEADY STATE", f"{TOP / COUNT!r}, {TOP!r}",
                                                       TOP), {})
@@ -199,25 +199,36 @@ FIT = 4                     # h^2/(kappa dt) that elements of all kinds pass
 MOST = 0.01
 
 
-def beyond(folder, kind, ratio, fixed=True):
+def shocked(times, *cards):
+    """Return a step that holds two sides at 1."""
+    return ["*STEP, INC=1000", *cards, times, "*BOUNDARY", "BODY.LEFT, 11, 11, 1.",
+            "BODY.BOTTOM, 11, 11, 1.", "*NODE FILE", "NT", "*END STEP"]
+
+
+# How increments are made.
+MADE = {"fixed": shocked(f"{FOURIER / SHORT!r}, {FOURIER!r}", "*HEAT TRANSFER, DIRECT"),
+        "first IMPLICIT": [*shocked(f"{FOURIER / SHORT!r}, {FOURIER / SHORT!r}",
+                                    "*THERMAL SCHEME, TYPE=IMPLICIT", "*HEAT TRANSFER, DIRECT"),
+                           *shocked(f"{FOURIER / SHORT!r}, {FOURIER - FOURIER / SHORT!r}",
+                                    "*THERMAL SCHEME, TYPE=L-STABLE", "*HEAT TRANSFER, DIRECT")],
+        "chosen": shocked(f"{FOURIER!r}, {FOURIER!r}", "*HEAT TRANSFER")}
+
+
+def beyond(folder, kind, ratio, made):
     """Return h^2/(kappa dt) of the first increment, and how far temperatures go below 0 and above 1
     in any increment, and at the end.
 
-    Two sides of a square are at 1 from the start on; the smallest elements have h^2 = ratio kappa dt
-    for dt of fixed increments, and as large ones where increments are chosen by their error.
+    The smallest elements have h^2 = ratio kappa dt, dt being that of fixed increments also where
+    they are chosen by their error.
     """
     spacings = math.sqrt(ratio * FOURIER / SHORT) * 1.3 ** np.arange(60)
     places = np.concatenate([[0.0], np.cumsum(spacings)])
     places = places[: np.searchsorted(places, 1.0) + 1] / places[np.searchsorted(places, 1.0)]
     xs = 1.0 + places if kind.startswith("CAX") else places
-    times = f"{FOURIER / SHORT if fixed else FOURIER!r}, {FOURIER!r}"
     deck = write(folder / "shock.inp", ["*OPTIONS, ERRORS=NO"], mesh("BODY", list(xs), list(places),
                                                                     kind),
                  material("BODY", None, None, 1.0, 1.0, 1.0),
-                 ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", "*STEP, INC=1000",
-                  "*HEAT TRANSFER" + ", DIRECT" * fixed, times,
-                  "*BOUNDARY", "BODY.LEFT, 11, 11, 1.", "BODY.BOTTOM, 11, 11, 1.",
-                  "*NODE FILE", "NT", "*END STEP"])
+                 ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0."], MADE[made])
     with h5py.File(solve(deck)) as file:
         ends = file["history/time"][()]
         found = file["VTKHDF/PointData/temperature"][()].reshape(len(ends), -1)
@@ -228,19 +239,22 @@ def beyond(folder, kind, ratio, fixed=True):
 def short_increments(folder):
     """Return the table of what a sudden change of a face leaves beyond its ends."""
     table = Table("A face that changes at once", [
-        "element", "increments", "h^2/(kappa dt)", "below", "above", "below at the end",
-        "above at the end", "verdict"], text=f"""Two sides of a square, at 0, are at 1 from the start on. L-STABLE until a Fourier number of {FOURIER:g} of its size, in {SHORT} increments or in those that LOCAL ERROR=1E-3, the default, makes, of which the first is given; elements grow by 1.3 from one to the next, the smallest ones as given. How far temperatures lie below 0 or above 1 in any increment, and at the end.
-Three- and four-node elements, whose capacities are lumped, stay above 0 always. Those with nodes between corners fall below it beside the face while heat has not crossed an element. L-STABLE replaces exp(-z) by (1 - 0.41 z)/(1 + 0.29 z)^2, which is negative for long increments, down to -0.2, and so goes above 1 in the first ones; TYPE=IMPLICIT does not. Increments that are chosen begin no shorter than h^2/(4 kappa), and err too much if they are long.
-Required are {100 * MOST:g} % in any increment where increments are chosen or h^2 = {FIT} kappa dt, and at the end always.""")
-    cases = [(ratio, True) for ratio in (1 / 4, 1, FIT, 16)] + [(3 / 8, False), (12, False)]
+        "element", "smallest", "increments", "h^2/(kappa dt)", "below", "above",
+        "below at the end", "above at the end", "verdict"], text=f"""Two sides of a square, at 0, are at 1 from the start on. The scheme is L-STABLE and the course ends at a Fourier number of {FOURIER:g} of the size of the square, after {SHORT} fixed increments or after those that LOCAL ERROR=1E-3, the default, chooses. Elements grow by 1.3 from one to the next; the table has the smallest ones, in parts of the square, and h^2/(kappa dt) for them and the first increment. How far temperatures lie below 0 or above 1 in any increment, and at the end.
+Three- and four-node elements, whose capacities are lumped, stay above 0 always. Those with nodes between corners fall below it beside the face while heat has not crossed an element. L-STABLE replaces exp(-z) by (1 - 0.41 z)/(1 + 0.29 z)^2, which is negative for long increments, down to -0.2, and so goes above 1 in the first ones; one increment of TYPE=IMPLICIT, in a step of its own before the others, prevents that. Increments that are chosen begin no shorter than h^2/(4 kappa) beside elements with nodes between corners, and long ones err too much to be kept.
+Required are {100 * MOST:g} % in any increment where h^2 = {FIT} kappa dt, the first one is IMPLICIT or increments are chosen, and at the end always.""")
+    cases = [*((ratio, "fixed") for ratio in (1 / 4, 1, FIT, 16)), (1 / 4, "first IMPLICIT"),
+             (1, "first IMPLICIT"), (3 / 8, "chosen"), (12, "chosen")]
     for kind in KINDS:
-        for ratio, fixed in cases:
-            first, parts = beyond(folder, kind, ratio, fixed)
-            judged = parts if ratio == FIT or not fixed else parts[2:]
+        for ratio, made in cases:
+            first, parts = beyond(folder, kind, ratio, made)
+            judged = parts if ratio == FIT or made != "fixed" else parts[2:]
             if kind[-1] in "34":
                 judged = [*judged, 0.0 if parts[0] < ROUNDING else 1.0]
-            table.rows.append([kind, "fixed" if fixed else "chosen", f"{first:.3g}",
-                               *(shown_part(part) for part in parts), verdict(max(judged) < MOST)])
+            smallest = math.sqrt(ratio * FOURIER / SHORT)
+            table.rows.append([kind, f"{smallest:.2g}", made, f"{first:.3g}",
+                               *(shown_part(part) for part in parts),
+                               verdict(max(judged) < MOST)])
     return table
 
 

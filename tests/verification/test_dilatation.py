@@ -1,4 +1,4 @@
-"""Strains that take up heat: bodies loaded at once, a column that comes to rest, a strip's damping."""
+"""Strains that take up heat: bodies loaded at once, columns that settle, the damping of a strip."""
 
 from dataclasses import replace
 from math import pi, sin, sqrt
@@ -14,10 +14,11 @@ from thermoelastic import Solid, time_constant
 
 TITLE = "Heat of strains"
 TEXT = """Steps with DILATATION=YES, with increments of one length and the default scheme, L-STABLE.
-Temperatures are rises from T0, which is that of the start. Steel has E = 2.1e5 N/mm2, nu = 0.3,
-alpha = 1.2e-5/K, rho c_p = 3.588 mJ/(mm3 K), k = 50 mW/(mm K) and T0 = 293 K. How much heat and strains do to each other is
-delta = beta^2 T0/(M C_e), 0.0117 in a column of steel; materials with 0.5 and 2, which no one has,
-have E = 1, nu = 0.3, k = 1, alpha = 1, T0 = 1 and the heat capacity that makes it."""
+Temperatures are rises from T0, the temperature of the start. Steel has E = 2.1e5 N/mm2, nu = 0.3,
+alpha = 1.2e-5/K, rho c_p = 3.588 mJ/(mm3 K), k = 50 mW/(mm K) and T0 = 293 K. The coupling of heat
+and strains in a column that cannot widen is delta = beta^2 T0/(M C_e), 0.0117 in steel. No material
+has 0.5 or 2; those that stand for it here have E = 1, nu = 0.3, k = 1, alpha = 1, T0 = 1, and the
+heat capacity follows from delta."""
 PICTURE = "dilatation"
 CAPTION = "Errors of columns and of a strip in bending, and the damping of the strip"
 ANALYSIS = "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, DILATATION=YES"
@@ -33,8 +34,8 @@ def made_up(coupling):
 
 
 # Material, pressure, height.
-COLUMNS = {"steel": (STEEL, PRESSURE, 1000.0), "0.5": (made_up(0.5), 0.1, 1.0),
-           "2": (made_up(2.0), 0.1, 1.0)}
+COLUMNS = {"steel": (STEEL, PRESSURE, 1000.0), "delta 0.5": (made_up(0.5), 0.1, 1.0),
+           "delta 2": (made_up(2.0), 0.1, 1.0)}
 
 
 def body(name, xs, ys, kind, solid, first=1, **more):
@@ -187,15 +188,15 @@ def cases():
              """A column that cannot widen, insulated, under a pressure at once: 100 MPa on 1000 mm
              of steel, 0.1 on the others, which are 1 high. T is the same everywhere.""",
              f"""{forms}: T0 beta p/(M C_e (1 + delta)), 0.183281 K for steel, and
-             1/(1 + delta) of the displacement without heat.""", at_once, list(COLUMNS), pressed_column,
-             named="delta", short=3),
+             1/(1 + delta) of the displacement without heat.""", at_once, list(COLUMNS),
+             pressed_column, named="material", short=3),
         Case("A block that cannot expand",
              """Plane strain, all displacements held, insulated, heated by a source: 0.1 mW/mm3 in
              steel, 1e-4 in the others, for a time of 1.""",
              "The source over C_e = rho c_p - 3 T0 alpha beta.", at_once, list(COLUMNS), held_block,
-             named="delta", short=3)]
+             named="material", short=3)]
     found += [
-        Case(f"A column that settles, delta = {name}",
+        Case(f"A column that settles, {name}",
              """The same column, at T0 at its loaded face: it gives off the heat of its compression
              and settles. 10 elements, increments of 0.02 of C_e (1 + delta) H^2/k, and finer. The
              times are parts of that.""",
@@ -207,11 +208,12 @@ def cases():
              FINENESS, settling_column(name), label) for name in COLUMNS]
     found.append(Case(
         "A strip in bending",
-        f"""Plane stress, E = alpha = rho c_p = 1, T0 = {RELAXATION}, about what makes steel of it,
-        thickness 1; its bending moment follows a sine of period 1, its faces are insulated. Strips
-        of five conductivities have w tau from 0.1 to 10, tau = rho c_p b^2/(pi^2 k). The corner of
-        the end moves by 1 at the largest moment, and by the loss 1/Q where there is none, after
-        {CYCLES} cycles. 4 elements and {OFTEN} increments in a cycle, and finer.""",
+        f"""Plane stress, thickness 1, E = alpha = rho c_p = 1 and T0 = {RELAXATION}, so that
+        E alpha^2 T0/(rho c_p) is about that of steel. The bending moment follows a sine of period
+        1, the faces are insulated. Five strips differ in conductivity, for w tau from 0.1 to 10,
+        tau = rho c_p b^2/(pi^2 k). The corner of the end moves by 1 at the largest moment, and by
+        the loss 1/Q where there is none, after {CYCLES} cycles. 4 elements across and {OFTEN}
+        increments in a cycle, and finer.""",
         """The strip has a complex modulus in closed form (tests/reference/thermoelastic.py), whose
         parts have the ratio 1/Q. Zener's formula E alpha^2 T0/(rho c_p) w tau/(1 + (w tau)^2) is
         its first mode with all of the weight, which is 96/pi^4, 98.6 %: it is 1.3 % larger
@@ -233,8 +235,8 @@ def of_loss(solved):
 def draw(runs, path):
     """Draw the errors of two columns and of the strips, and their damping."""
     figure, panels = subplots(2, 2, height=5.6)
-    for axes, name in zip(panels[0], ("steel", "2"), strict=True):
-        title = f"A column that settles, delta = {name}"
+    for axes, name in zip(panels[0], ("steel", "delta 2"), strict=True):
+        title = f"A column that settles, {name}"
         errors_panel(axes, runs[title], title, "fineness of mesh and increments")
     solved = [of_loss(run) for run in runs["A strip in bending"]]
     left, right = panels[1]

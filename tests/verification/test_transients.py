@@ -215,7 +215,7 @@ class ChosenIncrements(Case):
             before[title] = error
             listing = solved.result.with_suffix(".lst").read_text()
             factored, increments = re.search(
-                r"The matrix of heat was factored (\d+) times in (\d+) increments", listing).groups()
+                r"matrix of heat was factored (\d+) times in (\d+) increments", listing).groups()
             table.rows.append([title, f"{part:.0e}", increments, str(listing.count("  attempt ")),
                                factored, f"{error:.2g}", "" if order is None else f"{order:.1f}",
                                f"{0.2 * part:.2g}",
@@ -274,9 +274,9 @@ def cases():
         """The finest meshes of cases above, without DIRECT. `repeated` counts increments that erred
         too much, `factorisations` those of the matrix of heat, one for each size of an increment at
         least, and `order` is log10 of the ratio to the error of the row before.""",
-        source, """The error of an increment is measured beside a scheme of first order. In a mode that
-        decays by z in an increment it is 0.207 z^2; the increment errs by 0.0404 z^3, and those of
-        1/z increments add up: 0.2 of LOCAL ERROR.""",
+        source, """The error of an increment is measured beside a scheme of first order. In a mode
+        that decays by z in an increment it is 0.207 z^2; the increment errs by 0.0404 z^3, and
+        those of 1/z increments add up: 0.2 of LOCAL ERROR.""",
         [(title, error) for title in CHOSEN for error in LOCAL_ERRORS], of_local_error,
         lambda row: f"{row[0]}_{row[1]:g}", short=3))
     return found
