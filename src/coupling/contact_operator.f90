@@ -36,7 +36,7 @@ module contact_operator
 
    ! Newton's method for the heat of friction.
    integer, parameter :: most_steps = 100            !! contact states
-   real(dp), parameter :: rounding = 1.0e-12_dp      !! part of the largest heat that is none
+   real(dp), parameter :: rounding = 1.0e-13_dp      !! part of the largest heat that is none
    real(dp), parameter :: converged = 1.0e-10_dp     !! the same, where it falls no more
    real(dp), parameter :: shortest = 0.02_dp         !! part of a step below which none is tried
 
