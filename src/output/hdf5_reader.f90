@@ -101,6 +101,7 @@ contains
       character(*), intent(in) :: path
       real(dp), allocatable, target, intent(out) :: values(:)
       integer, intent(in), optional :: first, count     !! the first row, from 1; their number
+      type(c_ptr) :: buffer
       integer(hid_t) :: dataset, memory, space
       integer(hsize_t) :: extents(2), largest(2), offset(1)
       integer :: rank, status(6)
@@ -124,8 +125,9 @@ contains
       deallocate (values)
       allocate (values(product(extents(:max(rank, 1)))))
       call h5screate_simple_f(1, [size(values, kind=hsize_t)], memory, status(3))
+      buffer = c_loc(values)
       if (size(values) > 0 .and. all(status >= 0)) call h5dread_f(dataset, h5t_native_double, &
-         c_loc(values), status(4), memory, space)
+         buffer, status(4), memory, space)
       call h5sclose_f(memory, status(5))
       call h5sclose_f(space, status(5))
       call h5dclose_f(dataset, status(5))
@@ -138,6 +140,7 @@ contains
       character(*), intent(in) :: path
       type(string_type), allocatable, intent(out) :: list(:)
       type(c_ptr), allocatable, target :: starts(:)
+      type(c_ptr) :: buffer
       integer(hid_t) :: dataset, space, type
       integer(hsize_t) :: extents(1), largest(1)
       integer :: i, rank, status(5)
@@ -153,7 +156,8 @@ contains
       deallocate (list)
       allocate (list(extents(1)), starts(extents(1)))
       call make_text_type(type, status(2))
-      if (size(list) > 0) call h5dread_f(dataset, type, c_loc(starts), status(3))
+      buffer = c_loc(starts)
+      if (size(list) > 0) call h5dread_f(dataset, type, buffer, status(3))
       do i = 1, size(list)
          if (status(3) >= 0) list(i)%value = taken(starts(i))
       end do
@@ -197,6 +201,7 @@ contains
       character(*), intent(in) :: path, name
       integer(hid_t), intent(in) :: type
       type(c_ptr), intent(in) :: address
+      type(c_ptr) :: buffer
       integer(hid_t) :: attribute, object
       integer :: status(4)
       logical :: exists
@@ -207,7 +212,8 @@ contains
       call h5aexists_f(object, name, exists, status(2))
       if (exists) then
          call h5aopen_f(object, name, attribute, status(3))
-         call h5aread_f(attribute, type, address, status(4))
+         buffer = address
+         call h5aread_f(attribute, type, buffer, status(4))
          call h5aclose_f(attribute, status(3))
       end if
       call h5oclose_f(object, status(1))

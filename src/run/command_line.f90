@@ -32,7 +32,7 @@ module command_line
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(33) = [character(88) :: &
+   character(*), parameter :: usage(32) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
       '                           [--quiet] [--accuracy P%] [--restart RESULT[@TIME]] [--resume]', &
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]', &

@@ -249,7 +249,7 @@ contains
       type(string_type), intent(in) :: images(:)          !! of the deck alone
       type(earlier_deck_type), intent(out) :: earlier
       logical, intent(out) :: is_own
-      integer :: first, head, tail
+      integer :: before, first, head, tail
 
       head = 0
       do while (head < size(images))
@@ -261,13 +261,14 @@ contains
       first = size(self%images) - tail
       if (first < head) return
       if (.not. same(self%images(first + 1:), images(head + 1:))) return
-      do earlier%steps = 0, first - head
-         is_own = same(self%images(earlier%steps + 1:earlier%steps + head), images(:head))
+      do before = 0, first - head
+         is_own = same(self%images(before + 1:before + head), images(:head))
          if (is_own) exit
       end do
       if (.not. is_own) return
       earlier%path = self%path
-      earlier%images = [self%images(:earlier%steps), self%images(earlier%steps + head + 1:first)]
+      earlier%steps = before
+      earlier%images = [self%images(:before), self%images(before + head + 1:first)]
    end subroutine own_earlier_deck
 
    pure logical function same(some, others)
