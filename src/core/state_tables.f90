@@ -51,7 +51,8 @@ contains
       self%prefix = ''
    end subroutine begin_restoring
 
-   !> Adds an array to the table, or takes it from there where the table has it.
+   !> Adds an array to the table, or takes it from there: as the state had it, allocated or not. One
+   !> that the table does not name stays.
    subroutine reals(table, name, values)
       type(state_table_type), intent(inout) :: table
       character(*), intent(in) :: name
@@ -64,7 +65,10 @@ contains
       end if
       i = findloc(table%names, trim(table%prefix)//name, dim=1)
       if (i == 0) return
-      if (table%sizes(i) == absent) return
+      if (table%sizes(i) == absent) then
+         if (allocated(values)) deallocate (values)
+         return
+      end if
       first = sum(max(table%sizes(:i - 1), 0))
       values = table%values(first + 1:first + table%sizes(i))
    end subroutine reals
@@ -100,7 +104,9 @@ contains
 
       if (allocated(values)) as_reals = real(values, dp)
       call reals(table, name, as_reals)
-      if (allocated(as_reals) .and. table%restores) values = nint(as_reals)
+      if (.not. table%restores) return
+      if (allocated(values)) deallocate (values)
+      if (allocated(as_reals)) values = nint(as_reals)
    end subroutine integers
 
    !> The same of logical values.
@@ -112,7 +118,9 @@ contains
 
       if (allocated(values)) as_integers = merge(1, 0, values)
       call integers(table, name, as_integers)
-      if (allocated(as_integers) .and. table%restores) values = as_integers == 1
+      if (.not. table%restores) return
+      if (allocated(values)) deallocate (values)
+      if (allocated(as_integers)) values = as_integers == 1
    end subroutine logicals
 
    !> The same of text.
@@ -125,7 +133,9 @@ contains
 
       if (allocated(text)) codes = [(iachar(text(i:i)), i=1, len(text))]
       call integers(table, name, codes)
-      if (.not. (allocated(codes) .and. table%restores)) return
+      if (.not. table%restores) return
+      if (allocated(text)) deallocate (text)
+      if (.not. allocated(codes)) return
       text = repeat(' ', size(codes))
       do i = 1, size(codes)
          text(i:i) = achar(codes(i))

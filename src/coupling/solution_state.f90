@@ -80,6 +80,7 @@ contains
       call reals(self, 'smallest_gap', state%smallest_gap)
       if (allocated(state%reaction)) reaction = [state%reaction]
       call reals(self, 'reaction', reaction)
+      if (allocated(state%reaction)) deallocate (state%reaction)
       if (allocated(reaction)) state%reaction = reshape(reaction, [2, size(reaction)/2])
       scalars = [state%increment_size, state%dilatation]
       call reals(self, 'scalars', scalars)

@@ -241,8 +241,8 @@ contains
          command%restart = value(:at - 1)
          command%restart_time = time
       end if
-      if (index(command%restart, ending, back=.true.) /= len(command%restart) - len(ending) + 1) &
-         command%restart = command%restart//ending
+      at = max(0, len(command%restart) - len(ending))
+      if (command%restart(at + 1:) /= ending) command%restart = command%restart//ending
    end subroutine take_restart
 
    !> The options that change what a deck asks for; empty for none.

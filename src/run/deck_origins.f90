@@ -15,7 +15,7 @@ module deck_origins
    use version, only: program_version
    implicit none
    private
-   public :: find_origin
+   public :: find_origin, reads_restart
 
    !> Cards that a deck with *RESTART, READ may have before its first step.
    character(*), parameter :: before_steps(*) = [character(12) :: 'RESTART', 'AMPLITUDE', 'NSET', &
@@ -58,7 +58,12 @@ contains
       if (.not. allocated(error)) call result%check(program_version, settings_in_words(command), &
          error)
       if (.not. allocated(error)) call choose(command, cards, reads, result, earlier, restart, &
-         finished, error)
+         error)
+      if (allocated(error)) then
+         if (error%card > 0) place = place_type(error%card)
+      else if (restart == 0) then
+         finished = result
+      end if
       if (.not. (allocated(error) .or. allocated(finished))) then
          allocate (origin)
          call result%load(restart, origin, error)
@@ -107,21 +112,22 @@ contains
       end do
    end subroutine check_read_cards
 
-   !> The restart to go on from, or that there is nothing to be done.
-   !> Error: status_deck, why there is none.
-   subroutine choose(command, cards, reads, result, earlier, restart, finished, error)
+   !> The restart to go on from; 0 where nothing is to be done.
+   !> Error: status_deck, why there is none, with the card where the decks differ.
+   subroutine choose(command, cards, reads, result, earlier, restart, error)
       type(command_type), intent(in) :: command
       type(cards_type), intent(in) :: cards
       logical, intent(in) :: reads                        ! whether the deck has *RESTART, READ
       type(earlier_result_type), intent(in) :: result
       type(earlier_deck_type), intent(out) :: earlier     ! the deck before that deck
       integer, intent(out) :: restart
-      type(earlier_result_type), allocatable, intent(out) :: finished
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: words
+      integer :: card
       logical :: is_own
 
       restart = 0
+      card = 0
       if (reads) then
          call result%own_earlier_deck(cards%images, earlier, is_own)
          words = ''
@@ -129,12 +135,13 @@ contains
             '" is of another deck; name the result to go on from by --restart'
       else
          is_own = .true.
-         words = result%difference(cards%images)
+         call result%find_difference(cards%images, words, card)
       end if
       if (words /= '') then
          call set_error(error, status_deck, words)
+         error%card = card
       else if (command%resumes .and. result%is_finished) then
-         finished = result
+         return
       else if (is_own) then
          call result%find_time(command%restart_time, restart, error)
       else

@@ -8,7 +8,7 @@ module deck_preparation
    use connections, only: connections_type, contact_laws_type, laws_of_step
    use contact_quantities, only: estimated
    use deck_builder, only: build_model
-   use deck_origins, only: find_origin
+   use deck_origins, only: find_origin, reads_restart
    use deck_builder_interactions, only: frictionless
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
@@ -118,6 +118,8 @@ contains
       call read_deck(path, command%width, command%settings, deck%cards, deck%report)
       call find_origin(path, command, deck%cards, deck%report, deck%origin, deck%finished)
       if (is_skipped(command, deck)) return
+      ! Without the result that it goes on from there is no model.
+      if (reads_restart(deck%cards)) return
       call build_model(deck%cards, verifiable, estimated, deck%model, deck%report)
       if (command%accuracy <= 0.0_dp .or. deck%report%has_errors()) return
       deck%model%steps%restart_frequency = 0

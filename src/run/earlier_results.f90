@@ -42,7 +42,7 @@ module earlier_results
    contains
       procedure :: read => read_result
       procedure :: check
-      procedure :: difference
+      procedure :: find_difference
       procedure :: find_time
       procedure :: find_step
       procedure :: deck_until
@@ -120,16 +120,17 @@ contains
       if (settings == '') words = 'no --set and no --accuracy'
    end function or_none
 
-   !> The first card in which its deck differs from another one, comments aside; empty where there
-   !> is none.
-   pure function difference(self, images) result(words)
+   !> The first card in which its deck differs from another one, comments aside.
+   pure subroutine find_difference(self, images, words, image)
       class(earlier_result_type), intent(in) :: self
       type(string_type), intent(in) :: images(:)          !! of the other deck
-      character(:), allocatable :: words
+      character(:), allocatable, intent(out) :: words     !! empty where there is none
+      integer, intent(out) :: image                       !! of the other deck
       integer :: i, k
       character(:), allocatable :: was, is
 
       words = ''
+      image = 0
       i = 0
       k = 0
       do
@@ -140,8 +141,8 @@ contains
       end do
       words = '"'//self%path//'" is of another deck, which has '//quoted(was)//' in place of '// &
          quoted(is)
-      if (k <= size(images)) words = words//', card image '//to_text(k)
-   end function difference
+      image = min(k, size(images))
+   end subroutine find_difference
 
    pure function quoted(card) result(words)
       character(*), intent(in) :: card
