@@ -23,6 +23,7 @@ module state_tables
       procedure :: begin
       procedure :: finish
       procedure :: begin_restoring
+      procedure :: is_restoring
    end type state_table_type
 
 contains
@@ -50,6 +51,13 @@ contains
       self%restores = .true.
       self%prefix = ''
    end subroutine begin_restoring
+
+   !> Whether arrays are taken from the table.
+   pure logical function is_restoring(self)
+      class(state_table_type), intent(in) :: self
+
+      is_restoring = self%restores
+   end function is_restoring
 
    !> Adds an array to the table, or takes it from there: as the state had it, allocated or not. One
    !> that the table does not name stays.
@@ -131,7 +139,12 @@ contains
       integer, allocatable :: codes(:)
       integer :: i
 
-      if (allocated(text)) codes = [(iachar(text(i:i)), i=1, len(text))]
+      if (allocated(text)) then
+         allocate (codes(len(text)))
+         do i = 1, len(text)
+            codes(i) = iachar(text(i:i))
+         end do
+      end if
       call integers(table, name, codes)
       if (.not. table%restores) return
       if (allocated(text)) deallocate (text)

@@ -1,7 +1,7 @@
 !> Group `/restart` of the result file: the state of the run at the increments at which *RESTART
 !> asks for it, one behind the other.
 module restart_results
-   use hdf5_writer, only: as_integer, as_real, hdf5_writer_type
+   use hdf5_writer, only: as_real, hdf5_writer_type
    use kinds, only: dp
    use model, only: unit_labels_type
    use records, only: increment_record_type
@@ -11,24 +11,21 @@ module restart_results
    use unit_labels, only: unit_in_words
    implicit none
    private
-   public :: restart_results_type, restart_group, names_set, place_sets, size_set, value_set
+   public :: restart_results_type, restart_group, names_set, place_set, value_set
+   public :: at_increment, at_step, at_increment_in_step, at_time, at_count, place_columns
 
    character(*), parameter :: restart_group = '/restart'
-   !> Datasets with a number for each restart: where it is, in the order of their rows.
-   character(*), parameter :: place_sets(4) = [character(26) :: restart_group//'/increment', &
-      restart_group//'/step', restart_group//'/increment_in_step', restart_group//'/time']
-   character(*), parameter :: place_descriptions(4) = [character(34) :: &
-      'running number of the increment', 'step', 'number of the increment in its step', &
-      'total time']
    character(*), parameter :: names_set = restart_group//'/names'
-   character(*), parameter :: size_set = restart_group//'/sizes'
+   character(*), parameter :: place_set = restart_group//'/places'
    character(*), parameter :: value_set = restart_group//'/values'
+   !> Columns of the places.
+   integer, parameter :: at_increment = 1, at_step = 2, at_increment_in_step = 3, at_time = 4, &
+      at_count = 5, place_columns = 5
    integer, parameter :: most_in_chunk = 131072   !! values
 
    !> The restarts that a run writes.
    type :: restart_results_type
-      !> One for each of place_sets, then sizes and values
-      type(growing_dataset_type), allocatable :: sets(:)
+      type(growing_dataset_type), allocatable :: sets(:)    !! places, values
       type(string_type), allocatable, private :: names(:)   !! of the arrays
       integer, private :: step = 0                          !! of the last one
       integer, private :: values_before = 0                 !! values of those before it
@@ -47,26 +44,21 @@ contains
       type(state_table_type), intent(in) :: table         !! state of the run, whole
       logical, intent(in) :: overlays                     !! whether only one of each step is kept
       type(unit_labels_type), intent(in) :: labels        !! units of the deck
-      integer :: i
-      real(dp) :: places(size(place_sets))
+      integer :: count
 
       if (.not. allocated(self%sets)) call start(self, table, labels)
-      associate (sets => self%sets, n => size(place_sets))
+      associate (places => self%sets(1), values => self%sets(2))
          if (overlays .and. self%step == record%step) then
-            do i = 1, n + 1
-               call sets(i)%cut(sets(i)%rows() - 1)
-            end do
-            call sets(n + 2)%cut(self%values_before)
+            call places%cut(places%rows() - 1)
+            call values%cut(self%values_before)
          end if
          self%step = record%step
-         self%values_before = sets(n + 2)%rows()
-         places = [real(record%increment, dp), real(record%step, dp), &
-            real(record%increment_in_step, dp), record%time]
-         do i = 1, n
-            call sets(i)%append(places(i:i))
-         end do
-         call sets(n + 1)%append(real(table%sizes, dp))
-         call sets(n + 2)%append(table%values)
+         self%values_before = values%rows()
+         count = size(table%sizes) + size(table%values)
+         call places%append([real(record%increment, dp), real(record%step, dp), &
+            real(record%increment_in_step, dp), record%time, real(count, dp)])
+         call values%append(real(table%sizes, dp))
+         call values%append(table%values)
       end associate
    end subroutine append
 
@@ -75,20 +67,15 @@ contains
       type(restart_results_type), intent(inout) :: self
       type(state_table_type), intent(in) :: table
       type(unit_labels_type), intent(in) :: labels
-      integer :: i, n
+      integer :: i
 
-      n = size(place_sets)
-      allocate (self%sets(n + 2), self%names(size(table%names)))
-      do i = 1, n
-         self%sets(i) = growing_dataset(trim(place_sets(i)), merge(as_real, as_integer, i == n), 0, &
-            1, 1000, place_descriptions(i))
-      end do
-      self%sets(n) = growing_dataset(trim(place_sets(n)), as_real, 0, 1, 1000, &
-         place_descriptions(n), unit_in_words('time', labels))
-      self%sets(n + 1) = growing_dataset(size_set, as_integer, size(table%names), 1, 10, &
-         'values of each array of the state; -1: it is not there')
-      self%sets(n + 2) = growing_dataset(value_set, as_real, 0, min(most_in_chunk, &
-         max(1, size(table%values))), 10, 'all arrays of all restarts, one behind the other')
+      allocate (self%names(size(table%names)), self%sets(2))
+      self%sets(1) = growing_dataset(place_set, as_real, place_columns, 1, 1000, &
+         'where each state is, and how many values it has', unit_in_words('time', labels))
+      self%sets(1)%components = 'increment step increment_in_step time values'
+      self%sets(2) = growing_dataset(value_set, as_real, 0, min(most_in_chunk, &
+         size(table%sizes) + size(table%values)), 10, &
+         'the states one behind the other: sizes of all arrays (-1: not there), then their values')
       do i = 1, size(self%names)
          self%names(i)%value = trim(table%names(i))
       end do
@@ -105,7 +92,7 @@ contains
 
       call start(self, table, labels)
       do i = 1, size(self%sets)
-         call self%sets(i)%go_on(file, counts(merge(2, 1, i == size(self%sets))))
+         call self%sets(i)%go_on(file, counts(i))
       end do
    end subroutine go_on
 

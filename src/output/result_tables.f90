@@ -29,7 +29,8 @@ module result_tables
    type :: growing_dataset_type
       private
       character(:), allocatable :: path                            !! path in the file
-      character(:), allocatable :: description, unit, components   !! attributes of the dataset
+      character(:), allocatable :: description, unit   !! attributes of the dataset
+      character(:), allocatable, public :: components  !! likewise
       integer :: storage = 0                    !! as_real, as_integer or as_long
       integer :: width = 0                      !! values in a row; 0: rows are single numbers
       integer :: at_once = 0                    !! values of one append

@@ -100,7 +100,7 @@ contains
       call reals(table, 'check_values', values)
       call logicals(table, 'check_marks', flags)
       call words(table, 'check_reasons', reasons)
-      if (size(flags) /= 3*n) return
+      if (size(flags) /= 3*n .or. .not. table%is_restoring()) return
       self%outcomes%time = values(:n)
       self%outcomes%found = values(n + 1:2*n)
       self%outcomes%deviation = values(2*n + 1:3*n)

@@ -8,15 +8,14 @@ module earlier_results
    use hdf5_reader, only: hdf5_reader_type
    use hdf5_writer, only: start_hdf5
    use kinds, only: dp
-   use restart_results, only: names_set, place_sets, restart_group, size_set, value_set
+   use restart_results, only: at_count, at_increment, at_increment_in_step, at_step, at_time, &
+      names_set, place_columns, place_set, restart_group, value_set
    use state_tables, only: state_table_type
    use text, only: string_type, to_text
    implicit none
    private
    public :: earlier_result_type, origin_type
 
-   ! Rows of the places of restarts.
-   integer, parameter :: at_increment = 1, at_step = 2, at_increment_in_step = 3, at_time = 4
    real(dp), parameter :: same_time = 1.0e-6_dp   !! relative; times are printed with six digits
 
    !> Where a run goes on from.
@@ -38,7 +37,7 @@ module earlier_results
       type(string_type), allocatable :: images(:)   !! its deck
       logical :: is_finished = .false.        !! whether its run came to its end
       integer :: failed_checks = 0            !! *VERIFY checks
-      real(dp), allocatable, private :: places(:, :)   !! (4, restarts) as place_sets
+      real(dp), allocatable, private :: places(:, :)   !! (columns, restarts) as place_set
    contains
       procedure :: read => read_result
       procedure :: check
@@ -68,7 +67,6 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(hdf5_reader_type) :: file
       real(dp), allocatable :: values(:)
-      integer :: i
       logical :: is_there
 
       inquire (file=path, exist=is_there)
@@ -82,17 +80,9 @@ contains
       self%is_finished = file%number('/run', 'finished') > 0.0_dp
       self%failed_checks = nint(file%number('/run', 'verify_failed'))
       call file%strings('/deck', self%images)
-      allocate (self%places(size(place_sets), 0))
-      if (file%has(restart_group)) then
-         do i = 1, size(place_sets)
-            call file%reals(trim(place_sets(i)), values)
-            if (i == 1) then
-               deallocate (self%places)
-               allocate (self%places(size(place_sets), size(values)), source=0.0_dp)
-            end if
-            if (size(values) == size(self%places, 2)) self%places(i, :) = values
-         end do
-      end if
+      allocate (values(0))
+      if (file%has(restart_group)) call file%reals(place_set, values)
+      self%places = reshape(values, [place_columns, size(values)/place_columns])
       call file%close(error)
    end subroutine read_result
 
@@ -291,31 +281,32 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(hdf5_reader_type) :: file
       type(string_type), allocatable :: names(:)
-      real(dp), allocatable :: sizes(:)
+      real(dp), allocatable :: values(:)
       integer :: before, i, n
 
       origin%path = self%path
       origin%increment = nint(self%places(at_increment, restart))
       origin%time = self%places(at_time, restart)
+      associate (count => nint(self%places(at_count, :)))
+         before = sum(count(:restart - 1))
+         origin%counts = [restart, before + count(restart)]
+      end associate
       call file%open(self%path)
       call file%strings(names_set, names)
-      call file%reals(size_set, sizes)
-      n = size(names)
-      if (size(sizes) >= n*restart) then
-         before = nint(sum(max(sizes(:n*(restart - 1)), 0.0_dp)))
-         associate (table => origin%table)
-            call table%begin()
-            table%sizes = nint(sizes(n*(restart - 1) + 1:n*restart))
-            deallocate (table%names)
-            allocate (table%names(n))
-            do i = 1, n
-               table%names(i) = names(i)%value
-            end do
-            origin%counts = [restart, before + sum(max(table%sizes, 0))]
-            call file%reals(value_set, table%values, before + 1, origin%counts(2) - before)
-         end associate
-      end if
+      call file%reals(value_set, values, before + 1, origin%counts(2) - before)
       call file%close(error)
+      if (allocated(error)) return
+      n = size(names)
+      associate (table => origin%table)
+         call table%begin()
+         deallocate (table%names)
+         allocate (table%names(n))
+         do i = 1, n
+            table%names(i) = names(i)%value
+         end do
+         table%sizes = nint(values(:n))
+         table%values = values(n + 1:)
+      end associate
    end subroutine load
 
 end module earlier_results
