@@ -9,7 +9,8 @@ module file_calls
    use text, only: to_text
    implicit none
    private
-   public :: rename_file, copy_file, sync_file, remove_file, make_folder, is_terminal, is_stream, read_file, &
+   public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file, &
+      sync_file, &
       try_file, try_growth, create_working_file, remove_working_files, survive_file_limits, &
       cannot_write, reason_of, without_end, print_text, check_printed, file_identity_type, &
       identity_of, real_path_of, is_working_file, check_in_place

@@ -73,7 +73,7 @@ module steps
       type(fixed_point_type) :: fixed_point                  !! fixed point of this step
       type(start_type) :: start                              !! where its fixed point starts
       type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
-      integer :: restart_frequency = 0       !! *RESTART: at every n-th increment and the last; 0 never
+      integer :: restart_frequency = 0       !! states at every n-th increment and the last; 0 none
       logical :: overlays_restarts = .false. !! whether only the last one of each step is kept
    end type step_controls_type
 

@@ -45,7 +45,7 @@ module run_summaries
       real(dp) :: seconds_write = 0.0_dp         !! writing; the output layer adds to it [s]
       logical :: is_finished = .false.           !! whether nothing is left to be solved
       character(:), allocatable :: settings      !! options that change the deck; empty for none
-      character(:), allocatable :: origin        !! where it goes on from; unallocated: from the start
+      character(:), allocatable :: origin        !! where it goes on from; unallocated: its start
       integer :: verify_passed = 0               !! *VERIFY checks that passed
       integer :: verify_failed = 0               !! *VERIFY checks that failed
       type(accuracy_words_type) :: accuracy      !! a requested accuracy, once a round ended

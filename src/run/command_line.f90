@@ -57,8 +57,8 @@ module command_line
       '                     are within P per cent; replaces *ACCURACY', &
       '  --restart RESULT   go on from the last state that *RESTART, WRITE kept in this result,', &
       '                     or with RESULT@TIME from that at a time', &
-      '  --resume           run: skip decks whose results are finished, and go on with the others', &
-      '                     from the last state that their results keep, or from the start', &
+      '  --resume           run: skip decks whose results are finished; go on with others from', &
+      '                     the last state that their results keep, or from the start', &
       '  --limit SECONDS    trade: skip rows that would take more CPU time (30)', &
       '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)', &
       '', &

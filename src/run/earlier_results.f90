@@ -209,8 +209,8 @@ contains
       restart = there(minloc(abs(self%places(at_increment_in_step, there) - increment), dim=1))
       i = nint(self%places(at_increment_in_step, restart))
       if (i /= increment) call set_error(error, status_deck, '"'//self%path//'" keeps no state '// &
-         'at increment '//to_text(increment)//' of step '//to_text(step)//'; the nearest one is '// &
-         'at increment '//to_text(i))
+         'at increment '//to_text(increment)//' of step '//to_text(step)//'; the nearest one '// &
+         'is at increment '//to_text(i))
    end subroutine find_step
 
    !> Its deck up to the end of the step of a restart.
@@ -229,6 +229,8 @@ contains
             steps = steps + 1
          case ('ENDSTEP')
             if (steps == nint(self%places(at_step, restart))) exit
+         case default
+            cycle
          end select
       end do
       earlier%images = self%images(:min(i, size(self%images)))

@@ -11,7 +11,8 @@ module hdf5
    integer, parameter :: size_t = c_size_t
    integer(c_int), parameter :: h5_integer_kind = 0
 
-   integer :: h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_libver_latest_f, h5f_libver_v18_f
+   integer :: h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f
+   integer :: h5f_libver_latest_f, h5f_libver_v18_f
    integer :: h5s_scalar_f, h5s_select_set_f, h5t_cset_utf8_f
    integer(hsize_t) :: h5s_unlimited_f
    integer(hid_t) :: h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f

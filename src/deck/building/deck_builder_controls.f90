@@ -1,8 +1,8 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choose, has_parameter, lacks_parameter, need_choice, parameter_place, parameter_text, take_from, &
-      take_parameter, take_positive
+   use card_parameters, only: choose, has_parameter, lacks_parameter, need_choice, &
+      parameter_place, parameter_text, take_from, take_parameter, take_positive
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
@@ -24,7 +24,8 @@ module deck_builder_controls
    use time_points, only: time_points_type
    implicit none
    private
-   public :: build_fixed_point, build_restart, build_thermal_scheme, build_start, build_print, read_frequency
+   public :: build_fixed_point, build_restart, build_thermal_scheme, build_start, build_print, &
+      read_frequency
 
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
    character(2), parameter :: coefficient_names(8) = &
