@@ -13,15 +13,14 @@ module state_tables
 
    !> The table. The same state has the same names in the same order, whatever its arrays hold.
    type :: state_table_type
-      character(name_length), allocatable :: names(:)   !! (arrays)
-      integer, allocatable :: sizes(:)                  !! (arrays) of each; negative: not there
-      real(dp), allocatable :: values(:)                !! of all arrays
+      integer :: arrays = 0, count = 0                  !! how many there are, and their values
+      character(name_length), allocatable :: names(:)   !! (arrays, or more)
+      integer, allocatable :: sizes(:)                  !! likewise; negative: not there
+      real(dp), allocatable :: values(:)                !! (count, or more) of all arrays
       character(16) :: prefix = ''                      !! of the names that follow
       logical, private :: restores = .false.            !! whether arrays go back into a state
-      integer, private :: arrays = 0, used = 0          !! so far
    contains
       procedure :: begin
-      procedure :: finish
       procedure :: begin_restoring
       procedure :: is_restoring
    end type state_table_type
@@ -34,15 +33,6 @@ contains
 
       allocate (self%names(first_arrays), self%sizes(first_arrays), self%values(first_values))
    end subroutine begin
-
-   !> Cuts a table that is kept to what it holds.
-   subroutine finish(self)
-      class(state_table_type), intent(inout) :: self
-
-      self%names = self%names(:self%arrays)
-      self%sizes = self%sizes(:self%arrays)
-      self%values = self%values(:self%used)
-   end subroutine finish
 
    !> From now on arrays are taken from the table.
    subroutine begin_restoring(self)
@@ -71,7 +61,7 @@ contains
          call append(table, trim(table%prefix)//name, values)
          return
       end if
-      i = findloc(table%names, trim(table%prefix)//name, dim=1)
+      i = findloc(table%names(:table%arrays), trim(table%prefix)//name, dim=1)
       if (i == 0) return
       if (table%sizes(i) == absent) then
          if (allocated(values)) deallocate (values)
@@ -85,6 +75,7 @@ contains
       type(state_table_type), intent(inout) :: table
       character(*), intent(in) :: name
       real(dp), allocatable, intent(in) :: values(:)
+      real(dp), allocatable :: longer(:)
       integer :: last
 
       if (table%arrays == size(table%names)) then
@@ -96,11 +87,14 @@ contains
       table%sizes(table%arrays) = absent
       if (.not. allocated(values)) return
       table%sizes(table%arrays) = size(values)
-      last = table%used + size(values)
-      if (last > size(table%values)) table%values = [table%values(:table%used), &
-         spread(0.0_dp, 1, 2*last - table%used)]
-      table%values(table%used + 1:last) = values
-      table%used = last
+      last = table%count + size(values)
+      if (last > size(table%values)) then
+         allocate (longer(2*last))
+         longer(:table%count) = table%values(:table%count)
+         call move_alloc(longer, table%values)
+      end if
+      table%values(table%count + 1:last) = values
+      table%count = last
    end subroutine append
 
    !> The same of whole numbers.

@@ -80,8 +80,10 @@ contains
       call reals(self, 'smallest_gap', state%smallest_gap)
       if (allocated(state%reaction)) reaction = [state%reaction]
       call reals(self, 'reaction', reaction)
-      if (allocated(state%reaction)) deallocate (state%reaction)
-      if (allocated(reaction)) state%reaction = reshape(reaction, [2, size(reaction)/2])
+      if (self%is_restoring()) then
+         if (allocated(state%reaction)) deallocate (state%reaction)
+         if (allocated(reaction)) state%reaction = reshape(reaction, [2, size(reaction)/2])
+      end if
       scalars = [state%increment_size, state%dilatation]
       call reals(self, 'scalars', scalars)
       state%increment_size = scalars(1)

@@ -54,11 +54,11 @@ contains
          end if
          self%step = record%step
          self%values_before = values%rows()
-         count = size(table%sizes) + size(table%values)
+         count = table%arrays + table%count
          call places%append([real(record%increment, dp), real(record%step, dp), &
             real(record%increment_in_step, dp), record%time, real(count, dp)])
-         call values%append(real(table%sizes, dp))
-         call values%append(table%values)
+         call values%append(real(table%sizes(:table%arrays), dp))
+         call values%append(table%values(:table%count))
       end associate
    end subroutine append
 
@@ -69,12 +69,12 @@ contains
       type(unit_labels_type), intent(in) :: labels
       integer :: i
 
-      allocate (self%names(size(table%names)), self%sets(2))
+      allocate (self%names(table%arrays), self%sets(2))
       self%sets(1) = growing_dataset(place_set, as_real, place_columns, 1, 1000, &
          'where each state is, and how many values it has', unit_in_words('time', labels))
       self%sets(1)%components = 'increment step increment_in_step time values'
       self%sets(2) = growing_dataset(value_set, as_real, 0, min(most_in_chunk, &
-         size(table%sizes) + size(table%values)), 10, &
+         table%arrays + table%count), 10, &
          'the states one behind the other: sizes of all arrays (-1: not there), then their values')
       do i = 1, size(self%names)
          self%names(i)%value = trim(table%names(i))

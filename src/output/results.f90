@@ -211,7 +211,6 @@ contains
             last%sets(1)%rows()]
       end associate
       call integers(restart, 'rows', rows)
-      call restart%finish()
       call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts, &
          model%units)
       self%file%is_synced = .true.

@@ -131,7 +131,7 @@ contains
    !> Error: status_internal, when a file cannot be written.
    subroutine accept(self, record, model, interfaces, error)
       class(run_output_type), intent(inout) :: self
-      type(increment_record_type), intent(in) :: record
+      type(increment_record_type), intent(inout) :: record   !! whose restart is taken from it
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
@@ -144,7 +144,7 @@ contains
       call self%judgement%take(record, model, interfaces)
       call self%progress%take(record)
       if (allocated(record%restart)) then
-         restart = record%restart
+         call move_alloc(record%restart, restart)
          call self%verifier%exchange(restart)
          call self%judgement%exchange(restart)
       end if

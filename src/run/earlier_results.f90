@@ -300,9 +300,9 @@ contains
       if (allocated(error)) return
       n = size(names)
       associate (table => origin%table)
-         call table%begin()
-         deallocate (table%names)
          allocate (table%names(n))
+         table%arrays = n
+         table%count = size(values) - n
          do i = 1, n
             table%names(i) = names(i)%value
          end do
