@@ -100,7 +100,8 @@ contains
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (card%name == 'RESTART' .and. k > 1 .and. has_parameter(card, 'READ')) call &
-               report%error(parameter_place(card, 'READ'), 'READ is for the first card of a deck')
+               report%error(parameter_place(card, 'READ'), 'READ belongs on the first card of '// &
+               'a deck, which then has steps alone')
          end associate
       end do
       do k = 1, size(cards%keywords)

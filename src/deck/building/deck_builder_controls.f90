@@ -1,7 +1,7 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choose, has_parameter, lacks_parameter, need_choice, &
+   use card_parameters, only: choose, has_parameter, need_choice, &
       parameter_place, parameter_text, take_from, take_parameter, take_positive
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
@@ -92,21 +92,27 @@ contains
          call take_from(1, card, 'INC', report, place)
          if (has_parameter(card, 'INC') .and. .not. has_parameter(card, 'STEP')) call &
             report%error(parameter_place(card, 'INC'), 'INC= needs STEP=')
-      else if (has_parameter(card, 'STEP') .or. has_parameter(card, 'INC')) then
-         call report%error(card%place, 'STEP= and INC= need READ')
+      else
+         call report_alone('STEP', 'READ')
+         call report_alone('INC', 'READ')
       end if
       if (.not. has_parameter(card, 'WRITE')) then
-         if (lacks_parameter(card, 'READ')) call report%error(card%place, '*RESTART needs '// &
-            'WRITE, to keep states of the run, or READ, to go on from one')
-         if (has_parameter(card, 'FREQUENCY')) call report%error(parameter_place(card, &
-            'FREQUENCY'), 'FREQUENCY= needs WRITE')
-         if (has_parameter(card, 'OVERLAY')) call report%error(parameter_place(card, &
-            'OVERLAY'), 'OVERLAY needs WRITE')
+         call report_alone('FREQUENCY', 'WRITE')
+         call report_alone('OVERLAY', 'WRITE')
+         if (size(card%parameters) == 0 .and. .not. card%flawed) call report%error(card%place, &
+            '*RESTART needs WRITE, to keep states of the run, or READ, to go on from one')
          return
       end if
       controls%restart_frequency = 1
       call take_from(0, card, 'FREQUENCY', report, controls%restart_frequency)
       controls%overlays_restarts = has_parameter(card, 'OVERLAY')
+   contains
+      subroutine report_alone(parameter, other)
+         character(*), intent(in) :: parameter, other
+
+         if (has_parameter(card, parameter)) call report%error(parameter_place(card, parameter), &
+            parameter//' needs '//other)
+      end subroutine report_alone
    end subroutine build_restart
 
    !> Reads one *THERMAL SCHEME; after an error the scheme stays as it was.
