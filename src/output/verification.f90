@@ -92,7 +92,7 @@ contains
       flags = [self%outcomes%judged, self%outcomes%passed, spread(.false., 1, n)]
       do i = 1, n
          associate (outcome => self%outcomes(i))
-            reasons = reasons//outcome%reason//new_line('a')
+            if (outcome%judged) reasons = reasons//outcome%reason//new_line('a')
             flags(2*n + i) = allocated(outcome%bound)
             if (allocated(outcome%bound)) values(3*n + i) = outcome%bound
          end associate
@@ -108,6 +108,7 @@ contains
       self%outcomes%passed = flags(n + 1:2*n)
       first = 1
       do i = 1, n
+         if (.not. flags(i)) cycle
          self%outcomes(i)%reason = reasons(first:first - 2 + index(reasons(first:), new_line('a')))
          first = first + len(self%outcomes(i)%reason) + 1
          if (flags(2*n + i)) self%outcomes(i)%bound = values(3*n + i)

@@ -199,15 +199,15 @@ def test_a_deck_adds_steps_behind_those_of_a_result(cycling, tmp_path):
         assert process.returncode == 0, process.stderr
         whole = tmp_path / f"whole{i}" / "in_one.vtkhdf"
         # The states of the old deck tell of its checks.
-        assert_same(whole, tmp_path / f"new{i}" / "in_one.vtkhdf", but="/restart")
+        assert_same(whole, tmp_path / f"new{i}" / "in_one.vtkhdf", but="restart/")
         with h5py.File(whole) as file:
             ends.append(file["history/time"][-1])
-    assert ends == [3.0, 3.0, 4.0]
+    assert ends[0] == ends[1] < ends[2]
     note_changes([], ["*RESTART, READ"])
     # Its own result has all steps, so it can go on from there too.
     own = tmp_path / "new2" / "in_one.vtkhdf"
     new.write_text(NEW_STEPS.format(place=", STEP=3"))
-    assert_same(own, go_on(new, own, tmp_path / "own", 3.25))
+    assert_same(own, go_on(new, own, tmp_path / "own", float(kept(own)[-2])))
 
 
 def refused(*arguments):
@@ -346,7 +346,7 @@ def test_a_batch_is_resumed(long, long_result, tmp_path):
 
 def test_checks_that_failed_in_a_finished_run_fail_again(tmp_path):
     path = rods.write_rods(tmp_path / "rods.inp")
-    deck = copy_deck(path, path, ["*VERIFY, KIND=ANALYTIC, SOURCE=none", "temperature, MAX, 1., -5., 1.E-3"])
+    deck = copy_deck(path, path, ["*VERIFY, KIND=ANALYTIC, SOURCE=none", "gap, FACE, 1., -5., 1.E-3"])
     assert run("run", deck, "--out", tmp_path).returncode == 4
     process = run("run", deck, "--out", tmp_path, "--resume")
     assert process.returncode == 4, process.stderr
