@@ -32,9 +32,10 @@ module command_line
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(32) = [character(88) :: &
+   character(*), parameter :: usage(33) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
-      '                           [--quiet] [--accuracy P%] [--restart RESULT[@TIME]] [--resume]', &
+      '                           [--quiet] [--accuracy P%] [--resume]', &
+      '                           [--restart RESULT[@TIME]]', &
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
       '                          [--limit SECONDS] [--jobs N]', &
