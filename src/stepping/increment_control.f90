@@ -161,13 +161,14 @@ contains
       real(dp), allocatable :: times(:)
 
       counts = [self%increments, self%increments_of_step]
-      times = [self%step_time, self%largest]
+      times = [self%step_time, self%largest, self%useful]
       call integers(table, 'increments', counts)
       call reals(table, 'times', times)
       self%increments = counts(1)
       self%increments_of_step = counts(2)
       self%step_time = times(1)
       self%largest = times(2)
+      self%useful = times(3)
    end subroutine exchange
 
    !> Makes an instant end at another time of the step.
