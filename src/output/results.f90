@@ -11,6 +11,7 @@ module results
    use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
+   use file_calls, only: file_identity_type, identity_of
    use result_tables, only: bounded_quantities, bytes_in, flush_sets, result_table_type, &
       write_geometry
    use hdf5_writer, only: end_hdf5, start_hdf5
@@ -156,12 +157,15 @@ contains
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(:), allocatable :: stem
+      type(file_identity_type) :: own
       integer, allocatable :: rows(:)
       integer :: i, k
       logical :: is_new
 
       call integers(restart, 'rows', rows)
       self%accepted = rows(1)
+      own = identity_of(self%file%path)
+      if (own%is_same(identity_of(path))) self%published = self%accepted
       stem = path(:len(path) - len(end_of_name))
       self%file%source = path
       call self%file%open(is_new)

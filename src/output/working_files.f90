@@ -22,7 +22,7 @@ module working_files
    !> A file in place and the working copy beside it.
    type :: working_file_type
       private
-      character(:), allocatable :: path          !! path of the file in place
+      character(:), allocatable, public :: path  !! path of the file in place
       character(:), allocatable, public :: working_path !! path of the working copy, if there is one
       character(:), allocatable, public :: source   !! file of which the first copy is made, if any
       logical, public :: is_synced = .false.     !! whether it is on the disk before it is in place
