@@ -15,8 +15,9 @@ module doubled_increments
    use model, only: model_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
-   use solution_state, only: solution_state_type
+   use solution_state, only: exchange_state, solution_state_type
    use sparse_matrix, only: sparse_matrix_type
+   use state_tables, only: integers, logicals, reals, state_table_type
    use steps, only: planned_increments, solves_heat, solves_mechanics, step_type
    use thermal_matrix, only: heat_equation_type
    implicit none
@@ -40,6 +41,7 @@ module doubled_increments
    contains
       procedure :: start
       procedure :: follow
+      procedure :: exchange
       procedure :: release
    end type doubled_increments_type
 
@@ -128,6 +130,43 @@ contains
             recover_fields(run%bodies, heat, run%loads, data, workspace, next)
       end subroutine solve_with
    end subroutine follow
+
+   !> Where the second run stands, in either direction; it forgets the loads that it has solved.
+   subroutine exchange(self, table)
+      class(doubled_increments_type), intent(inout) :: self
+      type(state_table_type), intent(inout) :: table
+      integer, allocatable :: counts(:), extents(:)
+      logical, allocatable :: flags(:)
+      real(dp), allocatable :: time(:)
+
+      if (.not. self%is_led) return
+      table%prefix = 'doubled_'
+      call exchange_state(table, self%state)
+      counts = [self%waiting, self%step]
+      flags = [self%is_lost, self%has_doubled]
+      time = [self%time]
+      call integers(table, 'counts', counts)
+      call logicals(table, 'marks', flags)
+      call reals(table, 'time', time)
+      self%waiting = counts(1)
+      self%step = counts(2)
+      self%is_lost = flags(1)
+      self%has_doubled = flags(2)
+      self%time = time(1)
+      ! Its sources are those of an earlier instant than the run's.
+      associate (sources => self%state%sources, film => self%state%sources%film)
+         call reals(table, 'heat_load', sources%load)
+         extents = [film%row_count, film%column_count]
+         call integers(table, 'film_extents', extents)
+         film%row_count = extents(1)
+         film%column_count = extents(2)
+         call integers(table, 'film_start', film%row_start)
+         call integers(table, 'film_column', film%column)
+         call reals(table, 'film_value', film%value)
+      end associate
+      table%prefix = ''
+      if (allocated(self%known)) deallocate (self%known)
+   end subroutine exchange
 
    !> Frees the factors.
    subroutine release(self)

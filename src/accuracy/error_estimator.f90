@@ -22,6 +22,7 @@ module error_estimator
    use records, only: increment_record_type, interface_errors_type
    use field_recovery, only: error_record_type
    use solution_state, only: solution_state_type
+   use state_tables, only: integers, reals, state_table_type
    use text, only: append
    implicit none
    private
@@ -53,6 +54,7 @@ module error_estimator
       procedure :: start
       procedure :: begin_increment
       procedure :: end_increment
+      procedure :: exchange
       procedure :: release
    end type error_estimator_type
 
@@ -132,6 +134,24 @@ contains
          end associate
       end do
    end subroutine end_increment
+
+   !> All that the bounds take of earlier increments, in either direction.
+   subroutine exchange(self, table)
+      class(error_estimator_type), intent(inout) :: self  !! started
+      type(state_table_type), intent(inout) :: table
+      integer, allocatable :: step(:)
+
+      if (.not. self%is_on) return
+      ! One that has followed no increment yet receives the table.
+      if (self%step == 0) call self%histories%begin_step(size(estimated), size(self%most_locked), &
+         [real(dp) ::])
+      step = [self%step]
+      call integers(table, 'estimated_step', step)
+      self%step = step(1)
+      call reals(table, 'most_locked', self%most_locked)
+      call self%histories%exchange(table)
+      call self%doubled%exchange(table)
+   end subroutine exchange
 
    !> Frees the factors of the finer mesh.
    subroutine release(self)

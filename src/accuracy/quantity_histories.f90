@@ -2,6 +2,7 @@
 module quantity_histories
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use kinds, only: dp
+   use state_tables, only: reals, state_table_type
    implicit none
    private
    public :: quantity_histories_type, scatter_of
@@ -22,6 +23,7 @@ module quantity_histories
       procedure :: follow
       procedure :: scatter
       procedure :: change_since
+      procedure :: exchange
    end type quantity_histories_type
 
 contains
@@ -47,6 +49,21 @@ contains
       self%values(:kept - 1, :, :) = self%values(2:, :, :)
       self%values(kept, :, :) = values
    end subroutine follow
+
+   !> The values of the present step, in either direction.
+   subroutine exchange(self, table)
+      class(quantity_histories_type), intent(inout) :: self   !! with values where it receives them
+      type(state_table_type), intent(inout) :: table
+      real(dp), allocatable :: time(:), values(:)
+
+      time = self%time
+      values = [self%values]
+      call reals(table, 'history_time', time)
+      call reals(table, 'history_corners', self%corners)
+      call reals(table, 'history_values', values)
+      self%time = time
+      self%values = reshape(values, shape(self%values))
+   end subroutine exchange
 
    !> How much the quantities of an interface scatter; NaN where they have too few values. Where the
    !> step was solved on another mesh too, no more than what the two differ by: a history that bends

@@ -25,6 +25,8 @@ module adaptive_rounds
    use model, only: model_type
    use quantity_types, only: quantity_type
    use records, only: contact_record_type, increment_record_type
+   use restarts, only: keep_restart
+   use state_tables, only: state_table_type
    use variations, only: marked_elements_type, variation_type
    implicit none
    private
@@ -106,19 +108,21 @@ contains
 
    !> Solves the increments of a round and judges it.
    !> Errors: as simulation_type's advance, and those of the taker.
-   subroutine solve_increments(self, model, simulation, taker, record, error)
+   subroutine solve_increments(self, model, simulation, taker, record, error, restart)
       class(adaptive_rounds_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(simulation_type), intent(inout) :: simulation      !! a fresh run, reduced
+      type(simulation_type), intent(inout) :: simulation      !! a run at its start, reduced
       class(increment_taker_type), intent(inout) :: taker
       type(increment_record_type), intent(out) :: record      !! the last
       !> In: allocated where not even the first can be solved
       type(error_type), allocatable, intent(inout) :: error
+      type(state_table_type), intent(inout), optional :: restart   !! from which the run goes on
       type(error_estimator_type) :: estimator
       type(contact_points_type), allocatable :: interfaces(:)
       type(round_indicators_type) :: indicators
 
       call estimator%start(model, simulation)
+      if (present(restart)) call estimator%exchange(restart)
       call self%accuracy%begin_round(model%accuracy, size(model%contacts), size(model%steps))
       call indicators%start(model)
       do while (.not. (allocated(error) .or. simulation%finished(model)))
@@ -132,6 +136,8 @@ contains
                if (record%last_of_step) call indicators%take(model, interfaces, self%accuracy, &
                   record)
             end if
+            call keep_restart(model, simulation, record)
+            if (allocated(record%restart)) call estimator%exchange(record%restart)
          end if
          call taker%take(simulation, record, error)
       end do

@@ -2,6 +2,7 @@
 module load_histories
    use amplitudes, only: amplitude_type, amplitude_value
    use kinds, only: dp
+   use state_tables, only: reals, state_table_type
    use steps, only: step_type
    implicit none
    private
@@ -36,6 +37,7 @@ module load_histories
       procedure :: remove
       procedure :: move_to
       procedure :: follows
+      procedure :: exchange
    end type load_history_type
 
 contains
@@ -145,6 +147,23 @@ contains
          end if
       end do
    end subroutine move_to
+
+   !> What loads ramp from and to in the present step, in either direction; all else follows from
+   !> the cards of the steps, and the present values from the instant.
+   subroutine exchange(self, table, name)
+      class(load_history_type), intent(inout) :: self     !! in the step of the table
+      type(state_table_type), intent(inout) :: table
+      character(*), intent(in) :: name                    !! of these loads
+      real(dp), allocatable :: start(:), target(:)
+
+      start = pack(self%start, self%active)
+      target = pack(self%target, self%active)
+      call reals(table, name//'_start', start)
+      call reals(table, name//'_target', target)
+      if (.not. table%is_restoring()) return
+      self%start = unpack(start, self%active, self%start)
+      self%target = unpack(target, self%active, self%target)
+   end subroutine exchange
 
    !> Whether any load follows an amplitude.
    pure logical function follows(self, amplitude)

@@ -7,6 +7,7 @@ module loads
    use connections, only: connections_type
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
+   use state_tables, only: state_table_type
    use steps, only: analysis_static, dof_temperature, load_film_sink, load_temperature, load_type, &
       step_type
    use unit_loads, only: entries_of, find_locations, integrated, same_location, unit_loads_type
@@ -38,6 +39,7 @@ module loads
       procedure :: card_heat
       procedure :: set_temperatures
       procedure :: axis_value
+      procedure :: exchange
    end type loads_type
 
 contains
@@ -190,6 +192,17 @@ contains
       ramped%ramped = .true.
       call self%interference%move_to(ramped, model%amplitudes)
    end subroutine move_to
+
+   !> The histories, in either direction.
+   subroutine exchange(self, table)
+      class(loads_type), intent(inout) :: self     !! in the step of the table
+      type(state_table_type), intent(inout) :: table
+
+      call self%displacement%exchange(table, 'prescribed_displacement')
+      call self%temperature%exchange(table, 'prescribed_temperature')
+      call self%applied%exchange(table, 'load')
+      call self%interference%exchange(table, 'interference')
+   end subroutine exchange
 
    !> Instants at which amplitudes that loads follow may turn, as total time.
    pure function corners(self, amplitudes, step_start) result(instants)

@@ -68,6 +68,7 @@ module reduced_bodies
       procedure :: assemble_steps
       procedure :: assemble
       procedure :: form_operators
+      procedure :: move_operators
       procedure :: reduce
    end type reduced_bodies_type
 
@@ -298,6 +299,16 @@ contains
          if (follows) call move_alloc(points%materials, self%materials)
       end associate
    end subroutine form_operators
+
+   !> Forms the operators that there are at other temperatures.
+   subroutine move_operators(self, model, temperature)
+      class(reduced_bodies_type), intent(inout) :: self !! assembled
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+
+      call self%form_operators(model, temperature, allocated(self%mechanical%matrix%value), &
+         allocated(self%thermal%matrix%value), allocated(self%thermal_load%value))
+   end subroutine move_operators
 
    !> rho c of the elements at the means of temperatures of their nodes.
    pure function capacities(model, temperature) result(capacity)

@@ -29,6 +29,16 @@ int file_rename(const char *from, const char *to)
    return rename(from, to) == 0 ? 0 : errno;
 }
 
+/* Waits until a file is on its disk, where the system can tell. */
+void file_sync(const char *path)
+{
+   int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+   if (descriptor < 0)
+      return;
+   fsync(descriptor);
+   close(descriptor);
+}
+
 int file_remove(const char *path)
 {
    return unlink(path) == 0 ? 0 : errno;

@@ -10,6 +10,7 @@ module file_calls
    implicit none
    private
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file, &
+      sync_file, &
       try_file, try_growth, create_working_file, remove_working_files, survive_file_limits, &
       cannot_write, reason_of, without_end, print_text, check_printed, file_identity_type, &
       identity_of, real_path_of, is_working_file, check_in_place
@@ -43,6 +44,11 @@ module file_calls
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: from(*), to(*)
       end function c_rename
+
+      subroutine c_sync(path) bind(c, name='file_sync')
+         import :: c_char
+         character(kind=c_char), intent(in) :: path(*)
+      end subroutine c_sync
 
       integer(c_int) function c_is_terminal(descriptor) bind(c, name='file_is_terminal')
          import :: c_int
@@ -157,6 +163,14 @@ contains
       number = c_rename(from//c_null_char, to//c_null_char)
       if (number /= 0) call set_error(error, status_internal, cannot_write(to, reason_of(number)))
    end subroutine rename_file
+
+   !> Waits until the contents of a file are on its disk, so that a loss of power after it was given
+   !> its name leaves it whole.
+   subroutine sync_file(path)
+      character(*), intent(in) :: path
+
+      call c_sync(path//c_null_char)
+   end subroutine sync_file
 
    !> Makes a folder and those above it; one that is there already is left as it is.
    !> Error: status_internal, when it cannot be made or no file can be made in it.

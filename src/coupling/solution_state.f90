@@ -1,14 +1,14 @@
-!> The state of a run, which changes from increment to increment, and the table of its named arrays:
-!> what a run needs to go on from it, and nothing that can be made from the deck. A restart keeps
-!> the table.
+!> The state of a run, which changes from increment to increment, and its named arrays: what a run
+!> needs to go on from it, and nothing that can be made from the deck. A restart keeps their table.
 module solution_state
    use contact_system, only: contact_state_type
    use edge_heat, only: edge_heat_type
    use kinds, only: dp
+   use state_tables, only: integers, logicals, reals, state_table_type
    use thermal_matrix, only: heat_sources_type
    implicit none
    private
-   public :: solution_state_type, state_table_type
+   public :: solution_state_type, exchange_state
 
    !> State at the end of an increment.
    type :: solution_state_type
@@ -47,49 +47,12 @@ module solution_state
       logical :: is_out_of_balance = .false.
    end type solution_state_type
 
-   !> An array by its name; whole numbers and logical values as reals.
-   type :: named_array_type
-      character(24) :: name = ''
-      real(dp), allocatable :: values(:)
-   end type named_array_type
-
-   !> The table. An array that a state does not have has no entry.
-   type :: state_table_type
-      type(named_array_type), allocatable :: arrays(:)
-      logical, private :: restores = .false.        !! whether arrays go back into a state
-   contains
-      procedure :: keep
-      procedure :: restore
-   end type state_table_type
-
 contains
 
-   !> Makes the table of a state.
-   subroutine keep(self, state)
-      class(state_table_type), intent(inout) :: self
-      type(solution_state_type), intent(in) :: state    !! at the end of an accepted increment
-      type(solution_state_type) :: copy
-
-      self%restores = .false.
-      if (allocated(self%arrays)) deallocate (self%arrays)
-      allocate (self%arrays(0))
-      copy = state
-      call exchange(self, copy)
-   end subroutine keep
-
-   !> Puts the arrays of the table into a state.
-   subroutine restore(self, state)
-      class(state_table_type), intent(inout) :: self
-      !> of the same model before its first increment, with the sources at the instant of the table
-      type(solution_state_type), intent(inout) :: state
-
-      self%restores = .true.
-      call exchange(self, state)
-   end subroutine restore
-
-   !> All entries, in either direction.
-   subroutine exchange(self, state)
-      class(state_table_type), intent(inout) :: self
+   !> All entries of the table, in either direction. A state that receives them is of the same model
+   !> before its first increment, with the sources at the instant of the table.
+   subroutine exchange_state(self, state)
+      type(state_table_type), intent(inout) :: self
       type(solution_state_type), intent(inout) :: state
       logical, allocatable :: flags(:)
       real(dp), allocatable :: reaction(:), scalars(:)
@@ -105,6 +68,7 @@ contains
       end associate
       call reals(self, 'conductance', state%omega)
       call reals(self, 'conductance_before', state%omega_before)
+      call reals(self, 'carrying', state%carrying)
       call logicals(self, 'resting', state%resting)
       call logicals(self, 'idle', state%idle)
       call integers(self, 'edge_point', state%edge%point)
@@ -127,7 +91,10 @@ contains
       call reals(self, 'smallest_gap', state%smallest_gap)
       if (allocated(state%reaction)) reaction = [state%reaction]
       call reals(self, 'reaction', reaction)
-      if (allocated(reaction)) state%reaction = reshape(reaction, [2, size(reaction)/2])
+      if (self%is_restoring()) then
+         if (allocated(state%reaction)) deallocate (state%reaction)
+         if (allocated(reaction)) state%reaction = reshape(reaction, [2, size(reaction)/2])
+      end if
       scalars = [state%increment_size, state%dilatation]
       call reals(self, 'scalars', scalars)
       state%increment_size = scalars(1)
@@ -137,58 +104,6 @@ contains
       state%has_mechanics = flags(1)
       state%keeps_imbalance = flags(2)
       state%is_out_of_balance = flags(3)
-   end subroutine exchange
-
-   !> Adds an array to the table, or takes it from there where the table has it.
-   subroutine reals(table, name, values)
-      type(state_table_type), intent(inout) :: table
-      character(*), intent(in) :: name
-      real(dp), allocatable, intent(inout) :: values(:)
-      integer :: i
-
-      if (table%restores) then
-         i = findloc(table%arrays%name, name, dim=1)
-         if (i > 0) values = table%arrays(i)%values
-      else if (allocated(values)) then
-         call append(table%arrays, name, values)
-      end if
-   end subroutine reals
-
-   subroutine append(arrays, name, values)
-      type(named_array_type), allocatable, intent(inout) :: arrays(:)
-      character(*), intent(in) :: name
-      real(dp), intent(in) :: values(:)
-      type(named_array_type), allocatable :: longer(:)
-      integer :: n
-
-      n = size(arrays)
-      allocate (longer(n + 1))
-      longer(:n) = arrays
-      longer(n + 1)%name = name
-      longer(n + 1)%values = values
-      call move_alloc(longer, arrays)
-   end subroutine append
-
-   subroutine integers(table, name, values)
-      type(state_table_type), intent(inout) :: table
-      character(*), intent(in) :: name
-      integer, allocatable, intent(inout) :: values(:)
-      real(dp), allocatable :: as_reals(:)
-
-      if (allocated(values)) as_reals = real(values, dp)
-      call reals(table, name, as_reals)
-      if (allocated(as_reals)) values = nint(as_reals)
-   end subroutine integers
-
-   subroutine logicals(table, name, values)
-      type(state_table_type), intent(inout) :: table
-      character(*), intent(in) :: name
-      logical, allocatable, intent(inout) :: values(:)
-      integer, allocatable :: as_integers(:)
-
-      if (allocated(values)) as_integers = merge(1, 0, values)
-      call integers(table, name, as_integers)
-      if (allocated(as_integers)) values = as_integers == 1
-   end subroutine logicals
+   end subroutine exchange_state
 
 end module solution_state

@@ -73,6 +73,8 @@ module steps
       type(fixed_point_type) :: fixed_point                  !! fixed point of this step
       type(start_type) :: start                              !! where its fixed point starts
       type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
+      integer :: restart_frequency = 0       !! states at every n-th increment and the last; 0 none
+      logical :: overlays_restarts = .false. !! whether only the last one of each step is kept
    end type step_controls_type
 
    !> One *STEP. Loads are those that its own cards give; what earlier steps gave stays (OP=MOD).

@@ -10,6 +10,7 @@ module hdf5_writer
       h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5p_file_access_f, &
       h5pset_buffer_f, h5p_dataset_xfer_f, &
       h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
+      h5ldelete_f, h5lexists_f, &
       h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f, h5dcreate_f, h5dwrite_f, &
       h5dclose_f, h5oopen_f, h5oclose_f, h5aopen_f, h5acreate_f, h5aexists_f, h5awrite_f, &
       h5aclose_f, h5tcopy_f, h5tclose_f, h5tset_cset_f, h5tset_size_f, h5t_cset_utf8_f, &
@@ -44,6 +45,8 @@ module hdf5_writer
       procedure :: has_failed
       procedure :: create_group
       procedure :: link => link_dataset
+      procedure :: has
+      procedure :: remove
       generic :: write => write_integers, write_reals, write_real_table, write_strings
       generic :: set => set_attribute, set_integers
       procedure :: set_fixed_text
@@ -169,13 +172,36 @@ contains
       call self%note(status, 'cannot create group '//path)
    end subroutine create_group
 
-   !> Gives a dataset a second name.
+   !> Whether there is a group or dataset; its group exists.
+   logical function has(self, path)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      integer :: status
+
+      has = .false.
+      if (self%has_failed()) return
+      call h5lexists_f(self%id, path, has, status)
+      call self%note([status], 'cannot look for '//path)
+   end function has
+
+   !> Removes a dataset.
+   subroutine remove(self, path)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path
+      integer :: status
+
+      if (self%has_failed()) return
+      call h5ldelete_f(self%id, path, status)
+      call self%note([status], 'cannot remove '//path)
+   end subroutine remove
+
+   !> Gives a dataset a second name, unless it has it.
    subroutine link_dataset(self, path, second_path)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, second_path
       integer :: status
 
-      if (self%has_failed()) return
+      if (self%has(second_path) .or. self%has_failed()) return
       call h5lcreate_hard_f(self%id, path, self%id, second_path, status)
       call self%note([status], 'cannot link '//second_path)
    end subroutine link_dataset

@@ -316,6 +316,7 @@ contains
          or_blank(run%version), '   THERMOMECHANICAL CONTACT OF ELASTIC BODIES', now(1:3), now(5:7)
       write (unit, '(a)') repeat('=', page_width)
       write (unit, '(2a)') 'deck      ', or_blank(run%deck_path)
+      if (allocated(run%origin)) call print_wrapped(unit, 'goes on   ', run%origin)
       call print_wrapped(unit, 'heading   ', or_blank(model%heading))
    end subroutine print_heading
 

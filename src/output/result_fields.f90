@@ -54,11 +54,12 @@ module result_fields
       type(growing_dataset_type), allocatable :: sets(:)
       integer :: points = 0                                        !! number of points
       integer :: cells = 0                                         !! number of cells
-      integer, private :: increments = 0                           !! rows so far
+      integer :: increments = 0                                    !! rows so far
       type(growing_dataset_type), allocatable, private :: steps(:) !! datasets of Steps
    contains
       procedure :: start_grid
       procedure :: append_time
+      procedure :: go_on
       procedure :: flush_grid
    end type vtk_grid_type
 
@@ -379,6 +380,23 @@ contains
       end do
       self%increments = self%increments + 1
    end subroutine append_time
+
+   !> Goes on behind the first increments of an earlier file.
+   subroutine go_on(self, file, increments)
+      class(vtk_grid_type), intent(inout) :: self         !! started
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file
+      integer, intent(in) :: increments                   !! of it that are kept
+      integer :: i
+
+      self%increments = increments
+      do i = 1, size(self%sets)
+         call self%sets(i)%go_on(file, increments*merge(self%points, self%cells, &
+            i <= size(self%point_data)))
+      end do
+      do i = 1, size(self%steps)
+         call self%steps(i)%go_on(file, increments)
+      end do
+   end subroutine go_on
 
    !> Writes the waiting rows and the number of all; the first time then gives the offsets of Steps
    !> all their names.

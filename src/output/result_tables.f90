@@ -29,17 +29,22 @@ module result_tables
    type :: growing_dataset_type
       private
       character(:), allocatable :: path                            !! path in the file
-      character(:), allocatable :: description, unit, components   !! attributes of the dataset
+      character(:), allocatable :: description, unit   !! attributes of the dataset
+      character(:), allocatable, public :: components  !! likewise
       integer :: storage = 0                    !! as_real, as_integer or as_long
       integer :: width = 0                      !! values in a row; 0: rows are single numbers
       integer :: at_once = 0                    !! values of one append
       integer(hsize_t) :: chunk_rows = 1        !! rows in a chunk
       logical :: in_file = .false.              !! whether the file has the dataset
-      integer(hsize_t) :: rows_in_file = 0      !! rows that the file holds
+      integer(hsize_t) :: rows_in_file = 0      !! rows that the file holds, or is to keep
+      logical :: is_cut = .false.               !! whether it holds more of them still
       integer :: used = 0                       !! values in the buffer
       real(dp), allocatable :: buffer(:)        !! the rows that are not in the file yet
    contains
       procedure :: append
+      procedure :: rows
+      procedure :: cut
+      procedure :: go_on
       procedure :: flush => flush_rows
    end type growing_dataset_type
 
@@ -239,6 +244,42 @@ contains
       self%used = last
    end subroutine append
 
+   !> Rows so far.
+   pure integer function rows(self)
+      class(growing_dataset_type), intent(in) :: self
+
+      rows = int(self%rows_in_file) + self%used/max(self%width, 1)
+   end function rows
+
+   !> Drops the rows behind the first ones.
+   pure subroutine cut(self, rows)
+      class(growing_dataset_type), intent(inout) :: self
+      integer, intent(in) :: rows                            !! that are left
+
+      self%used = max(rows - int(self%rows_in_file), 0)*max(self%width, 1)
+      self%is_cut = self%is_cut .or. rows < self%rows_in_file
+      self%rows_in_file = min(self%rows_in_file, int(rows, hsize_t))
+   end subroutine cut
+
+   !> Goes on behind the first rows of an earlier file; where it has none of this dataset they are
+   !> NaN.
+   subroutine go_on(self, file, rows)
+      class(growing_dataset_type), intent(inout) :: self     !! without rows
+      type(hdf5_writer_type), intent(inout) :: file          !! the open file
+      integer, intent(in) :: rows                            !! of it that are kept
+      integer :: i
+
+      self%in_file = file%has(self%path)
+      if (self%in_file) then
+         self%rows_in_file = rows
+         self%is_cut = .true.
+      else
+         do i = 1, rows*max(self%width, 1)/self%at_once
+            call self%append([real(dp) ::])
+         end do
+      end if
+   end subroutine go_on
+
    !> Bytes that wait in memory.
    pure function bytes_in(datasets) result(bytes)
       type(growing_dataset_type), intent(in) :: datasets(:)
@@ -267,7 +308,7 @@ contains
       integer :: rank, status(9)
 
       if (file%has_failed()) return
-      if (self%used == 0 .and. self%in_file) return
+      if (self%used == 0 .and. self%in_file .and. .not. self%is_cut) return
       status = 0
       rank = merge(1, 2, self%width == 0)
       extent = int([max(self%width, 1), self%used/max(self%width, 1)], hsize_t)
@@ -293,6 +334,7 @@ contains
       if (.not. self%in_file) call file%describe(self%path, self%description, self%unit, &
          self%components)
       self%in_file = .true.
+      self%is_cut = .false.
       self%rows_in_file = whole(2)
       self%used = 0
    end subroutine flush_rows

@@ -11,6 +11,7 @@ module results
    use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
+   use file_calls, only: file_identity_type, identity_of
    use result_tables, only: bounded_quantities, bytes_in, flush_sets, result_table_type, &
       write_geometry
    use hdf5_writer, only: end_hdf5, start_hdf5
@@ -23,10 +24,12 @@ module results
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
+   use restart_results, only: restart_results_type
    use result_fields, only: cell_sets, contact_grid_type, field_results_type, interface_sets, &
       node_sets
    use run_summaries, only: or_blank, run_summary_type, write_run
    use solution_report, only: iteration_record_type
+   use state_tables, only: integers, state_table_type
    use status_files, only: status_file_type
    use steps, only: dof_temperature, planned_increments, solves_heat, solves_mechanics
    use clock, only: wall_seconds
@@ -40,6 +43,7 @@ module results
    type(quantity_type), parameter :: step_time = quantity_type('time', of_history, 'time', &
       description='total time at the end of the step')
    integer, parameter :: history = 1, convergence = 2   !! tables
+   character(*), parameter :: contact_end = '.contact.vtkhdf', end_of_name = '.vtkhdf'
    integer(long), parameter :: memory_limit = 67108864_long   !! bytes that may wait in memory
 
    !> Writer of the results of one run.
@@ -49,6 +53,7 @@ module results
       type(status_file_type) :: increments                    !! `.sta`
       type(status_file_type) :: passes                        !! `.cvg`
       type(field_results_type) :: fields                      !! `/VTKHDF`
+      type(restart_results_type) :: restarts                  !! `/restart`
       !> `/history`, `/convergence`, `/contact/<name>` of each interface, then, where errors are
       !> estimated, `/errors` and `/errors/<name>` of each interface
       type(result_table_type), allocatable :: tables(:)
@@ -64,6 +69,7 @@ module results
    contains
       procedure :: reserve
       procedure :: open => open_results
+      procedure :: go_on
       procedure :: append
       procedure :: finish
       procedure :: give_up
@@ -81,8 +87,8 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       self%is_draft = is_draft
-      call self%file%start(path//'.vtkhdf')
-      call self%contact_file%start(path//'.contact.vtkhdf')
+      call self%file%start(path//end_of_name)
+      call self%contact_file%start(path//contact_end)
       call self%increments%start_increments(path//'.sta')
       call self%passes%start_iterations(path//'.cvg')
       call self%increments%reserve(error)
@@ -141,16 +147,92 @@ contains
       end associate
    end subroutine open_results
 
+   !> Goes on behind an earlier result up to where a state of it was kept: what it holds behind that
+   !> is dropped. The files in place stay as they are until the first publishing.
+   !> Error: status_internal, when a file cannot be written.
+   subroutine go_on(self, path, restart, counts, model, error)
+      class(results_type), intent(inout) :: self          !! the writer, opened
+      character(*), intent(in) :: path                    !! of the earlier result, with its end
+      type(state_table_type), intent(inout) :: restart    !! that state, to be restored
+      integer, intent(in) :: counts(2)                    !! restarts up to it, their values
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+      character(:), allocatable :: stem
+      type(file_identity_type) :: own
+      integer, allocatable :: rows(:)
+      integer :: i, k
+      logical :: is_new
+
+      call integers(restart, 'rows', rows)
+      self%accepted = rows(1)
+      own = identity_of(self%file%path)
+      if (own%is_same(identity_of(path))) self%published = self%accepted
+      stem = path(:len(path) - len(end_of_name))
+      self%file%source = path
+      call self%file%open(is_new)
+      associate (file => self%file%content)
+         do i = 1, size(self%tables)
+            do k = 1, size(self%tables(i)%sets)
+               call self%tables(i)%sets(k)%go_on(file, rows(row_of(self, i)))
+            end do
+         end do
+         call self%fields%go_on(file, rows(3))
+         call self%restarts%go_on(file, restart, counts, model%units)
+         call file%remove('/deck')
+         call file%write('/deck', self%cards, 'card images as read')
+      end associate
+      call self%file%check(error)
+      if (self%has_contact .and. .not. allocated(error)) then
+         self%contact_file%source = stem//contact_end
+         call self%contact_file%open(is_new)
+         call self%contact_grid%go_on(self%contact_file%content, self%accepted)
+         call self%contact_file%check(error)
+      end if
+      call self%increments%go_on(stem//'.sta', self%accepted)
+      call self%passes%go_on(stem//'.cvg', self%accepted)
+      if (allocated(error)) call self%give_up()
+   end subroutine go_on
+
+   !> Which number of rows is that of a table: of the increments, the passes, or the ends of steps.
+   pure integer function row_of(self, i)
+      class(results_type), intent(in) :: self
+      integer, intent(in) :: i                            ! index of the table
+
+      row_of = 1
+      if (i == convergence) row_of = 2
+      if (index(self%tables(i)%group, '/errors') == 1) row_of = 4
+   end function row_of
+
+   !> Adds a restart, with the rows of all datasets at its increment.
+   subroutine add_restart(self, record, model, restart)
+      class(results_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+      type(state_table_type), intent(inout) :: restart
+      integer, allocatable :: rows(:)
+
+      associate (last => self%tables(size(self%tables)))
+         rows = [self%accepted, self%tables(convergence)%sets(1)%rows(), self%fields%increments, &
+            last%sets(1)%rows()]
+      end associate
+      call integers(restart, 'rows', rows)
+      call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts, &
+         model%units)
+      self%file%is_synced = .true.
+      self%contact_file%is_synced = .true.
+   end subroutine add_restart
+
    !> Adds an accepted increment; publishes where that is due. The last increment of the last step
    !> waits for `finish`.
    !> Error: status_internal, when a file cannot be written.
-   subroutine append(self, record, model, interfaces, run, error)
+   subroutine append(self, record, model, interfaces, run, error, restart)
       class(results_type), intent(inout) :: self          !! the writer
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run           !! the run so far
       type(error_type), allocatable, intent(out) :: error !! what went wrong
+      type(state_table_type), intent(inout), optional :: restart   !! of the run, where one is due
       real(dp) :: since
       logical :: is_due, ends_run
       integer :: i, n
@@ -175,6 +257,7 @@ contains
          end do
       end if
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
+      if (present(restart)) call add_restart(self, record, model, restart)
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
       if ((record%last_of_step .or. is_due) .and. .not. (ends_run .or. self%is_draft)) then
@@ -263,6 +346,7 @@ contains
       do i = 1, size(self%tables)
          bytes = bytes + bytes_in(self%tables(i)%sets)
       end do
+      if (allocated(self%restarts%sets)) bytes = bytes + bytes_in(self%restarts%sets)
    end function waiting_bytes
 
    subroutine publish(self, model, interfaces, run, error, accuracy)
@@ -318,8 +402,8 @@ contains
       call self%contact_file%open(is_new)
       if (is_new) call self%contact_grid%write_head(self%contact_file%content, interfaces, &
          model%mesh%node_number, model%units)
-      call self%contact_grid%flush_grid(self%contact_file%content, is_new, geometry%name, &
-         interface_sets)
+      call self%contact_grid%flush_grid(self%contact_file%content, .not. &
+         self%contact_file%in_place, geometry%name, interface_sets)
    end subroutine flush_contact
 
    subroutine flush_all(self, model, interfaces)
@@ -332,7 +416,8 @@ contains
       call self%file%open(is_new)
       associate (file => self%file%content)
          if (is_new) call write_heads(self, model, interfaces)
-         call self%fields%flush_grid(file, is_new, node_sets, cell_sets)
+         call self%fields%flush_grid(file, .not. self%file%in_place, node_sets, cell_sets)
+         call self%restarts%flush(file)
          do i = 1, size(self%tables)
             call flush_sets(self%tables(i)%sets, file)
          end do

@@ -8,6 +8,7 @@ module run_judgement
    use model, only: model_type
    use records, only: contact_record_type, increment_record_type
    use solution_report, only: warning_type
+   use state_tables, only: integers, logicals, reals, state_table_type
    use steps, only: solves_heat, solves_mechanics
    use element_elasticity, only: largest_deformation, of_strain
    use text, only: append, percent, string_type, to_text
@@ -49,10 +50,11 @@ module run_judgement
       real(dp) :: largest(2) = 0.0_dp              !! strain and rotation so far [-], [radian]
       integer :: element(2) = 0                    !! elements that have them
       integer :: increment(2) = 0                  !! increments that have them
-      logical :: ended_early = .false.             !! whether the run failed
+      logical, public :: ended_early = .false.     !! whether the run failed
       type(warning_summary_type) :: repeated       !! warnings of its increments
    contains
       procedure :: take
+      procedure :: exchange
       procedure :: fail
       procedure :: warnings
    end type run_judgement_type
@@ -104,6 +106,33 @@ contains
          end where
       end associate
    end subroutine take
+
+   !> What was seen so far, in either direction, but for the warnings of increments, which only the
+   !> listing has.
+   subroutine exchange(self, table)
+      class(run_judgement_type), intent(inout) :: self
+      type(state_table_type), intent(inout) :: table
+      integer, allocatable :: places(:)
+      logical, allocatable :: seen(:)
+      real(dp), allocatable :: largest(:), past(:)
+
+      seen = [self%moves, self%warms]
+      places = [self%element, self%increment]
+      largest = self%largest
+      if (allocated(self%past)) past = [self%past]
+      call logicals(table, 'seen', seen)
+      call logicals(table, 'closes', self%closes)
+      call reals(table, 'smallest_gaps', self%smallest_gap)
+      call reals(table, 'past_ends', past)
+      call reals(table, 'largest_deformation', largest)
+      call integers(table, 'deformed_most', places)
+      self%moves = seen(1)
+      self%warms = seen(2)
+      if (allocated(past)) self%past = reshape(past, [2, size(past)/2])
+      self%largest = largest
+      self%element = places(:2)
+      self%increment = places(3:)
+   end subroutine exchange
 
    !> Notes that the run ended early, so that what never happened might still have done.
    pure subroutine fail(self)

@@ -20,6 +20,7 @@ module run_output
    use run_summaries, only: or_blank, run_summary_type
    use clock, only: wall_seconds
    use solution_report, only: iteration_record_type
+   use state_tables, only: state_table_type
    use text, only: append, counted, string_type, to_text
    use verification, only: failure_words, verifier_type
    implicit none
@@ -43,6 +44,7 @@ module run_output
    contains
       procedure :: reserve
       procedure :: start
+      procedure :: go_on
       procedure :: accept
       procedure :: fail
       procedure :: finish
@@ -110,14 +112,30 @@ contains
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine start
 
+   !> Goes on behind an earlier result, as results_type's go_on.
+   !> Error: status_internal, when a file cannot be written.
+   subroutine go_on(self, path, restart, counts, model, error)
+      class(run_output_type), intent(inout) :: self       !! started
+      character(*), intent(in) :: path                    !! of that result
+      type(state_table_type), intent(inout) :: restart    !! state of its run, to be restored
+      integer, intent(in) :: counts(2)                    !! restarts up to it, their values
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error !! what went wrong
+
+      call self%verifier%exchange(restart)
+      call self%judgement%exchange(restart)
+      call self%results%go_on(path, restart, counts, model, error)
+   end subroutine go_on
+
    !> Takes an accepted increment.
    !> Error: status_internal, when a file cannot be written.
    subroutine accept(self, record, model, interfaces, error)
       class(run_output_type), intent(inout) :: self
-      type(increment_record_type), intent(in) :: record
+      type(increment_record_type), intent(inout) :: record   !! whose restart is taken from it
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
+      type(state_table_type), allocatable :: restart
       real(dp) :: since
 
       since = wall_seconds()
@@ -125,8 +143,13 @@ contains
       call self%verifier%judge(record, model, interfaces, self%point_node)
       call self%judgement%take(record, model, interfaces)
       call self%progress%take(record)
+      if (allocated(record%restart)) then
+         call move_alloc(record%restart, restart)
+         call self%verifier%exchange(restart)
+         call self%judgement%exchange(restart)
+      end if
       if (.not. allocated(error)) call self%results%append(record, model, interfaces, self%run, &
-         error)
+         error, restart)
       if (allocated(error)) call self%progress%clear()
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
@@ -184,6 +207,8 @@ contains
       end if
       self%run%accuracy = told_of_rounds(accuracy, self%run%verify_passed + &
          self%run%verify_failed > 0, interfaces, model%units)
+      self%run%is_finished = .not. self%judgement%ended_early .and. &
+         self%run%accuracy%later_round == 0
       call self%results%finish(model, interfaces, self%run, accuracy, self%failed, error)
       if (allocated(error)) then
          call self%break_off(error%message)

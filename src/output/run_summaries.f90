@@ -43,6 +43,9 @@ module run_summaries
       real(dp) :: seconds_read = 0.0_dp          !! reading the deck [s]
       type(run_seconds_type) :: seconds
       real(dp) :: seconds_write = 0.0_dp         !! writing; the output layer adds to it [s]
+      logical :: is_finished = .false.           !! whether nothing is left to be solved
+      character(:), allocatable :: settings      !! options that change the deck; empty for none
+      character(:), allocatable :: origin        !! where it goes on from; unallocated: its start
       integer :: verify_passed = 0               !! *VERIFY checks that passed
       integer :: verify_failed = 0               !! *VERIFY checks that failed
       type(accuracy_words_type) :: accuracy      !! a requested accuracy, once a round ended
@@ -152,6 +155,9 @@ contains
       call add(entries, nowhere, '', or_blank(model%units%temperature), 'unit_temperature')
       if (any(model%steps%is_transient)) call add(entries, nowhere, '', &
          run%sizes%heat_factored, 'factorisations_thermal')
+      if (allocated(run%origin)) call add(entries, nowhere, '', run%origin, 'continued_from')
+      if (or_blank(run%settings) /= '') call add(entries, nowhere, '', run%settings, 'settings')
+      call add(entries, nowhere, '', merge(1, 0, run%is_finished), 'finished')
       call add(entries, nowhere, '', run%verify_passed, 'verify_passed')
       call add(entries, nowhere, '', run%verify_failed, 'verify_failed')
    end subroutine add_end

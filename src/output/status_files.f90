@@ -2,7 +2,7 @@
 !> here until the result file that holds their increments is in place.
 module status_files
    use errors, only: error_type
-   use file_calls, only: check_in_place, try_file
+   use file_calls, only: check_in_place, read_file, try_file
    use increment_quantities, only: history_value, pass_value
    use listing_text, only: column, printed_text_type, table_cell, table_head
    use open_files, only: append_to_file, close_descriptor, open_new_file
@@ -13,6 +13,8 @@ module status_files
    implicit none
    private
    public :: status_file_type
+
+   integer, parameter :: most_bytes = 1000000000   !! of an earlier file
 
    !> A file that grows by whole lines.
    type :: status_file_type
@@ -28,6 +30,7 @@ module status_files
       procedure :: add_increment
       procedure :: add_iterations
       procedure :: reserve
+      procedure :: go_on
       procedure :: empty
       procedure :: write_waiting
       procedure :: close => close_file
@@ -99,6 +102,26 @@ contains
       call try_file(self%path, error)
       if (.not. allocated(error)) call self%text%open(error)
    end subroutine reserve
+
+   !> Goes on behind the lines of an earlier file up to an increment, as far as it has them.
+   subroutine go_on(self, path, increment)
+      class(status_file_type), intent(inout) :: self
+      character(*), intent(in) :: path                !! the earlier file
+      integer, intent(in) :: increment                !! the last that is kept
+      character(:), allocatable :: contents, fault
+      integer :: first, last, number, status
+
+      call read_file(path, most_bytes, contents, fault)
+      first = 1
+      do while (len(fault) == 0 .and. first <= len(contents))
+         last = first + index(contents(first:)//new_line('a'), new_line('a')) - 2
+         read (contents(first:min(last, first + 9)), *, iostat=status) number
+         if (status == 0) then
+            if (number <= increment) write (self%text%unit, '(a)') contents(first:last)
+         end if
+         first = last + 2
+      end do
+   end subroutine go_on
 
    !> Empties the file of an earlier run and leaves it with its heading.
    !> Error: status_internal, when it cannot be written.

@@ -12,6 +12,7 @@ module verification
    use quantity_types, only: find_quantity, of_history, of_nodes, quantity_type
    use records, only: contact_record_type, increment_record_type
    use reported_quantities, only: verifiable
+   use state_tables, only: logicals, reals, state_table_type, words
    use text, only: few_digits, percent, read_integer, read_real, to_text, to_upper
    implicit none
    private
@@ -35,6 +36,7 @@ module verification
    contains
       procedure :: start
       procedure :: judge
+      procedure :: exchange
       procedure :: counts
    end type verifier_type
 
@@ -73,6 +75,45 @@ contains
             model%verifications(i), record, interfaces, self%outcomes(i))
       end do
    end subroutine judge
+
+   !> The outcomes so far, in either direction; none where the table is of another deck's checks.
+   subroutine exchange(self, table)
+      class(verifier_type), intent(inout) :: self   !! started
+      type(state_table_type), intent(inout) :: table
+      character(:), allocatable :: reasons
+      logical, allocatable :: flags(:)
+      real(dp), allocatable :: values(:)
+      integer :: first, i, n
+
+      n = size(self%outcomes)
+      reasons = ''
+      values = [self%outcomes%time, self%outcomes%found, self%outcomes%deviation, &
+         spread(0.0_dp, 1, n)]
+      flags = [self%outcomes%judged, self%outcomes%passed, spread(.false., 1, n)]
+      do i = 1, n
+         associate (outcome => self%outcomes(i))
+            if (outcome%judged) reasons = reasons//outcome%reason//new_line('a')
+            flags(2*n + i) = allocated(outcome%bound)
+            if (allocated(outcome%bound)) values(3*n + i) = outcome%bound
+         end associate
+      end do
+      call reals(table, 'check_values', values)
+      call logicals(table, 'check_marks', flags)
+      call words(table, 'check_reasons', reasons)
+      if (size(flags) /= 3*n .or. .not. table%is_restoring()) return
+      self%outcomes%time = values(:n)
+      self%outcomes%found = values(n + 1:2*n)
+      self%outcomes%deviation = values(2*n + 1:3*n)
+      self%outcomes%judged = flags(:n)
+      self%outcomes%passed = flags(n + 1:2*n)
+      first = 1
+      do i = 1, n
+         if (.not. flags(i)) cycle
+         self%outcomes(i)%reason = reasons(first:first - 2 + index(reasons(first:), new_line('a')))
+         first = first + len(self%outcomes(i)%reason) + 1
+         if (flags(2*n + i)) self%outcomes(i)%bound = values(3*n + i)
+      end do
+   end subroutine exchange
 
    !> Takes the bound of what a check is about: of a quantity of an interface, or of the largest
    !> pressure of the only one.

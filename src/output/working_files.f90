@@ -4,7 +4,7 @@ module working_files
    use clock, only: wall_seconds
    use errors, only: error_type, set_error, status_internal
    use file_calls, only: cannot_write, copy_file, create_working_file, remove_file, &
-      remove_working_files, rename_file, try_file, try_growth
+      remove_working_files, rename_file, sync_file, try_file, try_growth
    use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp
    implicit none
@@ -22,8 +22,10 @@ module working_files
    !> A file in place and the working copy beside it.
    type :: working_file_type
       private
-      character(:), allocatable :: path          !! path of the file in place
+      character(:), allocatable, public :: path  !! path of the file in place
       character(:), allocatable, public :: working_path !! path of the working copy, if there is one
+      character(:), allocatable, public :: source   !! file of which the first copy is made, if any
+      logical, public :: is_synced = .false.     !! whether it is on the disk before it is in place
       type(hdf5_writer_type), public :: content  !! writes the working copy while it is open
       logical, public :: in_place = .false.      !! whether this run's file is in place
       real(dp) :: cost = 0.0_dp                  !! what the present publishing has cost so far [s]
@@ -73,7 +75,8 @@ contains
       call self%discard()
    end subroutine reserve
 
-   !> Opens the working copy: a new one at first, later a copy of the file in place.
+   !> Opens the working copy: a new one at first, or a copy of the source; later one of the file in
+   !> place.
    !> Error kept by `content`: status_internal, when it cannot be written.
    subroutine open_working(self, is_new)
       class(working_file_type), intent(inout) :: self
@@ -83,9 +86,12 @@ contains
       is_new = .false.
       if (self%content%id >= 0) return
       call create_working_file(self%path, self%working_path, error)
-      is_new = .not. self%in_place
-      if (self%in_place .and. .not. allocated(error)) call copy_file(self%path, &
-         self%working_path, error)
+      is_new = .not. (self%in_place .or. allocated(self%source))
+      if (self%in_place .and. .not. allocated(error)) then
+         call copy_file(self%path, self%working_path, error)
+      else if (allocated(self%source) .and. .not. allocated(error)) then
+         call copy_file(self%source, self%working_path, error)
+      end if
       if (allocated(error)) then
          call self%content%fail(error)
       else if (is_new) then
@@ -123,6 +129,7 @@ contains
       type(error_type), allocatable :: still_there
       character(:), allocatable :: kept
 
+      if (self%is_synced) call sync_file(self%working_path)
       call rename_file(self%working_path, self%path, error)
       if (allocated(error)) then
          kept = self%working_path(:len(self%working_path) - len(extension))

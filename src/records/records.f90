@@ -4,6 +4,7 @@ module records
    use kinds, only: dp
    use field_recovery, only: error_record_type
    use solution_report, only: solution_report_type, work_record_type
+   use state_tables, only: state_table_type
    use text, only: string_type
    use zone_edges, only: edges_kept
    implicit none
@@ -127,6 +128,8 @@ module records
       type(error_record_type) :: heat_flux_error = error_record_type()
       !> One an *EL PRINT of the step, empty where its table is not due; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
+      !> Where a restart is due: what the run needs to go on from here
+      type(state_table_type), allocatable :: restart
    end type increment_record_type
 
 contains

@@ -2,10 +2,10 @@
 module command_line
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
-   use text, only: append, read_integer, read_real, string_type
+   use text, only: append, percent, read_integer, read_real, string_type
    implicit none
    private
-   public :: command_type, read_command, usage
+   public :: command_type, read_command, settings_in_words, usage
    public :: command_run, command_check, command_trade, command_help, command_version
 
    integer, parameter :: command_run = 1       !! solve
@@ -26,12 +26,16 @@ module command_line
       logical :: is_batch = .false.                   !! run: several decks, or --jobs
       real(dp) :: limit = 30.0_dp                     !! --limit, CPU seconds of a row [s]
       real(dp) :: accuracy = 0.0_dp                   !! --accuracy, a part of the values; 0: none
+      character(:), allocatable :: restart            !! --restart, path of a result; empty: none
+      real(dp), allocatable :: restart_time           !! its time, where one is given [time]
+      logical :: resumes = .false.                    !! --resume
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(28) = [character(88) :: &
+   character(*), parameter :: usage(33) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
-      '                           [--quiet] [--accuracy P%]', &
+      '                           [--quiet] [--accuracy P%] [--resume]', &
+      '                           [--restart RESULT[@TIME]]', &
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
       '                          [--limit SECONDS] [--jobs N]', &
@@ -52,6 +56,10 @@ module command_line
       '  --accuracy P%      run: refine the mesh and shorten the increments until the error', &
       '                     bounds of force, heat rate, peak pressure, edge of contact', &
       '                     are within P per cent; replaces *ACCURACY', &
+      '  --restart RESULT   go on from the last state that *RESTART, WRITE kept in this result,', &
+      '                     or with RESULT@TIME from that at a time', &
+      '  --resume           run: skip decks whose results are finished; go on with others from', &
+      '                     the last state that their results keep, or from the start', &
       '  --limit SECONDS    trade: skip rows that would take more CPU time (30)', &
       '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)', &
       '', &
@@ -71,6 +79,7 @@ contains
 
       allocate (command%decks(0), command%settings(0))
       command%folder = '.'
+      command%restart = ''
       if (command_argument_count() == 0) return
       word = argument(1)
       select case (word)
@@ -98,6 +107,12 @@ contains
          call set_error(error, status_deck, 'no deck is named')
       else if (size(command%decks) > 1 .and. command%action == command_trade) then
          call set_error(error, status_deck, 'trade takes one deck')
+      else if (size(command%decks) > 1 .and. command%restart /= '') then
+         call set_error(error, status_deck, '--restart takes one deck; --resume takes several, '// &
+            'each with its own result')
+      else if (command%resumes .and. command%restart /= '') then
+         call set_error(error, status_deck, '--resume goes on from the deck''s own result, and '// &
+            '--restart from another: leave one out')
       end if
       if (size(command%decks) > 1) command%is_batch = .true.
    end subroutine read_command
@@ -115,10 +130,15 @@ contains
       case ('--quiet')
          command%quiet = .true.
          return
+      case ('--resume')
+         command%resumes = .true.
+         if (command%action /= command_run) call set_error(error, status_deck, &
+            'option --resume does not go with '//argument(1))
+         return
       case ('--help', '-h')
          command%action = command_help
          return
-      case ('--out', '--width', '--set', '--jobs', '--limit', '--accuracy')
+      case ('--out', '--width', '--set', '--jobs', '--limit', '--accuracy', '--restart')
          value = ''
          if (i <= command_argument_count()) value = argument(i)
          if (len_trim(value) == 0) then
@@ -140,6 +160,7 @@ contains
       if (command%action == command_check .and. word == '--out' .or. &
          command%action == command_check .and. word == '--jobs' .or. &
          command%action /= command_run .and. word == '--accuracy' .or. &
+         command%action == command_trade .and. word == '--restart' .or. &
          command%action /= command_trade .and. word == '--limit') then
          call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
          return
@@ -191,6 +212,8 @@ contains
          end if
       case ('--set')
          call append(command%settings, value)
+      case ('--restart')
+         call take_restart(command, value, error)
       case default
          status = verify(value, '0123456789')
          if (status == 0 .and. len(value) > 0) read (value, *, iostat=status) command%width
@@ -198,6 +221,44 @@ contains
             'option --width needs a whole number of at least 80, not '//value)
       end select
    end subroutine take_value
+
+   !> Takes RESULT or RESULT@TIME; the file may be named without its ending.
+   subroutine take_restart(command, value, error)
+      type(command_type), intent(inout) :: command
+      character(*), intent(in) :: value
+      type(error_type), allocatable, intent(out) :: error
+      character(*), parameter :: ending = '.vtkhdf'
+      integer :: at
+      logical :: exists, valid
+      real(dp) :: time
+
+      command%restart = value
+      at = index(value, '@', back=.true.)
+      inquire (file=value, exist=exists)
+      if (at > 1 .and. .not. exists) then
+         call read_real(value(at + 1:), time, valid)
+         if (.not. valid) call set_error(error, status_deck, 'option --restart needs RESULT or '// &
+            'RESULT@TIME, not '//value)
+         command%restart = value(:at - 1)
+         command%restart_time = time
+      end if
+      at = max(0, len(command%restart) - len(ending))
+      if (command%restart(at + 1:) /= ending) command%restart = command%restart//ending
+   end subroutine take_restart
+
+   !> The options that change what a deck asks for; empty for none.
+   pure function settings_in_words(command) result(words)
+      type(command_type), intent(in) :: command
+      character(:), allocatable :: words
+      integer :: i
+
+      words = ''
+      do i = 1, size(command%settings)
+         words = words//' --set '//command%settings(i)%value
+      end do
+      if (command%accuracy > 0.0_dp) words = words//' --accuracy '//percent(command%accuracy)
+      words = adjustl(words)
+   end function settings_in_words
 
    !> An argument without trailing blanks of its buffer.
    function argument(i) result(word)

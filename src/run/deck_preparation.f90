@@ -8,10 +8,12 @@ module deck_preparation
    use connections, only: connections_type, contact_laws_type, laws_of_step
    use contact_quantities, only: estimated
    use deck_builder, only: build_model
+   use deck_origins, only: find_origin, reads_restart
    use deck_builder_interactions, only: frictionless
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use earlier_results, only: earlier_result_type, origin_type
    use errors, only: error_type, set_error, status_deck
    use increments, only: simulation_type
    use kinds, only: dp
@@ -41,13 +43,17 @@ module deck_preparation
       type(cards_type) :: cards
       type(model_type), private :: model                  !! on the deck's mesh
       type(deck_report_type), allocatable, private :: report
+      type(origin_type), allocatable :: origin            !! where its run goes on from, if anywhere
+      !> With --resume: its result, where nothing is left to be solved
+      type(earlier_result_type), allocatable :: finished
    end type read_deck_type
 
 contains
 
    !> Reads a deck, unless that is done, and prepares the run of it or of a variation. Warnings and
    !> errors are printed on stderr; warnings of a variation are those of the deck, and are not.
-   !> Of several decks, a file without errors and without *STEP is none: its model stays empty.
+   !> Of several decks, a file without errors and without *STEP is none: its model stays empty, as
+   !> that of a deck does whose result is finished.
    !> Errors: status_deck, with the first of the deck's errors; as vary and simulation_type's start.
    subroutine prepare_deck(path, command, deck, model, simulation, error, variation)
       character(*), intent(in) :: path                    !! the deck as given
@@ -66,7 +72,11 @@ contains
       report = deck%report
       if (is_skipped(command, deck)) then
          call progress%clear()
-         call print_line(error_unit, path//': note: skipped: '//not_a_deck)
+         if (allocated(deck%finished)) then
+            call print_line(error_unit, path//': note: skipped: its result is finished')
+         else
+            call print_line(error_unit, path//': note: skipped: '//not_a_deck)
+         end if
          return
       end if
       if (.not. report%has_errors()) then
@@ -106,9 +116,13 @@ contains
 
       allocate (deck%report)
       call read_deck(path, command%width, command%settings, deck%cards, deck%report)
+      call find_origin(path, command, deck%cards, deck%report, deck%origin, deck%finished)
       if (is_skipped(command, deck)) return
+      ! Without the result that it goes on from there is no model.
+      if (reads_restart(deck%cards)) return
       call build_model(deck%cards, verifiable, estimated, deck%model, deck%report)
       if (command%accuracy <= 0.0_dp .or. deck%report%has_errors()) return
+      deck%model%steps%restart_frequency = 0
       ! Targets of --accuracy replace those of the deck.
       if (unbounded(deck%model) /= '') call deck%report%error(deck%cards%last, &
          'a requested accuracy needs bounds of errors, which do not know '// &
@@ -119,13 +133,13 @@ contains
          'the deck has no *CONTACT PAIR: there is no quantity whose accuracy could be requested')
    end subroutine read_model
 
-   !> Whether a file is no deck but one that decks include.
+   !> Whether a file is no deck but one that decks include, or is solved already.
    pure logical function is_skipped(command, deck)
       type(command_type), intent(in) :: command
       type(read_deck_type), intent(in) :: deck            ! read
 
-      is_skipped = size(command%decks) > 1 .and. .not. (deck%report%has_errors() .or. &
-         size(step_cards(deck%cards)) > 0)
+      is_skipped = allocated(deck%finished) .or. size(command%decks) > 1 .and. .not. &
+         (deck%report%has_errors() .or. size(step_cards(deck%cards)) > 0)
    end function is_skipped
 
    !> Reports an error at the card that it names.

@@ -4,7 +4,7 @@ module deck_run
    use adaptive_rounds, only: adaptive_rounds_type, round_solver_type
    use blas_lapack, only: reserve_blas_memory
    use clock, only: wall_seconds
-   use command_line, only: command_type
+   use command_line, only: command_type, settings_in_words
    use contact_points, only: contact_points_type
    use deck_files, only: input_files_type, outputs_of, results_of
    use deck_outcomes, only: deck_outcome_type
@@ -20,11 +20,12 @@ module deck_run
    use messages, only: print_error
    use model, only: model_type
    use records, only: increment_record_type
+   use restarts, only: go_on
    use run_description, only: describe_run
    use run_output, only: run_output_type
    use run_summaries, only: or_blank
    use run_summaries, only: or_blank
-   use text, only: append, string_type, to_text
+   use text, only: append, counted, string_type, to_text
    use utf8, only: printable
    use variations, only: variation_type
    implicit none
@@ -107,6 +108,8 @@ contains
             output%run%verify_passed = outcome%verify_passed
             output%run%verify_failed = outcome%verify_failed
             call describe_run(self%path, model, simulation, output%run)
+            output%run%settings = settings_in_words(self%command)
+            if (allocated(self%deck%origin)) output%run%origin = self%deck%origin%words()
             call solve_deck(self, rounds, error)
             if (allocated(error)) call report_failure(self, error, is_told=.false.)
             ! Of a run that could not go on for want of a file or of memory a check says nothing.
@@ -139,7 +142,7 @@ contains
             is_told = allocated(error)
          end if
          if (.not. (allocated(error) .or. allocated(self%model%steps))) then
-            self%outcome%reason = not_a_deck
+            call skip(self)
             return
          end if
          if (.not. (allocated(error) .or. is_later)) then
@@ -152,7 +155,11 @@ contains
             call self%output%progress%say('assembling')
             call self%simulation%assemble(self%model)
             call self%output%progress%say('reducing')
-            call self%simulation%reduce(self%model, error)
+            if (allocated(self%deck%origin)) then
+               call go_on(self%model, self%simulation, self%deck%origin%table, error)
+            else
+               call self%simulation%reduce(self%model, error)
+            end if
             if (.not. allocated(error)) return
             call say_when(self, error)
          end if
@@ -160,6 +167,23 @@ contains
       end associate
       call report_failure(self, error, is_told)
    end subroutine begin_round
+
+   !> Says of a file why it is not solved; checks that failed in a finished run fail again.
+   subroutine skip(self)
+      type(deck_run_type), intent(inout) :: self
+      type(error_type), allocatable :: error
+
+      self%outcome%reason = not_a_deck
+      if (.not. allocated(self%deck%finished)) return
+      self%outcome%reason = 'its result is finished'
+      associate (failed => self%deck%finished%failed_checks)
+         if (failed == 0) return
+         self%outcome%verify_failed = failed
+         call set_error(error, status_verify, 'its result is finished, and '//counted(failed, &
+            '*VERIFY check')//' failed')
+      end associate
+      call self%outcome%fail(error)
+   end subroutine skip
 
    !> Sees to it that results can be written before anything is solved.
    !> Error: as run_output_type's reserve.
@@ -194,12 +218,23 @@ contains
          end associate
          deallocate (interfaces)
          if (allocated(error)) return
+         if (allocated(self%deck%origin)) then
+            associate (origin => self%deck%origin)
+               call output%go_on(origin%path, origin%table, origin%counts, model, error)
+            end associate
+            if (allocated(error)) return
+         end if
          call outcome%note_files(output%written())
          call prepare_end(self, end_at_once)
          call self%end%hold(.false.)
          self%is_written = .true.
          call begin_increment(self, error)
-         call rounds%solve_increments(model, self%simulation, self, record, error)
+         if (allocated(self%deck%origin)) then
+            call rounds%solve_increments(model, self%simulation, self, record, error, &
+               self%deck%origin%table)
+         else
+            call rounds%solve_increments(model, self%simulation, self, record, error)
+         end if
          ! From here on, output is not cut short.
          call self%end%hold(.true.)
          call prepare_end(self, end_by_increments)

@@ -7,7 +7,7 @@ module due_output
    use time_points, only: time_points_type
    implicit none
    private
-   public :: fields_are_due, is_judged, needs_recovery, table_is_due
+   public :: fields_are_due, is_judged, needs_recovery, restart_is_due, table_is_due
 
    real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
 
@@ -42,6 +42,16 @@ contains
             tolerance(record, model))
       end associate
    end function table_is_due
+
+   !> Whether a restart is written: at every n-th increment of a step and its last.
+   pure logical function restart_is_due(record, model)
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+      type(time_points_type) :: no_others
+
+      restart_is_due = table_is_due(model%steps(record%step)%restart_frequency, no_others, &
+         record, model)
+   end function restart_is_due
 
    !> How near the end of an increment meets an instant.
    pure real(dp) function tolerance(record, model)

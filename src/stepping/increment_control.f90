@@ -5,6 +5,7 @@ module increment_control
    use load_histories, only: step_clock_type
    use model, only: model_type
    use records, only: increment_record_type
+   use state_tables, only: integers, reals, state_table_type
    use steps, only: adapts_increments, increment_growth, planned_increments, step_type
    use text, only: counted, percent, to_text
    implicit none
@@ -37,6 +38,8 @@ module increment_control
       procedure :: step_is_over
       procedure :: next_instant
       procedure :: start_of_step
+      procedure :: present_instant
+      procedure :: exchange
       procedure :: end_at
       procedure :: size_to
       procedure :: goes_too_far
@@ -138,6 +141,35 @@ contains
       size_to = clock%step_time - self%step_time
       if (abs(size_to - self%largest) <= alike*self%largest) size_to = self%largest
    end function size_to
+
+   !> The end of the last increment.
+   pure function present_instant(self, model) result(clock)
+      class(increment_control_type), intent(in) :: self   !! position in the steps
+      type(model_type), intent(in) :: model
+      type(step_clock_type) :: clock
+
+      clock = self%start_of_step(model)
+      clock%step_time = self%step_time
+      clock%total_time = self%step_start + self%step_time
+   end function present_instant
+
+   !> The position within the present step, in either direction.
+   subroutine exchange(self, table)
+      class(increment_control_type), intent(inout) :: self   !! in the step of the table
+      type(state_table_type), intent(inout) :: table
+      integer, allocatable :: counts(:)
+      real(dp), allocatable :: times(:)
+
+      counts = [self%increments, self%increments_of_step]
+      times = [self%step_time, self%largest, self%useful]
+      call integers(table, 'increments', counts)
+      call reals(table, 'times', times)
+      self%increments = counts(1)
+      self%increments_of_step = counts(2)
+      self%step_time = times(1)
+      self%largest = times(2)
+      self%useful = times(3)
+   end subroutine exchange
 
    !> Makes an instant end at another time of the step.
    pure subroutine end_at(self, step_time, clock)

@@ -449,9 +449,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (bodies => self%bodies)
-         call bodies%form_operators(model, next%temperature, &
-            allocated(bodies%mechanical%matrix%value), allocated(bodies%thermal%matrix%value), &
-            allocated(bodies%thermal_load%value))
+         call bodies%move_operators(model, next%temperature)
          call self%corrections%renew(model, bodies, stage, before, next)
          if (solves_mechanics(model%steps(self%control%step)%analysis)) call bodies%reduce(model, &
             self%heats(self%in_use)%node_rank, error)

@@ -342,6 +342,7 @@ contains
          self%variation)
       if (allocated(error)) return
       model%estimates_errors = .false.
+      model%steps%restart_frequency = 0
       if (allocated(model%accuracy%targets)) deallocate (model%accuracy%targets)
       call index%build(model%mesh%node_number)
       self%found%nodes = [(index%find(self%nodes(i)), i=1, size(self%nodes))]

@@ -334,7 +334,7 @@ def test_what_is_passed_over_is_said(tmp_path):
     for node, missing in ((1, "x"), (1, "y"), (2, "y"), (4, "x")):
         assert f"warning: node {node} has no {missing}: 0 is used" in process.stderr
     notes = deck.with_suffix(".lst").read_text()
-    for card in ("*EXPANSION: ZERO", "*RESTART", "*OUTPUT", "*EL FILE: SECTION FORCES",
+    for card in ("*EXPANSION: ZERO", "*OUTPUT", "*EL FILE: SECTION FORCES",
                  "*CONTACT FILE: OUTPUT", "*STATIC: SOLVER"):
         assert f"- {card} is ignored" in notes, card
 

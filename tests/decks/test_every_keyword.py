@@ -7,7 +7,8 @@ import re
 from deck_runs import DECKS
 
 REFERENCE = DECKS.parents[1] / "docs" / "deck.md"
-FLAGS = {"GENERATE", "DIRECT", "PRESSURE", "CLEARANCE", "ROUGH", "ADD", "REMOVE", "SHRINK"}
+FLAGS = {"GENERATE", "DIRECT", "PRESSURE", "CLEARANCE", "ROUGH", "ADD", "REMOVE", "SHRINK",
+         "READ", "WRITE", "OVERLAY"}
 VALUES = {"GAP LAW, CLEARANCE"}   # no flag there, but a value of TYPE=
 
 # What has one value only, or none.
@@ -28,7 +29,7 @@ ONE_VALUE = {
     "COUPLING": "no data", "COUPLING, CONSTRAINT NAME": "means nothing",
     "CLEARANCE": "no data", "FIXED POINT": "no data", "INCLUDE": "no data",
     "MATERIAL": "no data", "OPTIONS": "no data", "PHYSICAL CONSTANTS": "no data",
-    "REFINE": "no data", "SOLVER": "no data",
+    "REFINE": "no data", "RESTART": "no data", "SOLVER": "no data",
     "STEP": "no data", "SURFACE INTERACTION": "its thickness is not needed",
 }
 

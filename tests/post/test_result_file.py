@@ -316,7 +316,8 @@ def test_every_dataset_says_what_it_is_and_the_document_says_the_same(results):
 
 
 # A step that stores heat, of which strains take up a part.
-STRETCHED = """*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15
+STRETCHED = """*RESTART, WRITE
+*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15
 *NODE, NSET=ALL
 1, 0., 0.
 2, 1., 0.

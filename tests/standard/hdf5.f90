@@ -11,7 +11,8 @@ module hdf5
    integer, parameter :: size_t = c_size_t
    integer(c_int), parameter :: h5_integer_kind = 0
 
-   integer :: h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_libver_latest_f, h5f_libver_v18_f
+   integer :: h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f
+   integer :: h5f_libver_latest_f, h5f_libver_v18_f
    integer :: h5s_scalar_f, h5s_select_set_f, h5t_cset_utf8_f
    integer(hsize_t) :: h5s_unlimited_f
    integer(hid_t) :: h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f
@@ -293,5 +294,44 @@ module hdf5
          integer(size_t), intent(in) :: size
          integer, intent(out) :: hdferr
       end subroutine h5tset_size_f
+
+      subroutine h5lexists_f(loc_id, name, link_exists, hdferr, lapl_id)
+         import :: hid_t
+         integer(hid_t), intent(in) :: loc_id
+         character(*), intent(in) :: name
+         logical, intent(out) :: link_exists
+         integer, intent(out) :: hdferr
+         integer(hid_t), intent(in), optional :: lapl_id
+      end subroutine h5lexists_f
+
+      subroutine h5ldelete_f(loc_id, name, hdferr, lapl_id)
+         import :: hid_t
+         integer(hid_t), intent(in) :: loc_id
+         character(*), intent(in) :: name
+         integer, intent(out) :: hdferr
+         integer(hid_t), intent(in), optional :: lapl_id
+      end subroutine h5ldelete_f
+
+      subroutine h5sget_simple_extent_dims_f(space_id, dims, maxdims, hdferr)
+         import :: hid_t, hsize_t
+         integer(hid_t), intent(in) :: space_id
+         integer(hsize_t), intent(out) :: dims(*), maxdims(*)
+         integer, intent(out) :: hdferr
+      end subroutine h5sget_simple_extent_dims_f
+
+      subroutine h5dread_f(dset_id, mem_type_id, buf, hdferr, mem_space_id, file_space_id, xfer_prp)
+         import :: c_ptr, hid_t
+         integer(hid_t), intent(in) :: dset_id, mem_type_id
+         type(c_ptr), intent(inout) :: buf
+         integer, intent(out) :: hdferr
+         integer(hid_t), intent(in), optional :: mem_space_id, file_space_id, xfer_prp
+      end subroutine h5dread_f
+
+      subroutine h5aread_f(attr_id, memtype_id, buf, hdferr)
+         import :: c_ptr, hid_t
+         integer(hid_t), intent(in) :: attr_id, memtype_id
+         type(c_ptr), intent(inout) :: buf
+         integer, intent(out) :: hdferr
+      end subroutine h5aread_f
    end interface
 end module hdf5

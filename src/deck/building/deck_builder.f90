@@ -81,6 +81,10 @@ contains
       model%estimates_errors = model%estimates_errors .and. unbounded(model) == ''
       call build_verifications(cards, context, model, report)
       call build_accuracy(cards, estimated, model, report)
+      if (allocated(model%accuracy%targets) .and. any(model%steps%restart_frequency > 0)) then
+         call context%note('*RESTART is ignored: each round of *ACCURACY solves the deck anew')
+         model%steps%restart_frequency = 0
+      end if
       call build_load_axis(cards%last, context, model, report)
       call check_model(context, model, report)
       if (.not. report%has_errors()) call complete_model(cards, context, model, report)

@@ -1,8 +1,8 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choose, need_choice, parameter_place, parameter_text, take_from, &
-      take_parameter, take_positive
+   use card_parameters, only: choose, has_parameter, need_choice, &
+      parameter_place, parameter_text, take_from, take_parameter, take_positive
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
@@ -16,6 +16,7 @@ module deck_builder_controls
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use named_items, only: find_named
+   use steps, only: step_controls_type
    use print_requests, only: print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
    use spelling, only: known_choices
@@ -23,7 +24,8 @@ module deck_builder_controls
    use time_points, only: time_points_type
    implicit none
    private
-   public :: build_fixed_point, build_thermal_scheme, build_start, build_print, read_frequency
+   public :: build_fixed_point, build_restart, build_thermal_scheme, build_start, build_print, &
+      read_frequency
 
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
    character(2), parameter :: coefficient_names(8) = &
@@ -76,6 +78,42 @@ contains
       end if
       call take_from(0, card, 'CONSTANT', report, fixed_point%constant)
    end subroutine build_fixed_point
+
+   !> Reads what one *RESTART says of writing; where to go on from is read before the steps are.
+   subroutine build_restart(card, report, controls)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report         !! receives errors
+      type(step_controls_type), intent(inout) :: controls     !! receives when they are written
+      integer :: place
+
+      place = 1
+      if (has_parameter(card, 'READ')) then
+         call take_from(1, card, 'STEP', report, place)
+         call take_from(1, card, 'INC', report, place)
+         if (has_parameter(card, 'INC') .and. .not. has_parameter(card, 'STEP')) call &
+            report%error(parameter_place(card, 'INC'), 'INC= needs STEP=')
+      else
+         call report_alone('STEP', 'READ')
+         call report_alone('INC', 'READ')
+      end if
+      if (.not. has_parameter(card, 'WRITE')) then
+         call report_alone('FREQUENCY', 'WRITE')
+         call report_alone('OVERLAY', 'WRITE')
+         if (size(card%parameters) == 0 .and. .not. card%flawed) call report%error(card%place, &
+            '*RESTART needs WRITE, to keep states of the run, or READ, to go on from one')
+         return
+      end if
+      controls%restart_frequency = 1
+      call take_from(0, card, 'FREQUENCY', report, controls%restart_frequency)
+      controls%overlays_restarts = has_parameter(card, 'OVERLAY')
+   contains
+      subroutine report_alone(parameter, other)
+         character(*), intent(in) :: parameter, other
+
+         if (has_parameter(card, parameter)) call report%error(parameter_place(card, parameter), &
+            parameter//' needs '//other)
+      end subroutine report_alone
+   end subroutine build_restart
 
    !> Reads one *THERMAL SCHEME; after an error the scheme stays as it was.
    subroutine build_thermal_scheme(cards, card, report, scheme)

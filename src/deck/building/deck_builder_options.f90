@@ -59,7 +59,7 @@ contains
                if (solver == 'MUMPS') model%solver = solver_mumps
             case ('REFINE')
                call build_levels(card, context, report)
-            case ('CONTROLS', 'RESTART')
+            case ('CONTROLS')
                call context%note('*'//card%name//' is ignored')
             case default
                cycle

@@ -6,7 +6,7 @@ module deck_builder_steps
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
    use deck_builder_contact, only: build_contact_change
-   use deck_builder_controls, only: build_fixed_point, build_print, build_start, &
+   use deck_builder_controls, only: build_fixed_point, build_print, build_restart, build_start, &
       build_thermal_scheme, read_frequency
    use deck_builder_loads, only: build_load_card
    use deck_context, only: deck_context_type
@@ -78,6 +78,8 @@ contains
                   'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT')
                call build_fixed_point(card, report, controls%fixed_point)
+            case ('RESTART')
+               call build_restart(card, report, controls)
             case ('START')
                call build_start(cards, card, model, report, controls%start)
             case ('THERMAL SCHEME')

@@ -5,13 +5,13 @@ module deck_reader
    use card_lines, only: card_lines_type, default_width
    use cards, only: cards_type, trim_cards
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type, read_lines
+   use deck_source, only: earlier_deck_type, place_type, read_lines
    use generated_cards, only: generate_cards
-   use text, only: append, string_type, to_text
+   use text, only: append, string_type, to_text, to_upper, without_blanks
    use utf8, only: first_byte
    implicit none
    private
-   public :: read_deck, files_of_deck
+   public :: read_deck, files_of_deck, keyword_of
 
    integer, parameter :: deepest_include = 16   !! files that may include each other
    integer, parameter :: most_files = 1000      !! of a deck, each counted as often as it is read
@@ -20,19 +20,22 @@ module deck_reader
 
 contains
 
-   !> Reads a deck and the files that it includes.
-   subroutine read_deck(path, width, settings, cards, report)
+   !> Reads a deck and the files that it includes; behind the deck of a result that it goes on from,
+   !> its cards before the first *STEP where the model's are.
+   subroutine read_deck(path, width, settings, cards, report, earlier)
       character(*), intent(in) :: path                  !! the deck as given
       integer, intent(in) :: width                      !! --width, 0 for none
       type(string_type), intent(in) :: settings(:)      !! --set, each NAME=VALUE
       type(cards_type), intent(out) :: cards
       type(deck_report_type), intent(out) :: report     !! what is wrong with it
+      type(earlier_deck_type), intent(in), optional :: earlier   !! the deck of a result
       type(card_lines_type) :: open_lines
       character(:), allocatable :: fault
       integer :: i
       logical :: exists
 
       open_lines%width = max(default_width, width)
+      if (present(earlier)) report%source%earlier = earlier
       call read_all_lines(path, settings, open_lines, cards, report, fault)
       call trim_cards(cards)
       call flatten_cards(cards, report)
@@ -87,7 +90,13 @@ contains
       report%path = path
       allocate (report%source%paths(0), cards%files(0), none(0))
       call open_lines%parameters%take_settings(settings, report)
+      if (allocated(report%source%earlier)) then
+         call append(report%source%paths, path)
+         call append(report%source%paths, report%source%earlier%path)
+         call take_earlier(1, report%source%earlier%steps, open_lines, cards, report)
+      end if
       call read_file(path, path, none, open_lines, cards, report, fault)
+      call take_earlier_steps(open_lines, cards, report)
       call open_lines%finish(cards, report)
    end subroutine read_all_lines
 
@@ -108,12 +117,20 @@ contains
       call read_lines(found, lines, fault)
       if (len(fault) == 0) fault = length_fault(lines)
       if (len(fault) > 0) return
-      call append(report%source%paths, path)
+      ! The paths of a deck that goes on from a result are there before its lines.
+      file = 1
+      if (size(above) > 0 .or. size(report%source%paths) == 0) then
+         call append(report%source%paths, path)
+         file = size(report%source%paths)
+      end if
       call append(cards%files, found)
-      file = size(report%source%paths)
       open_files = above
       call append(open_files, plain(found))
       do i = 1, size(lines)
+         if (allocated(report%source%earlier)) then
+            if (keyword_of(lines(i)%value) == 'STEP') call take_earlier_steps(open_lines, cards, &
+               report)
+         end if
          call report%source%add_image(file, i, lines(i)%value)
          call open_lines%take_line(lines(i)%value, report%source%count, cards, report)
          if (.not. allocated(open_lines%include)) cycle
@@ -141,6 +158,55 @@ contains
          call report%lose_file()
       end do
    end subroutine read_file
+
+   !> Reads the steps of the earlier deck, where there is one and they are not read yet.
+   subroutine take_earlier_steps(open_lines, cards, report)
+      type(card_lines_type), intent(inout) :: open_lines
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+
+      if (.not. allocated(report%source%earlier)) return
+      associate (earlier => report%source%earlier)
+         call take_earlier(earlier%steps + 1, size(earlier%images), open_lines, cards, report)
+      end associate
+      deallocate (report%source%earlier)
+   end subroutine take_earlier_steps
+
+   !> Reads lines of the earlier deck, which has those of included files behind *INCLUDE. Its checks
+   !> were judged in its run.
+   subroutine take_earlier(first, last, open_lines, cards, report)
+      integer, intent(in) :: first, last                     ! images
+      type(card_lines_type), intent(inout) :: open_lines
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      integer :: i
+      logical :: is_check
+      character(:), allocatable :: keyword
+
+      is_check = .false.
+      do i = first, last
+         associate (line => report%source%earlier%images(i)%value)
+            keyword = keyword_of(line)
+            if (keyword /= '') is_check = keyword == 'VERIFY'
+            if (is_check) cycle
+            call report%source%add_image(2, i, line)
+            call open_lines%take_line(line, report%source%count, cards, report)
+            if (allocated(open_lines%include)) deallocate (open_lines%include)
+         end associate
+      end do
+   end subroutine take_earlier
+
+   !> The keyword of a line, in upper case without blanks; empty for other lines.
+   pure function keyword_of(line) result(name)
+      character(*), intent(in) :: line
+      character(:), allocatable :: name
+
+      name = ''
+      if (index(adjustl(line), '*') /= 1) return
+      name = to_upper(without_blanks(line(:index(line//',', ',') - 1)))
+      name = name(2:)
+      if (index(name, '*') == 1) name = ''
+   end function keyword_of
 
    !> Why the lines of a file are not taken: one of them is too long; else empty.
    pure function length_fault(lines) result(fault)

@@ -7,10 +7,17 @@ module deck_source
    use utf8, only: as_utf8
    implicit none
    private
-   public :: deck_source_type, place_type, read_lines
+   public :: deck_source_type, earlier_deck_type, place_type, read_lines
 
    integer, parameter :: first_capacity = 1024   !! images before the list grows for the first time
    integer, parameter :: most_bytes = 1000000000   !! of a file
+
+   !> A deck of a result that another deck goes on from.
+   type :: earlier_deck_type
+      character(:), allocatable :: path             !! of the result
+      type(string_type), allocatable :: images(:)   !! card images, up to the end of a step
+      integer :: steps = 0                          !! images before the first *STEP
+   end type earlier_deck_type
 
    !> All card images of a deck in the order in which they are read.
    type :: deck_source_type
@@ -19,6 +26,7 @@ module deck_source
       integer, allocatable :: file(:)              !! (capacity) file of the image
       integer, allocatable :: line(:)              !! (capacity) line of the image in its file
       type(string_type), allocatable :: paths(:)   !! (files) paths as given
+      type(earlier_deck_type), allocatable :: earlier   !! whose steps are not read yet
    contains
       procedure :: add_image
       procedure :: words_of

@@ -154,7 +154,8 @@ module keywords
       keyword_type('NODE OUTPUT', built, in_step, 0, many, file_parameters), &
       keyword_type('ELEMENT OUTPUT', built, in_step, 0, many, file_parameters), &
       keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
-      keyword_type('RESTART', not_needed, in_both, 0, 0, 'STEP=/WRITE/FREQUENCY=/OVERLAY'), &
+      keyword_type('RESTART', built, in_both, 0, 0, &
+         'READ/STEP=/INC=/WRITE/FREQUENCY=/OVERLAY'), &
       keyword_type('NODE PRINT', built, in_step, 1, many, &
          'NSET=/FREQUENCY=/TIME POINTS=/TOTALS=/GLOBAL=/~FREQUENCYF='), &
       keyword_type('EL PRINT', built, in_step, 1, many, &
@@ -165,7 +166,7 @@ module keywords
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(83) = [ &
+   type(advice_type), parameter :: advice(84) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -241,7 +242,9 @@ module keywords
       advice_type(of_parameter, 'STATIC', 'EXPLICIT', 'loads are slow'), &
       advice_type(of_parameter, 'AMPLITUDE', 'SHIFTX', 'add the shift to the times'), &
       advice_type(of_parameter, 'AMPLITUDE', 'SHIFTY', 'add the shift to the factors'), &
-      advice_type(of_parameter, 'RESTART', 'READ', 'a run begins with the first step'), &
+      advice_type(of_parameter, 'RESTART', 'END STEP', 'a step goes on to its end; leave it out'), &
+      advice_type(of_parameter, 'RESTART', 'NUMBER INTERVAL/TIME MARKS', &
+         'FREQUENCY=n writes at every n-th increment of a step'), &
       advice_type(of_parameter, 'STEP', 'PERTURBATION', &
          'steps go on from the one before; leave it out'), &
       advice_type(of_parameter, 'FRICTION', 'LAGRANGE', &

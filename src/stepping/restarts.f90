@@ -1,0 +1,89 @@
+!> The whole of a run that changes, kept in a table, and a run that goes on from there.
+!>
+!> Operators, factors and the order of their unknowns follow from the deck: a run that goes on
+!> enters all steps up to its own and reduces their bodies as the first one did. Loads that were
+!> solved earlier change last digits, so both runs forget them where a restart is written.
+module restarts
+   use due_output, only: restart_is_due
+   use errors, only: error_type
+   use increments, only: simulation_type
+   use kinds, only: dp
+   use load_histories, only: end_of_step
+   use model, only: model_type
+   use records, only: increment_record_type
+   use solution_state, only: exchange_state
+   use state_tables, only: integers, reals, state_table_type, words
+   use steps, only: solves_heat
+   implicit none
+   private
+   public :: keep_restart, go_on
+
+contains
+
+   !> Keeps a run at the end of an increment, where a restart is due.
+   subroutine keep_restart(model, simulation, record)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(inout) :: simulation     !! the run, which forgets solved loads
+      type(increment_record_type), intent(inout) :: record   !! receives the table
+
+      if (.not. restart_is_due(record, model)) return
+      allocate (record%restart)
+      call record%restart%begin()
+      call exchange(simulation, record%restart)
+      if (allocated(simulation%known)) deallocate (simulation%known)
+   end subroutine keep_restart
+
+   !> Brings a run to where a table was kept.
+   !> Errors: as simulation_type's enter_step and reduce.
+   subroutine go_on(model, simulation, table, error)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(inout) :: simulation     !! a fresh run, started and assembled
+      type(state_table_type), intent(inout) :: table
+      type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: step(:)
+
+      call table%begin_restoring()
+      call integers(table, 'step', step)
+      do
+         call simulation%reduce(model, error)
+         if (allocated(error) .or. simulation%control%step == step(1)) exit
+         call simulation%loads%move_to(end_of_step(model%steps, simulation%control%step), model)
+         call simulation%enter_step(model, error)
+         if (allocated(error)) exit
+      end do
+      if (allocated(error)) return
+      call exchange(simulation, table)
+      associate (loads => simulation%loads, state => simulation%state)
+         call loads%move_to(simulation%control%present_instant(model), model)
+         if (any(solves_heat(model%steps%analysis))) then
+            state%sources%load = loads%heat_load()
+            state%sources%film = loads%film_matrix()
+         end if
+         state%force_load = loads%nodal_forces()
+         if (.not. allocated(state%operators_at)) return
+         call simulation%bodies%move_operators(model, state%operators_at)
+      end associate
+      call simulation%reduce(model, error)
+   end subroutine go_on
+
+   !> All of a run, in either direction.
+   subroutine exchange(simulation, table)
+      type(simulation_type), intent(inout) :: simulation     !! in the step of the table
+      type(state_table_type), intent(inout) :: table
+      integer, allocatable :: step(:)
+      real(dp), allocatable :: told(:)
+
+      step = [simulation%control%step]
+      told = [simulation%pivot_told, simulation%runaway_time]
+      call integers(table, 'step', step)
+      call simulation%control%exchange(table)
+      call simulation%loads%exchange(table)
+      call exchange_state(table, simulation%state)
+      call words(table, 'undecided', simulation%undecided)
+      call words(table, 'runaway', simulation%runaway)
+      call reals(table, 'told', told)
+      simulation%pivot_told = told(1)
+      simulation%runaway_time = told(2)
+   end subroutine exchange
+
+end module restarts
