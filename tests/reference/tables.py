@@ -75,6 +75,13 @@ def step_of_half_space(slope, constant, capacity, start, face):
     return lambda x, time: float(found(x / sqrt(time) / width)[0])
 
 
+def product(one, other, pieces=50):
+    """Return a table of the product of two tables, each interval divided into pieces."""
+    places = np.union1d(*(np.transpose(table)[1] for table in (one, other)))
+    fine = np.interp(np.arange((len(places) - 1) * pieces + 1) / pieces, range(len(places)), places)
+    return [(float(value(one, t) * value(other, t)), float(t)) for t in fine]
+
+
 def bar_stretch(stress, length, first, last):
     """Return the elongation of a bar whose modulus is linear along it."""
     return stress * length * log(first / last) / (first - last)
@@ -165,7 +172,7 @@ def warmed_ring(radii, conductivity, capacity, start, film, sink, times, cells=4
     return r, found.y.T
 
 
-def extrapolated(*arguments, cells=200):
+def extrapolated(*arguments, cells=100):
     """Return radii and temperatures of `warmed_ring` with the error of h^2 removed."""
     r, coarse = warmed_ring(*arguments, cells=cells)
     _, fine = warmed_ring(*arguments, cells=2 * cells)
