@@ -94,7 +94,8 @@ contains
          if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)), &
             content_noise*maxval(abs(data%equation%content_old))/data%equation%duration)
          if (allocated(data%equation%taken_up)) scale = max(scale, &
-            maxval(abs(data%equation%taken_up))/data%equation%duration, content_noise* &
+            maxval(abs(data%equation%taken_up))/data%equation%duration)
+         if (model%steps(record%step)%dilates) scale = max(scale, content_noise* &
             maxval(abs(bodies%capacity%multiply(bodies%dilatation%absolute)))/ &
             data%equation%duration)
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
