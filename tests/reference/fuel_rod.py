@@ -148,6 +148,7 @@ class Rod:
         """Return gap, pressure, temperatures of pellet (centre, face) and tube (bore, outside), and
         the conductance."""
         a, b, c = self.radii
+        seat = (a + b) / 2
         wall = self.wall_temperature(power)
         tube = self.tube.parts(wall)
         bore = float(wall(b))
@@ -156,9 +157,9 @@ class Rod:
             pellet = self.pellet.parts(self.pellet_temperature(power, face))
             free = (b - a + self.tube.faces(tube, 0.0, 0.0)[0]
                     - self.pellet.faces(pellet, 0.0, 0.0)[1])
-            # The force of a unit length and angle is that of the pellet's face.
-            pressed = (b - a + self.tube.faces(tube, a / b, 0.0)[0]
-                       - self.pellet.faces(pellet, 0.0, 1.0)[1])
+            # Areas of the contact are those half-way between the faces.
+            pressed = (b - a + self.tube.faces(tube, seat / b, 0.0)[0]
+                       - self.pellet.faces(pellet, 0.0, seat / a)[1])
             pressure = max(0.0, -free / (pressed - free))
             gap = max(0.0, free)
             if pressure > 0.0:
@@ -166,7 +167,7 @@ class Rod:
             return gap, pressure, self.gas(gap, (face + bore) / 2)
 
         def left(face):
-            return state(face)[2] * (face - bore) - power * a / 2
+            return state(face)[2] * (face - bore) * seat - power * a**2 / 2
 
         face = brentq(left, bore + 1e-6, bore + 3000.0, xtol=1e-9) if power else bore
         gap, pressure, conductance = state(face)
