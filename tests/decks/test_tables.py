@@ -74,7 +74,8 @@ def solved(folder, cards, name="deck"):
     result = solve(deck)
     with h5py.File(result) as file:
         groups = [group for group in FILES if group in file]
-    return datasets(result, *groups)
+        nodes = int(file["VTKHDF/NumberOfPoints"][0])
+    return datasets(result, *groups) | {"nodes": nodes}
 
 
 def history(folder, name="deck"):
@@ -84,8 +85,8 @@ def history(folder, name="deck"):
 
 
 def last(found, name):
-    """Return the values of a field of the nodes at the end, for one mesh of all increments."""
-    return found[f"VTKHDF/PointData/{name}"]
+    """Return the values of a field of the nodes at the end."""
+    return found[f"VTKHDF/PointData/{name}"][-found["nodes"]:]
 
 
 # A uniform temperature
@@ -123,18 +124,17 @@ def test_orthotropic_constants_of_a_table_turn_with_their_axes(tmp_path, kind):
 
 
 def assert_last_alike(one, other, tolerance=EXACT):
-    """Assert that the last increments of two runs of equal increments agree."""
-    fields = {name: values for name, values in one.items() if "estimated" not in name}
-    assert len(fields) > 3
-    half = {name: values[len(values) // 2:] for name, values in fields.items()}
-    assert_alike(half, {name: other[name][len(values) // 2:] for name, values in fields.items()},
+    """Assert that the fields at the end of two runs agree."""
+    names = [name.split("/")[-1] for name in one if "PointData" in name]
+    assert len(names) > 3
+    assert_alike(*({name: last(found, name) for name in names} for found in (one, other)),
                  tolerance)
 
 
 # Tables in which nothing changes
 
 def joined(kind, joint, *more, analysis=STEADY, times="0.25, 1.", method=(), divisions=(3, 3),
-           **properties):
+           friction=0.2, **properties):
     """Return two blocks, hot above and cold below, with a joint between them: node pairs, mortar
     points or a tie."""
     xs = [[1.0 + 2.0 * k / n for k in range(n + 1)] for n in divisions]
@@ -145,8 +145,9 @@ def joined(kind, joint, *more, analysis=STEADY, times="0.25, 1.", method=(), div
     if joint == "TIE":
         cards += ["*TIE, NAME=C", "UP.BOTTOM, LOW.TOP"]
     else:
-        cards += ["*SURFACE INTERACTION, NAME=C", "*FRICTION", "0.2", "*GAP LAW, TYPE=POWER",
-                  "1., 4., 0.5", "*GAP LAW, TYPE=GAS", "0.001, 0.001",
+        slides = ["*FRICTION", f"{friction}"] if friction else []
+        cards += ["*SURFACE INTERACTION, NAME=C", *slides, "*GAP LAW, TYPE=POWER", "1., 4., 0.5",
+                  "*GAP LAW, TYPE=GAS", "0.001, 0.001",
                   f"*CONTACT PAIR, INTERACTION=C, NAME=C, PAIRING={joint}", "UP.BOTTOM, LOW.TOP"]
     return [*cards, *initial("UP", "LOW"), "*BOUNDARY", "LOW.BOTTOM, 1, 2", "UP.LEFT, 1", *more,
             *step("*BOUNDARY", "UP.TOP, 11, 11, 280.", "LOW.BOTTOM, 11, 11, 0.", "*DSLOAD",
@@ -188,9 +189,7 @@ def assert_whole(folder, one, other, tolerance=EXACT, names=("temperature", "dis
     first, second = solved(folder, one, "one"), solved(folder, other, "other")
     for name in names:
         a, b = last(first, name), last(second, name)
-        count = min(len(a), len(b))
-        scale = np.abs(a).max()
-        np.testing.assert_allclose(b[-count:], a[-count:], rtol=0, atol=tolerance * scale)
+        np.testing.assert_allclose(b, a, rtol=0, atol=tolerance * np.abs(a).max())
 
 
 @pytest.mark.parametrize("joint", ["NODES", "SURFACES", "TIE"])
@@ -284,7 +283,9 @@ def test_heat_through_two_slabs_and_their_contact(tmp_path, kind, joint):
         tables.of_integral(upper, tables.integral(upper, 280.0) - flux), rtol=EXACT)
 
 
-SCHEMES = ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT", "L-STABLE"]
+# Part of the heat at the start of an increment that a scheme takes (c1): there is none at time 0.
+SCHEMES = {"IMPLICIT": 0.0, "GALERKIN": 1 / 3, "CRANK-NICOLSON": 0.5, "EXPLICIT": 0.0,
+           "L-STABLE": 0.0}
 CAPACITY = tables.product([(row[0], row[1]) for row in STORING["density"]],
                           [(row[0], row[1]) for row in STORING["specific_heat"]], 400)
 
@@ -299,9 +300,9 @@ def test_a_body_that_is_warmed_evenly_has_the_enthalpy_that_it_was_given(tmp_pat
                      "conductivity": [(1e3, 0.0), (2e3, 600.0)]})), *initial("BODY"),
                  *step("*DFLUX", f"BODY, BF, {power!r}", analysis="*HEAT TRANSFER, DIRECT",
                        times="0.4, 4.")]
-        found = last(solved(tmp_path, cards), "temperature")[-10:]
-        expected = tables.of_integral(
-            CAPACITY, tables.integral(CAPACITY, START) + 4.0 * power)
+        found = last(solved(tmp_path, cards), "temperature")
+        expected = tables.of_integral(CAPACITY, tables.integral(CAPACITY, START)
+                                      + (4.0 - 0.4 * SCHEMES[scheme]) * power)
         np.testing.assert_allclose(found, expected, rtol=0, atol=2e-5 * abs(expected - START))
 
 
@@ -322,25 +323,25 @@ def test_heat_is_stored_or_leaves(tmp_path, scheme, joint, free):
     assert course["force_imbalance"].max() < 1e-9
 
 
-@pytest.mark.parametrize("scheme", SCHEMES[:-1] + ["L-STABLE"])
+@pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_transient_ends_in_the_steady_state(tmp_path, scheme):
     """Slowly enough that each scheme damps."""
     steady, transient = (
         joined("CPE8", "NODES", method=[f"*THERMAL SCHEME, TYPE={scheme}"], analysis=analysis,
-               times=times, **(ISOTROPIC | STORING))
+               times=times, friction=None, **(ISOTROPIC | STORING))
         for analysis, times in ((STEADY, "0.5, 1."),
                                 ("*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "0.25, 50.")))
     assert_whole(tmp_path, steady, transient, 1e-4, ("temperature",))
 
 
 def test_a_failed_increment_leaves_no_trace(tmp_path):
-    """Two increments of which the first takes too many passes, and the smaller ones it is cut to."""
-    cards = joined("CPE8", "NODES", method=["*FIXED POINT, ACCELERATION=PICARD, MAXITER=4"],
-                   times="1., 1.", **ISOTROPIC)
-    with_cuts = solved(tmp_path, cards, "one")
-    without = solved(tmp_path, joined("CPE8", "NODES", times="1., 1.", **ISOTROPIC), "other")
-    table = [line.split() for line in (tmp_path / "one.sta").read_text().splitlines()[1:]]
-    assert sum(int(row[5]) for row in table) > 0
-    for name in ("gap", "heat_flux", "slave_temperature"):
-        a, b = (found[f"contact/C/{name}"][-1] for found in (with_cuts, without))
-        np.testing.assert_allclose(a, b, rtol=0, atol=1e-6 * max(1.0, np.abs(a).max()))
+    """Too few passes, so that it is cut; without friction the smaller ones end in the same state."""
+    few, enough = (
+        solved(tmp_path, joined("CPE8", "NODES", method=method, times="1., 1.", friction=None,
+                                **ISOTROPIC), name)
+        for name, method in (("few", ["*FIXED POINT, METHOD=PICARD, MAXITER=4"]), ("enough", ())))
+    rows = [line.split() for line in (tmp_path / "few.sta").read_text().splitlines()[1:]]
+    assert sum(int(row[5]) for row in rows) > 0
+    for name in ("pressure", "heat_flux", "slave_temperature"):
+        a, b = (found[f"contact/C/{name}"][-1] for found in (few, enough))
+        np.testing.assert_allclose(a, b, rtol=0, atol=1e-6 * np.abs(b).max())

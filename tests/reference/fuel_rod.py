@@ -123,12 +123,13 @@ class Ring:
 
 
 class Rod:
-    """Pellet and tube: radii (a, b, c), tables of conductivities, bodies, gas and contact."""
+    """Pellet and tube: radii (a, b, c), tables of conductivities, bodies, the conductance of gas by
+    gap and mean temperature, and what a unit pressure adds to it."""
 
-    def __init__(self, radii, pellet, tube, conductivities, film, coolant, gas, contact):
+    def __init__(self, radii, pellet, tube, conductivities, film, coolant, gas, touching):
         self.radii, self.pellet, self.tube, self.film = radii, pellet, tube, film
         self.oxide, self.wall = conductivities
-        self.coolant, self.gas, self.contact = coolant, gas, contact
+        self.coolant, self.gas, self.touching = coolant, gas, touching
 
     def wall_temperature(self, power):
         """Return the temperature of the tube by the radius; power is of a unit volume of pellet."""
@@ -162,9 +163,8 @@ class Rod:
                        - self.pellet.faces(pellet, 0.0, seat / a)[1])
             pressure = max(0.0, -free / (pressed - free))
             gap = max(0.0, free)
-            if pressure > 0.0:
-                return gap, pressure, self.contact(pressure)
-            return gap, pressure, self.gas(gap, (face + bore) / 2)
+            mean = (face + bore) / 2
+            return gap, pressure, self.gas(gap, mean) + self.touching * pressure
 
         def left(face):
             return state(face)[2] * (face - bore) * seat - power * a**2 / 2
@@ -189,8 +189,7 @@ def example(along=None):
                 COLD, COLD, along)
     return Rod((4.1, 4.12, 4.70), pellet, tube,
                (table(oxide_conductivity, POINTS), table(zircaloy_conductivity, POINTS[:5])),
-               0.03, 300.0, lambda gap, mean: tables.value(gas, mean) / (5e-3 + gap),
-               lambda pressure: 0.06 + 2e-3 * pressure)
+               0.03, 300.0, lambda gap, mean: tables.value(gas, mean) / (5e-3 + gap), 2e-3)
 
 
 def main():
