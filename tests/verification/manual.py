@@ -57,7 +57,7 @@ How to read the tables:
 RESULTANTS = ("normal_force", "shear_force", "heat_in", "heat_out")
 ROUNDING = 1e-9  # errors below it have no order
 THEMES = ("elements", "nafems", "contact", "friction", "heat", "bodies", "transients",
-          "dilatation", "frictional_heat")
+          "dilatation", "frictional_heat", "tables")
 DOCUMENT = Document("verification.md", HERE, THEMES, PREFACE)
 HEAD = ["mesh", "quantity", "value", "reference", "error", "order", "allowed", "verdict"]
 
