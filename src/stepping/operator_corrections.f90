@@ -123,7 +123,8 @@ contains
       type(solution_state_type), intent(inout) :: next
 
       associate (n => size(next%temperature))
-         if (equation%duration > 0.0_dp) equation%taken_up = equation%duration*self%values(:n)
+         if (equation%duration > 0.0_dp) equation%taken_up = equation%duration/ &
+            equation%scheme%a(1)*self%values(:n)
          if (size(self%elements) == 0) return
          equation%excess_old = self%heat_before
          equation%excess = self%values(n + 1:2*n)

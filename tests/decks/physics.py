@@ -113,20 +113,23 @@ def side_shares(cards, axis, value):
 
 def material(name, elastic=(1000.0, 0.3), expansion=None, conductivity=None, density=None,
              specific_heat=None, elastic_type=None, expansion_type=None, conductivity_type=None,
-             section=""):
-    """Return the cards of a material and its section; data beyond eight fields continue."""
+             section="", zero=None):
+    """Return the cards of a material and its section. A property is a number, its constants, or a
+    list of rows of constants and a temperature; data beyond eight fields continue."""
     cards = [f"*MATERIAL, NAME={name}"]
+    ending = "" if zero is None else f", ZERO={zero!r}"
     for keyword, kind, data in (("*ELASTIC", elastic_type, elastic),
-                                ("*EXPANSION", expansion_type, expansion),
+                                ("*EXPANSION" + ending, expansion_type, expansion),
                                 ("*CONDUCTIVITY", conductivity_type, conductivity),
                                 ("*DENSITY", None, density),
                                 ("*SPECIFIC HEAT", None, specific_heat)):
         if data is None:
             continue
         values = [data] if isinstance(data, float) else list(data)
+        rows = values if isinstance(values[0], tuple) else [values]
         cards += [keyword + (f", TYPE={kind}" if kind else "")]
-        cards += [", ".join(f"{float(v)!r}" for v in values[k : k + 8])
-                  for k in range(0, len(values), 8)]
+        cards += [", ".join(f"{float(v)!r}" for v in row[k : k + 8])
+                  for row in rows for k in range(0, len(row), 8)]
     return [*cards, f"*SOLID SECTION, ELSET={name}, MATERIAL={name}{section}"]
 
 

@@ -13,8 +13,10 @@ from physics import DECKS  # noqa: F401  puts tests/reference on the path
 import conduction
 import crack
 import friction_strip
+import fuel_rod
 import hot_tubes
 import lame
+import tables
 import transient
 from rods import Rods, gas, power, solve
 
@@ -74,12 +76,31 @@ def roller():
 
 
 def fuel_pellet():
-    """Free expansion, balances."""
-    heat = 0.5 * pi * 4.1**2 * 30
-    gap = 0.02 + 280 * (6e-6 * 4.12 - 1e-5 * 4.1) - 4.1 * 0.3 * 0.5 / 2e5
-    return {("gap", "WALL1", "1."): gap, ("normal_force", "ENDS12", "LAST"): 0.5 * pi * 4.1**2,
-            ("heat_in", "", "LAST"): heat, ("heat_out", "", "LAST"): heat,
-            ("NT", "TUBE.RIGHT", "LAST"): 300 + heat / (30 * 2 * pi * 4.7 * 0.03)}
+    """Free expansion, balances; the rod over its radius, without the ends of the pellets."""
+    rod = fuel_rod.example()
+    heat = 0.6 * pi * 4.1**2 * 30
+    strain = tables.thermal_strain(rod.pellet.expansion, 20.0, 20.0, 300.0)
+    young = tables.value(rod.pellet.young, 300.0)
+    gap = 0.02 + 280 * 6e-6 * 4.12 - 4.1 * (strain + 0.316 * 0.5 / young)
+    state = rod.solve(0.6)
+    found = {(name, "WALL2@5.", "LAST"): state[key]
+             for name, key in (("slave_temperature", "face"), ("master_temperature", "bore"),
+                               ("conductance", "conductance"))}
+    return found | {
+        ("gap", "WALL1", "1."): gap, ("normal_force", "ENDS12", "LAST"): 0.5 * pi * 4.1**2,
+        ("heat_in", "", "LAST"): heat, ("heat_out", "", "LAST"): heat,
+        ("NT", "TUBE.RIGHT", "LAST"): state["outside"]}
+
+
+def test_tables_of_the_fuel_pellet_are_those_of_the_formulas():
+    rod = fuel_rod.example()
+    elastic = [[(young, ring.poisson, t) for young, t in ring.young]
+               for ring in (rod.pellet, rod.tube)]
+    expected = {"*ELASTIC": elastic[0] + elastic[1], "*CONDUCTIVITY": rod.oxide + rod.wall,
+                "*EXPANSION": [*rod.pellet.expansion, (6e-6,)]}
+    for keyword, rows in expected.items():
+        found = data_cards(EXAMPLES / "fuel_pellet.inp", keyword)
+        assert [tuple(map(float, row)) for row in found] == rows, keyword
 
 
 def cracked_plate():
