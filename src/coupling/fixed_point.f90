@@ -2,8 +2,8 @@
 !> two, (4.1) and (4.2), and Anderson's. The loop and its tolerances are the caller's; an
 !> accelerator only chooses the next omega*.
 !>
-!> Anderson's mixing is that of x = log omega, with the residual f = log U(omega) - x. Contact points
-!> that carry no heat before or after a pass have no logarithm: they take the image.
+!> Anderson's mixing is that of x = log omega, with the residual f = log U(omega) - x. Contact
+!> points that carry no heat before or after a pass have no logarithm: they take the image.
 module fixed_point
    use anderson_mixing, only: mixing_type
    use conductance_graph, only: conductance_graph_type

@@ -1,5 +1,5 @@
-!> Materials at given points of all elements: one for all points that share it, or one for each point
-!> where the axes turn or properties follow the temperature.
+!> Materials at given points of all elements: one for all points that share it, or one for each
+!> point where the axes turn or properties follow the temperature.
 module point_materials
    use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain
    use kinds, only: dp

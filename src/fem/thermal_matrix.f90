@@ -65,8 +65,8 @@ module thermal_matrix
       !> (nodes) heat that is taken up in dt beside C: by strains, and where C does not follow the
       !> temperatures; unallocated where there is none [energy]
       real(dp), allocatable :: taken_up(:)
-      !> (nodes) heat that K conducts beyond the bodies at t_i and t_i+1; unallocated where K follows
-      !> their temperatures [power]
+      !> (nodes) heat that K conducts beyond the bodies at t_i and t_i+1; unallocated where K
+      !> follows their temperatures [power]
       real(dp), allocatable :: excess_old(:), excess(:)
    contains
       procedure :: takes_past_conductance

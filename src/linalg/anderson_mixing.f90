@@ -1,4 +1,5 @@
-!> Anderson's mixing (Walker & Ni, SIAM J. Numer. Anal. 49 (2011) 1715) of a fixed point x = x + f(x):
+!> Anderson's mixing of a fixed point x = x + f(x) (Walker & Ni, SIAM J. Numer. Anal. 49 (2011)
+!> 1715):
 !>
 !>    x_i+1 = x_i + g f_i - (dX + g dF) gamma,    gamma = argmin |f_i - dF gamma|,
 !>

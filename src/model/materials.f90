@@ -140,7 +140,7 @@ contains
          there%conductivity = [values(1), values(size(values))]
       case (of_density)
          there%density = values(1)
-      case (of_specific_heat)
+      case default
          there%specific_heat = values(1)
       end select
    end subroutine take_values

@@ -95,9 +95,10 @@ contains
             content_noise*maxval(abs(data%equation%content_old))/data%equation%duration)
          if (allocated(data%equation%taken_up)) scale = max(scale, &
             maxval(abs(data%equation%taken_up))/data%equation%duration)
-         if (allocated(bodies%dilatation%absolute) .and. data%equation%duration > 0.0_dp) &
+         if (allocated(bodies%dilatation%absolute) .and. data%equation%duration > 0.0_dp) then
             scale = max(scale, content_noise*maxval(abs(bodies%capacity%multiply( &
             bodies%dilatation%absolute)))/data%equation%duration)
+         end if
          record%fields%reaction_heat = merge(residual, 0.0_dp, held)
          record%fields%external_heat = record%fields%reaction_heat + rates%entering
          rates%crossing = heat_across(bodies%points%weight, omega, next%jump)

@@ -137,9 +137,10 @@ contains
          if (.not. follows_temperature(model%materials(m))) cycle
          is_of = .false.
          do e = 1, size(model%mesh%element_kind)
-            if (model%sections(model%mesh%element_section(e))%material == m) &
+            if (model%sections(model%mesh%element_section(e))%material == m) then
                is_of(model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), &
                e)) = .true.
+            end if
          end do
          if (.not. any(is_of)) cycle
          associate (material => model%materials(m), t => record%fields%temperature)

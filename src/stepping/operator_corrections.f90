@@ -1,5 +1,5 @@
-!> What bodies are beyond their linear operators K, B and C, of (3.3) and (2.4), which were formed at
-!> earlier temperatures: heat and forces that stand on the right of the equations of a stage, and are
+!> Heat and forces of bodies beyond their linear operators K, B and C, of (3.3) and (2.4), which were
+!> formed at earlier temperatures. They stand on the right of the equations of a stage, and are
 !> corrected until they are those of its solution.
 !>
 !> At the integration points fluxes and stresses of both kinds are taken, and their differences
@@ -39,7 +39,7 @@ module operator_corrections
       !> Operators over bodies, at integration points; and points of heat contents
       type(point_fields_type), allocatable :: excess, contents
       integer, allocatable :: elements(:)
-      !> (nodes, ...) of a stage: rate of heat taken up, heat beyond conduction, forces along x and y
+      !> (4 nodes) of a stage: rate of heat taken up, heat beyond conduction, forces along x and y
       real(dp), allocatable :: values(:)
       real(dp), allocatable :: heat_before(:)      !! (nodes) beyond conduction at its start
       real(dp), allocatable :: strain_before(:)    !! (nodes) taken up by strains at T*, u*
@@ -191,8 +191,9 @@ contains
 
       next%corrections = self%values
       if (allocated(next%corrections_before)) deallocate (next%corrections_before)
-      if (.not. self%is_renewed .and. allocated(before%corrections)) &
+      if (.not. self%is_renewed .and. allocated(before%corrections)) then
          next%corrections_before = before%corrections
+      end if
       if (allocated(bodies%operators_at)) next%operators_at = bodies%operators_at
    end subroutine keep
 

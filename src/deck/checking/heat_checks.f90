@@ -19,7 +19,7 @@ module heat_checks
    public :: check_heat_paths, check_starts, check_constants
 
    real(dp), parameter :: small_strain = 0.1_dp   !! largest for which small strains hold
-   real(dp), parameter :: far = 0.25_dp   !! from ZERO= to the initial temperature, in a table's span
+   real(dp), parameter :: far = 0.25_dp   !! of a table's span, from ZERO= to where bodies start
 
    !> Stefan-Boltzmann constant, CODATA 2018 [W/(m^2 K^4)].
    real(dp), parameter :: stefan_boltzmann = 5.670374419e-8_dp
@@ -163,8 +163,8 @@ contains
       end do
    end subroutine check_expansion
 
-   !> Warns of tables of expansion coefficients whose secants begin far from the initial temperature:
-   !> farther than a quarter of what the table spans.
+   !> Warns of tables of expansion coefficients whose secants begin far from the initial
+   !> temperature: farther than a quarter of what the table spans.
    subroutine check_secants(cards, model, report)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model
