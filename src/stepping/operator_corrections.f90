@@ -1,5 +1,5 @@
-!> Heat and forces of bodies beyond their linear operators K, B and C, of (3.3) and (2.4), which were
-!> formed at earlier temperatures. They stand on the right of the equations of a stage, and are
+!> Heat and forces of bodies beyond their linear operators K, B and C, of (3.3) and (2.4), which
+!> were formed at earlier temperatures. They stand on the right of the equations of a stage, and are
 !> corrected until they are those of its solution.
 !>
 !> At the integration points fluxes and stresses of both kinds are taken, and their differences
