@@ -283,9 +283,7 @@ def test_heat_through_two_slabs_and_their_contact(tmp_path, kind, joint):
         tables.of_integral(upper, tables.integral(upper, 280.0) - flux), rtol=EXACT)
 
 
-# Part of the heat at the start of an increment that a scheme takes (c1): there is none at time 0.
-SCHEMES = {"IMPLICIT": 0.0, "GALERKIN": 1 / 3, "CRANK-NICOLSON": 0.5, "EXPLICIT": 0.0,
-           "L-STABLE": 0.0}
+SCHEMES = ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT", "L-STABLE"]
 CAPACITY = tables.product([(row[0], row[1]) for row in STORING["density"]],
                           [(row[0], row[1]) for row in STORING["specific_heat"]], 400)
 
@@ -301,8 +299,7 @@ def test_a_body_that_is_warmed_evenly_has_the_enthalpy_that_it_was_given(tmp_pat
                  *step("*DFLUX", f"BODY, BF, {power!r}", analysis="*HEAT TRANSFER, DIRECT",
                        times="0.4, 4.")]
         found = last(solved(tmp_path, cards), "temperature")
-        expected = tables.of_integral(CAPACITY, tables.integral(CAPACITY, START)
-                                      + (4.0 - 0.4 * SCHEMES[scheme]) * power)
+        expected = tables.of_integral(CAPACITY, tables.integral(CAPACITY, START) + 4.0 * power)
         np.testing.assert_allclose(found, expected, rtol=0, atol=2e-5 * abs(expected - START))
 
 
@@ -323,14 +320,13 @@ def test_heat_is_stored_or_leaves(tmp_path, scheme, joint, free):
     assert course["force_imbalance"].max() < 1e-9
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN", "L-STABLE"])
 def test_a_transient_ends_in_the_steady_state(tmp_path, scheme):
-    """Slowly enough that each scheme damps."""
-    steady, transient = (
-        joined("CPE8", "NODES", method=[f"*THERMAL SCHEME, TYPE={scheme}"], analysis=analysis,
-               times=times, friction=None, **(ISOTROPIC | STORING))
-        for analysis, times in ((STEADY, "0.5, 1."),
-                                ("*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "0.25, 50.")))
+    """Those that damp the start and take the present conductance."""
+    steady = joined("CPE8", "NODES", friction=None, **ISOTROPIC)
+    transient = joined("CPE8", "NODES", method=[f"*THERMAL SCHEME, TYPE={scheme}"], friction=None,
+                       analysis="*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", times="0.25, 50.",
+                       **(ISOTROPIC | STORING))
     assert_whole(tmp_path, steady, transient, 1e-4, ("temperature",))
 
 

@@ -1,4 +1,4 @@
-"""Properties that follow the temperature: closed forms and one-dimensional solutions over meshes."""
+"""Properties over temperature: closed forms and one-dimensional solutions over meshes."""
 
 from itertools import pairwise
 from math import cos, log, pi, sin
@@ -9,7 +9,7 @@ from pictures import save, subplots
 from physics import material, mesh, nodes_of
 from test_transients import allowed, graded, heat, label, node_at, start
 
-import tables
+import tables as known
 
 TITLE = "Properties over temperature"
 TEXT = """Materials whose properties are tables over temperature.
@@ -76,7 +76,7 @@ def slab(level):
             for side, value in (("LEFT", 0.0), ("RIGHT", 500.0))]
 
     def field(x):
-        return tables.across(SLAB, x / 0.1, 0.0, 500.0)
+        return known.across(SLAB, x / 0.1, 0.0, 500.0)
 
     part = 2 * interpolation(field, points, "CPE4") / 500.0
     checks = [Check(f"T in the middle, {kind}", "NT", node, field(0.05),
@@ -106,7 +106,7 @@ def pulled(level):
     return [*cards, *start(names[0]), *[f"{name}, 0." for name in names[1:]],
             *steady("*BOUNDARY", *held, "*DSLOAD", *pulls,
                     analysis="*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE")], [
-        Check(f"u of the end, {kind}", "U1", node, tables.bar_stretch(0.5, 10.0, 200.0, 80.0),
+        Check(f"u of the end, {kind}", "U1", node, known.bar_stretch(0.5, 10.0, 200.0, 80.0),
               2 * interpolation(stretch, points, kind), "ABS")
         for kind, node in zip(PULLED, nodes_at(cards, names, 10.0), strict=True)]
 
@@ -126,7 +126,7 @@ def half_space_under_flux(level):
     return [*cards, *start(names[0]), *[card for dt, period in step for card in heat(
         dt, period, "*DSFLUX", f"{names[0]}.LEFT, S, 1.")]], [
         Check(f"T at x = {x:.4g}, t = {t}", "NT", node_at(cards, x),
-              tables.flux_into_half_space(x, t), allowed(0.1, level), "ABS", when=f"{t!r}")
+              known.flux_into_half_space(x, t), allowed(0.1, level), "ABS", when=f"{t!r}")
         for x, t in ((0.0, 0.1), (0.0, 1.0), (inside, 1.0))]
 
 
@@ -137,7 +137,7 @@ def half_space_after_step(level):
     cards, names = strips(depth, ("CPE8",), elastic=None,
                           conductivity=[(200.0, 0.0), (600.0, 400.0)], density=8000.0,
                           specific_heat=1000.0)
-    exact = tables.step_of_half_space(1.0, 200.0, 8e6, 100.0, 200.0)
+    exact = known.step_of_half_space(1.0, 200.0, 8e6, 100.0, 200.0)
     return [*cards, *start(names[0], 100.0), *heat(
         0.2 / level, 10.0, "*BOUNDARY", f"{names[0]}.LEFT, 11, 11, 200.")], [
         Check(f"T at x = {x:.4f}, t = {t}", "NT", node_at(cards, x), exact(x, t),
@@ -183,10 +183,10 @@ def hot_cylinder(*kinds):
                         *[f"{name}.RIGHT, 11, 11, {COLD}" for name in names], "*DSLOAD",
                         *[f"{name}.LEFT, P, {PRESSURE}" for name in names],
                         analysis="*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE")
-        temperature = tables.steady_ring(RADII, CONDUCTIVITY, HOT, COLD)
+        temperature = known.steady_ring(RADII, CONDUCTIVITY, HOT, COLD)
         points, middle, checks = np.linspace(*RADII, 4 * level + 1), sum(RADII) / 2, []
         for kind, node in zip(kinds, nodes_at(cards, names, middle), strict=True):
-            at = tables.Cylinder(RADII, "stress" if kind[:3] == "CPS" else "strain", YOUNG, POISSON,
+            at = known.Cylinder(RADII, "stress" if kind[:3] == "CPS" else "strain", YOUNG, POISSON,
                                  EXPANSION, ZERO, START).solve(temperature, PRESSURE)
             largest = max(abs(v) for r in RADII for v in at(r)[1:])
             checks.append(Check(f"T at r = {middle:g}, {kind}", "NT", node,
@@ -213,12 +213,12 @@ WARMED = {"elastic": [(2e5, 0.3, 0.0), (1.6e5, 0.3, 200.0), (1e5, 0.34, 500.0)],
 
 
 def warmed_cylinder(level):
-    """Return a cylinder that a film warms from inside; all of its properties are tables."""
+    """Return a cylinder that a film warms from inside; all of its properties are known."""
     cards = ring("TUBE", "CAX8", level, **WARMED)
-    capacity = tables.product(WARMED["density"], WARMED["specific_heat"])
-    r, found = tables.extrapolated(RADII, tuple(WARMED["conductivity"]), capacity, START, FILM,
+    capacity = known.product(WARMED["density"], WARMED["specific_heat"])
+    r, found = known.extrapolated(RADII, tuple(WARMED["conductivity"]), capacity, START, FILM,
                                    SINK, TIMES)
-    at = tables.Cylinder(RADII, "strain", [(row[0], row[2]) for row in WARMED["elastic"]],
+    at = known.Cylinder(RADII, "strain", [(row[0], row[2]) for row in WARMED["elastic"]],
                          [row[1:] for row in WARMED["elastic"]], WARMED["expansion"], ZERO,
                          START).solve(lambda radius: np.interp(radius, r, found[-1]))
     inner, outer = (node_at(cards, x) for x in RADII)
