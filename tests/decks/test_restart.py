@@ -96,6 +96,25 @@ def test_a_run_goes_on_to_the_last_bit(tmp_path, name, cards):
     assert f"goes on   {whole}, increment 1 (time " in shown
 
 
+TABLES = {"0.045": "0.06, 0.\n0.02, 300.", "2.1E5, 0.\n": "2.1E5, 0., 0.\n1.E5, 0., 300.\n",
+          "1.2E-5\n": "1.E-5, 0.\n1.4E-5, 300.\n", "480.\n": "480., 0.\n700., 300.\n"}
+
+
+def test_properties_over_temperature_go_on_to_the_last_bit(tmp_path):
+    """Operators that were formed again at temperatures of the run are formed at these."""
+    text = (EXAMPLES / "warm_blocks.inp").read_text()
+    unchecked = {text[text.index("** Increments follow the local error"):]: ""}
+    deck = written(EXAMPLES / "warm_blocks.inp", tmp_path, changes=TABLES | unchecked)
+    whole = solve(deck)
+    listing = whole.with_suffix(".lst").read_text()
+    again = [len(re.findall("^INCREMENT", listing[:found.start()], re.M))
+             for found in re.finditer("operators formed again", listing)]
+    assert len(again) > 1
+    times = kept(whole)
+    for i in sorted({again[0] - 2, again[0] - 1, again[-1], len(times) - 2}):
+        assert_same(whole, go_on(deck, whole, tmp_path / f"from{i}", float(times[i])))
+
+
 def test_it_goes_on_within_increments_that_are_cut_back(tmp_path):
     """Plain iteration allows too few passes for the increments of the deck."""
     path = rods.write_rods(tmp_path / "rods.inp")
