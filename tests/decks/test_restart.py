@@ -96,7 +96,7 @@ def test_a_run_goes_on_to_the_last_bit(tmp_path, name, cards):
     assert f"goes on   {whole}, increment 1 (time " in shown
 
 
-TABLES = {"0.045": "0.06, 0.\n0.02, 300.", "2.1E5, 0.\n": "2.1E5, 0., 0.\n1.E5, 0., 300.\n",
+TABLES = {"0.045": "0.2, 0.\n0.01, 300.", "2.1E5, 0.\n": "2.1E5, 0., 0.\n1.E5, 0., 300.\n",
           "1.2E-5\n": "1.E-5, 0.\n1.4E-5, 300.\n", "480.\n": "480., 0.\n700., 300.\n"}
 
 
