@@ -401,7 +401,8 @@ contains
          associate (corrections => self%corrections)
             if (corrections%corrects) then
                fresh = next
-               call corrections%begin(model, bodies, stage, before)
+               call corrections%begin(model, bodies, stage, before, &
+                  takes_past=abs(step%scheme%b(1)) > 0.0_dp)
             end if
             do
                call solve_fields(self, model, stage, omega_start, before, data, workspace, next, &

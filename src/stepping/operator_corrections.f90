@@ -85,12 +85,13 @@ contains
 
    !> Starts a stage, from the corrections of the last increments where these are of the present
    !> operators.
-   subroutine begin(self, model, bodies, stage, before)
+   subroutine begin(self, model, bodies, stage, before, takes_past)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before        !! state at its start
+      logical, intent(in) :: takes_past                      !! whether K T_i stands in eq. (3.4)
       logical :: goes_on
 
       self%passes = 0
@@ -104,13 +105,16 @@ contains
       goes_on = allocated(before%corrections)
       if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
          all(abs(before%operators_at - bodies%operators_at) <= 0.0_dp)
+      if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
+         before%temperature)
       if (.not. goes_on) then
-         self%heat_before = self%heat_beyond(model, bodies, before%temperature)
          self%values = corrections_of(self, model, bodies, stage, before%temperature, &
             before%displacement)
       else
          self%values = before%corrections
-         self%heat_before = self%values(size(before%temperature) + 1:2*size(before%temperature))
+         associate (n => size(before%temperature))
+            if (.not. takes_past) self%heat_before = self%values(n + 1:2*n)
+         end associate
          if (allocated(before%corrections_before)) self%values = self%values + stage%size/ &
             before%increment_size*(before%corrections - before%corrections_before)
       end if
