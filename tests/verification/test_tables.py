@@ -285,7 +285,8 @@ def cases():
     ]
 
 
-DRAWN = {"Bar with E(T)": "Bar", "Half-space with k(T) and c(T) under a flux": "Flux into half-space",
+DRAWN = {"Bar with E(T)": "Bar",
+         "Half-space with k(T) and c(T) under a flux": "Flux into half-space",
          "Half-space with k(T) after a step": "Step of half-space",
          "Cylinder that a film warms, all properties tables": "Warmed cylinder"}
 
