@@ -234,7 +234,8 @@ def test_orthotropic_tables_of_equal_constants_are_isotropic(tmp_path, kind):
             "conductivity": [(k, k, k, t) for k, t in ISOTROPIC["conductivity"]]}
     one, other = (
         [*(TURNED if section else []), *joined(kind, "TIE", section=section, **properties)]
-        for section, properties in (("", ISOTROPIC | {"elastic": elastic}), (", ORIENTATION=TURNED", same)))
+        for section, properties in (("", ISOTROPIC | {"elastic": elastic}),
+                                    (", ORIENTATION=TURNED", same)))
     assert_whole(tmp_path, one, other)
 
 
@@ -331,7 +332,7 @@ def test_a_transient_ends_in_the_steady_state(tmp_path, scheme):
 
 
 def test_a_failed_increment_leaves_no_trace(tmp_path):
-    """Too few passes, so that it is cut; without friction the smaller ones end in the same state."""
+    """Too few passes, so that it is cut; smaller ones without friction end in the same state."""
     few, enough = (
         solved(tmp_path, joined("CPE8", "NODES", method=method, times="1., 1.", friction=None,
                                 **ISOTROPIC), name)
