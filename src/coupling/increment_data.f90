@@ -51,6 +51,7 @@ module increment_data
    !> A stage of an increment.
    type :: stage_type
       type(step_clock_type) :: clock = step_clock_type()   !! its end
+      type(step_clock_type) :: of_increment = step_clock_type()   !! end of the increment
       real(dp) :: size = 0.0_dp                            !! from the end of the one before [time]
       real(dp) :: duration = 0.0_dp                        !! dt of its equation [time]
       real(dp), allocatable :: temperature(:)              !! (nodes) T* of its equation

@@ -120,7 +120,7 @@ contains
                   if (g == 1 .or. section%orientation > 0) axes = material_axes(orientations, &
                      section%orientation, matmul(mesh%coordinates(:, nodes), psi))
                   call set_warm_point(plane, materials(m), properties(m), axes, &
-                     dot_product(psi, temperature(nodes)), dot_product(psi, initial(nodes)), &
+                     [dot_product(psi, initial(nodes)), dot_product(psi, temperature(nodes))], &
                      self%has_inverses, self%materials(self%material(e) + g - 1))
                end associate
             end do
@@ -128,21 +128,22 @@ contains
       end do
    end subroutine set_temperature
 
-   pure subroutine set_warm_point(plane, material, properties, axes, temperature, initial, &
-      with_inverses, there)
+   pure subroutine set_warm_point(plane, material, properties, axes, temperature, with_inverses, &
+      there)
       integer, intent(in) :: plane
       type(material_type), intent(in) :: material
       type(properties_type), intent(inout) :: properties
-      real(dp), intent(in) :: axes(2, 2), temperature, initial
+      real(dp), intent(in) :: axes(2, 2)
+      real(dp), intent(in) :: temperature(2)           ! the initial one, and the present one
       logical, intent(in) :: with_inverses
       type(point_material_type), intent(inout) :: there
       real(dp) :: strain(3), slope(3)
 
-      call material%set_to(temperature, properties)
-      call thermal_strain(material, initial, temperature, strain, slope)
+      call material%set_to(temperature(2), properties)
+      call thermal_strain(material, temperature(1), temperature(2), strain, slope)
       call set_point(plane, properties, axes, with_inverses, there)
       there%thermal_modulus = stress_of(slope)
-      strain = strain - slope*(temperature - initial)
+      strain = strain - slope*(temperature(2) - temperature(1))
       there%thermal_stress = 0.0_dp
       if (any(abs(strain) > 0.0_dp)) there%thermal_stress = stress_of(strain)
    contains

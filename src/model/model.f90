@@ -102,7 +102,9 @@ contains
    pure logical function follows_temperatures(model)
       type(model_type), intent(in) :: model
 
-      follows_temperatures = any(follows_temperature(model%materials(model%sections%material)))
+      ! A section of a deck with errors may have none.
+      follows_temperatures = any(follows_temperature(model%materials(pack( &
+         model%sections%material, model%sections%material > 0))))
    end function follows_temperatures
 
    !> What a model has that bounds of errors do not know, in words; empty for nothing.

@@ -47,7 +47,9 @@ module operator_corrections
       type(mixing_type) :: mixing
       real(dp) :: left_over = 0.0_dp               !! of the last pass, in scales
       integer, public :: passes = 0                !! of the stage
-      logical, public :: is_renewed = .false.      !! whether operators were formed in the stage
+      logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
+      logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
+      logical, public :: is_renewed = .false.      !! whether they were, in the stage
       logical, public :: corrects = .false.        !! whether the run has anything to correct
    contains
       procedure :: prepare
@@ -138,14 +140,12 @@ contains
 
    !> Corrects to a solution, unless what is left over is rounding.
    !> Error: no convergence.
-   subroutine correct(self, model, bodies, stage, next, is_settled, asks_operators, error)
+   subroutine correct(self, model, bodies, stage, next, error)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: next          !! solved with the present corrections
-      logical, intent(out) :: is_settled
-      logical, intent(out) :: asks_operators                 !! whether they are to be formed again
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: left_over(:), x(:)
       real(dp) :: last
@@ -157,10 +157,10 @@ contains
       last = self%left_over
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
-      is_settled = self%left_over <= settled
-      asks_operators = .not. (is_settled .or. self%is_renewed) .and. self%passes > 1 .and. &
-         self%left_over > contracts*last .and. size(self%elements) > 0
-      if (is_settled .or. asks_operators) return
+      self%is_settled = self%left_over <= settled
+      self%asks_operators = .not. (self%is_settled .or. self%is_renewed) .and. self%passes > 1 &
+         .and. self%left_over > contracts*last .and. size(self%elements) > 0
+      if (self%is_settled .or. self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
          call set_error(error, status_no_convergence, 'heat and stress of bodies do not follow '// &
             'their temperatures within '//to_text(most_passes)//' corrections')

@@ -102,8 +102,8 @@ contains
          call read_rows(cards, card, context, report, property, valid)
          call take_parameter(card, 'ZERO', report, material%no_strain)
          if (valid .and. has_parameter(card, 'ZERO')) then
-            if (size(property%temperature) == 1) call context%note('*EXPANSION: ZERO= is '// &
-               'ignored: with a single row strains begin at the initial temperature')
+            if (size(property%temperature) == 1) call context%note('*EXPANSION: ZERO is '// &
+               'ignored with a single row: strains begin at the initial temperature')
          end if
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.

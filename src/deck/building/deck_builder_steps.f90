@@ -76,15 +76,9 @@ contains
                context%analyses_sound = .false.
                call report%missing(card%place, &
                   'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
-            case ('FIXED POINT')
-               call build_fixed_point(card, report, controls%fixed_point)
-            case ('RESTART')
-               call build_restart(card, report, controls)
-            case ('START')
-               call build_start(cards, card, model, report, controls%start)
-            case ('THERMAL SCHEME')
-               has_scheme = .true.
-               call build_thermal_scheme(cards, card, report, controls%scheme)
+            case ('FIXED POINT', 'RESTART', 'START', 'THERMAL SCHEME')
+               has_scheme = has_scheme .or. card%name == 'THERMAL SCHEME'
+               call build_control(cards, card, model, report, controls)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
                'SFILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)
@@ -105,6 +99,26 @@ contains
       end do
       call warn_of_nlgeom(cards, report, model%steps)
    end subroutine build_steps
+
+   !> Reads a card that controls this step and later ones.
+   subroutine build_control(cards, card, model, report, controls)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(step_controls_type), intent(inout) :: controls
+
+      select case (card%name)
+      case ('FIXED POINT')
+         call build_fixed_point(card, report, controls%fixed_point)
+      case ('RESTART')
+         call build_restart(card, report, controls)
+      case ('START')
+         call build_start(cards, card, model, report, controls%start)
+      case default
+         call build_thermal_scheme(cards, card, report, controls%scheme)
+      end select
+   end subroutine build_control
 
    !> Controls stay from step to step; transients have their own scheme until the deck names one.
    subroutine take_controls(controls, has_scheme, is_uncoupled, step)
