@@ -6,7 +6,7 @@ import math
 import h5py
 import numpy as np
 import pytest
-from deck_runs import DECKS
+from deck_runs import DECKS, run
 from physics import judge
 
 LAST = "LAST"
@@ -35,10 +35,12 @@ def assert_heat_balances(result, tolerance=1e-8):
     """Assert in each increment that heat goes in or is made by friction, and goes out or stays, to
     a part of the largest rate of the run, of contact too."""
     courses = history(result)
-    stored, made = (np.nan_to_num(courses[name]) if name in courses else 0.0
+    solved_heat = ~np.isnan(courses["heat_in"])
+    given, taken = (courses[name][solved_heat] for name in ("heat_in", "heat_out"))
+    stored, made = (np.nan_to_num(courses[name][solved_heat]) if name in courses else 0.0
                     for name in ("heat_stored", "heat_friction"))
-    given, taken = courses["heat_in"], courses["heat_out"]
-    largest = max(np.max(rates) for rates in (given, taken, abs(interface(result, "heat_rate"))))
+    crossing = abs(interface(result, "heat_rate")[solved_heat])
+    largest = max(np.max(rates) for rates in (given, taken, crossing))
     assert largest > 0.0
     assert np.all(abs(given + made - taken - stored) <= tolerance * largest)
 
@@ -57,6 +59,17 @@ def root(function, low, high):
         middle = (low + high) / 2
         low, high = (low, middle) if function(middle) > 0 else (middle, high)
     return low
+
+
+def test_a_pad_slides_on_a_disc(tmp_path):
+    """Once the whole pad slips, 90 % of the work of friction, mu F v, becomes heat, and bodies that
+    lose none store all of it."""
+    force, power = 2.0 * 20.0, 0.9 * 0.3 * 2.0 * 20.0 * 8.0 / 0.008
+    result = solved(tmp_path, "brake_disc", ("heat_friction", "", 0.008, power, 1e-5),
+                    ("heat_stored", "", 0.008, power, 1e-5), ("heat_out", "", 0.008, 0.0, 0.0, "ABS"),
+                    ("normal_force", "PadFace", 0.008, force, 1e-9),
+                    ("shear_force", "PadFace", 0.008, -0.3 * force, 1e-9))
+    assert_heat_balances(result)
 
 
 def test_a_hot_hub_shrinks_onto_a_shaft(tmp_path):
@@ -96,11 +109,27 @@ def test_a_fuel_pellet_radiates_to_its_cladding(tmp_path):
     assert_heat_balances(result)
 
 
+def test_a_valve_closes_and_opens(tmp_path):
+    """Closed, the gas presses it on its seat and all heat crosses there; open, valve and seat have
+    the temperatures of gas and water."""
+    force = 10.0 * math.pi * (12.0**2 - 8.0**2)
+    result = solved(tmp_path, "valve_seat", ("normal_force", "ValveFace", 1000.0, force, 1e-9),
+                    ("heat_rate", "ValveFace", LAST, 0.0, 0.0, "ABS"),
+                    ("normal_force", "ValveFace", LAST, 0.0, 0.0, "ABS"),
+                    ("NT", "Valve", LAST, 600.0, 1e-4), ("NT", "Seat-1.Set-1", LAST, 80.0, 1e-4))
+    assert_heat_balances(result)
+    courses = history(result)
+    closed = np.flatnonzero(courses["time"] == 1000.0)[0]
+    crossing = interface(result, "heat_rate")[closed]
+    assert crossing == pytest.approx(courses["heat_in"][closed], rel=1e-6)
+    assert crossing == pytest.approx(courses["heat_out"][closed], rel=1e-6)
+
+
 def test_a_billet_cools_on_a_die(tmp_path):
     """Billet and die, insulated, come to the temperature at which one has taken up the heat that
     the other gave; their specific heats are tables."""
     billet = [(450.0, 0.0), (900.0, 750.0), (650.0, 1200.0)]
-    die = [(460.0, 20.0), (600.0, 600.0)]
+    die = [(460.0, 20.0), (600.0, 700.0)]
     common = root(lambda t: 7700 * 0.08 * 0.04 * integral(die, 200.0, t)
                   - 7800 * 0.06 * 0.03 * integral(billet, t, 1100.0), 200.0, 1100.0)
     result = solved(tmp_path, "die", ("NT", "MIN", LAST, common, 1e-5),
@@ -131,6 +160,34 @@ def test_a_mould_is_hot_while_the_melt_is_in_it(tmp_path):
                     ("NT", "Hot", 1.0, faces[1] + flux * 0.03 / 350, 1e-9),
                     ("NT", "Hot", LAST, 20.0, 1e-4), ("heat_in", "", LAST, 0.0, 1e-3, "ABS"))
     assert_heat_balances(result)
+
+
+def test_a_clamp_shares_the_heat_of_an_overload(tmp_path):
+    """Bar and jaw lose no heat: in the end both have the temperature of all heat made in the
+    bar."""
+    bar, jaw = 20.0 * 5.0 * 5.0, 12.0 * 6.0 * 5.0
+    capacity = bar * 8.9e-9 * 3.9e8 + jaw * 8.5e-9 * 3.8e8
+    level = 20.0 + 60.0 * bar * 5.0 / capacity
+    result = solved(tmp_path, "clamp", ("normal_force", "JawFace", 1.0, 25.0 * 12.0 * 5.0, 1e-9),
+                    ("heat_stored", "", 6.0, 60.0 * bar, 1e-8),
+                    ("NT", "Everything", LAST, level, 1e-8))
+    assert_heat_balances(result)
+
+
+def test_a_clamp_goes_on_from_a_state(tmp_path):
+    """CAE writes *RESTART, WRITE, FREQUENCY=1: the run that goes on from step 2 is the same."""
+    whole = solved(tmp_path, "clamp", ("heat_out", "", LAST, 0.0, 0.0, "ABS"))
+    with h5py.File(whole) as file:
+        instants = file["history/time"][()]
+    folder = tmp_path / "again"
+    folder.mkdir()
+    at = float(instants[len(instants) // 2])
+    process = run("run", "--quiet", whole.with_suffix(".inp"), "--restart", f"{whole}@{at!r}",
+                  "--out", folder)
+    assert process.returncode == 0, process.stderr
+    again = history(folder / whole.name)
+    for name, values in history(whole).items():
+        np.testing.assert_array_equal(again[name], values, err_msg=name)
 
 
 def test_a_bearing_ring_grows_into_its_housing(tmp_path):
