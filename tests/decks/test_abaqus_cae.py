@@ -66,7 +66,8 @@ def test_a_pad_slides_on_a_disc(tmp_path):
     lose none store all of it."""
     force, power = 2.0 * 20.0, 0.9 * 0.3 * 2.0 * 20.0 * 8.0 / 0.008
     result = solved(tmp_path, "brake_disc", ("heat_friction", "", 0.008, power, 1e-5),
-                    ("heat_stored", "", 0.008, power, 1e-5), ("heat_out", "", 0.008, 0.0, 0.0, "ABS"),
+                    ("heat_stored", "", 0.008, power, 1e-5),
+                    ("heat_out", "", 0.008, 0.0, 0.0, "ABS"),
                     ("normal_force", "PadFace", 0.008, force, 1e-9),
                     ("shear_force", "PadFace", 0.008, -0.3 * force, 1e-9))
     assert_heat_balances(result)
