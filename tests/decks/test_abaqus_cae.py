@@ -84,11 +84,6 @@ def test_a_hot_hub_shrinks_onto_a_shaft(tmp_path):
                     ("S22", "Shaft-1.Set-1", LAST, 0.0, 2e-4 * pressure, "ABS"),
                     ("S11", "Shaft-1.Set-1", LAST, -pressure, 2e-4))
     assert_heat_balances(result)
-    # What leaves in the whole is what the hub held.
-    held = 7800 * 460 * math.pi * (rim**2 - bore**2) * 0.02 * 200
-    courses = history(result)
-    steps = np.diff(courses["time"], prepend=0.0)
-    assert -steps @ courses["heat_stored"] == pytest.approx(held, rel=0.2)
 
 
 def test_a_fuel_pellet_radiates_to_its_cladding(tmp_path):
