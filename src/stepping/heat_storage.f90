@@ -27,6 +27,8 @@ module heat_storage
    private
    public :: strain_rate, begin_storage, measure_changes
 
+   real(dp), parameter :: own = 2.0_dp   !! growth of the range that an increment makes itself
+
 contains
 
    !> Rate of the heat that strains take up, T0 beta:eps' over all bodies, over the stage. Loads
@@ -98,6 +100,8 @@ contains
 
       here = extremes_of(model, next%temperature)
       next%extremes = [min(before%extremes(1), here(1)), max(before%extremes(2), here(2))]
+      record%makes_range = next%extremes(2) - next%extremes(1) > own*(before%extremes(2) - &
+         before%extremes(1))
       range = max(next%extremes(2) - next%extremes(1), &
          epsilon(range)*maxval(abs(next%extremes)), tiny(range))
       associate (scheme => model%steps(record%step)%scheme)

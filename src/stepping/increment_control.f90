@@ -20,6 +20,7 @@ module increment_control
    real(dp), parameter :: alike = 1.0e-9_dp        !! relative difference of sizes that is none
    real(dp), parameter :: allowance = 1.2_dp       !! of what a step allows its increments
    real(dp), parameter :: aim = 0.7_dp             !! part of it that they are made for
+   real(dp), parameter :: helps = 0.7_dp           !! part of an error that shortening leaves
 
    !> Position in the steps, and size of the next increment.
    type :: increment_control_type
@@ -31,6 +32,7 @@ module increment_control
       real(dp) :: step_time = 0.0_dp          !! time since then [time]
       real(dp) :: largest = 0.0_dp            !! largest size of the next increment [time]
       real(dp) :: useful = 0.0_dp             !! size below which none is shortened [time]
+      real(dp) :: error_before = 0.0_dp       !! of a longer attempt at this increment, or 0
       !> Instants on which increments of the step land, from its start [time]
       real(dp), allocatable :: landings(:)
    contains
@@ -192,6 +194,9 @@ contains
 
       goes_too_far = .false.
       if (.not. adapts_increments(model%steps(self%step))) return
+      ! Where bodies leave one temperature, the range grows with the error: shorter ones err as much.
+      if (record%makes_range .and. self%error_before > 0.0_dp .and. &
+         record%local_error > helps*self%error_before) return
       goes_too_far = excess(model%steps(self%step), record) > allowance .and. &
          self%can_cut_back(model, increment_size) .and. &
          0.5_dp*increment_size > hardly_longer*self%useful_size(model%steps(self%step), record)
@@ -233,6 +238,7 @@ contains
          call halve(self, step, increment_size*sqrt(aim/excess(step, record)), &
             self%useful_size(step, record))
       end associate
+      self%error_before = record%local_error
       self%cut_backs = self%cut_backs + 1
    end function shorten
 
@@ -284,6 +290,7 @@ contains
       self%increments_of_step = self%increments_of_step + 1
       associate (step => model%steps(self%step))
          if (adapts_increments(step)) then
+            self%error_before = 0.0_dp
             if (.not. present(record)) return
             self%useful = max(self%useful, record%useful_increment)
             if (excess(step, record) <= allowance) self%useful = 0.0_dp

@@ -16,6 +16,9 @@ module touch_instants
 
    real(dp), parameter :: small = 1.0e-3_dp   !! part of the distance at the start that is none
    integer, parameter :: most_tries = 20      !! attempts at one instant
+   real(dp), parameter :: rounding = 1.0e3_dp !! of gaps, in the least length of the contact points
+   real(dp), parameter :: short = 0.1_dp      !! part of the first attempt by which a touch that comes
+   real(dp), parameter :: nearer = 0.5_dp     !! on its way is nearer by this part
 
    !> A search within one increment.
    type :: touch_search_type
@@ -24,6 +27,8 @@ module touch_instants
       integer, private :: tries = 0, last = 0        !! attempts; which end the last one moved
       real(dp), private :: times(2) = 0.0_dp         !! before and behind the instant [time]
       real(dp), private :: distances(2) = 0.0_dp     !! at these [length]
+      !> Of the first attempt [time], [length]
+      real(dp), private :: first_length = 0.0_dp, first_distance = 0.0_dp
    contains
       procedure :: ends_behind
    end type touch_search_type
@@ -46,6 +51,7 @@ contains
          at_start = distance(bodies, before, i)
          at_end = distance(bodies, next, i)
          passes = at_start > 0.0_dp .neqv. at_end > 0.0_dp
+         if (abs(at_start) <= rounding*bodies%equilibrium%contact%least_length) passes = .false.
          if (self%interface == 0) then
             if (.not. passes) cycle
             self%interface = i
@@ -57,6 +63,14 @@ contains
       if (self%interface == 0) return
       self%tries = self%tries + 1
       ends_behind = passes .and. abs(at_end) <= small*abs(at_start) .or. self%tries > most_tries
+      if (ends_behind) return
+      if (self%tries == 1) then
+         self%first_length = times(2) - times(1)
+         self%first_distance = at_end
+      end if
+      ! Loads that act at once close it where the increment begins.
+      ends_behind = passes .and. times(2) - times(1) <= short*self%first_length .and. &
+         abs(at_end) > nearer*abs(self%first_distance)
       if (ends_behind) return
       if (self%tries > 1) call narrow(self, passes, times(2), at_end)
       associate (t => self%times, d => self%distances, goal => -0.3_dp*small*at_start)

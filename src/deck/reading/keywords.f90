@@ -129,7 +129,7 @@ module keywords
       keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
       keyword_type('TIME POINTS', built, in_model, 1, many, 'NAME=/TIME=/GENERATE'), &
       keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
-         'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR='), &
+         'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/~END='), &
       keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, 'CREEP=/'// &
          stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/DILATATION='), &
       keyword_type('UNCOUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
