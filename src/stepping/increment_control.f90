@@ -194,7 +194,7 @@ contains
 
       goes_too_far = .false.
       if (.not. adapts_increments(model%steps(self%step))) return
-      ! Where bodies leave one temperature, the range grows with the error: shorter ones err as much.
+      ! Where bodies leave one temperature, the range grows with the error: shorter ones err alike.
       if (record%makes_range .and. self%error_before > 0.0_dp .and. &
          record%local_error > helps*self%error_before) return
       goes_too_far = excess(model%steps(self%step), record) > allowance .and. &

@@ -17,8 +17,9 @@ module touch_instants
    real(dp), parameter :: small = 1.0e-3_dp   !! part of the distance at the start that is none
    integer, parameter :: most_tries = 20      !! attempts at one instant
    real(dp), parameter :: rounding = 1.0e3_dp !! of gaps, in the least length of the contact points
-   real(dp), parameter :: short = 0.1_dp      !! part of the first attempt by which a touch that comes
-   real(dp), parameter :: nearer = 0.5_dp     !! on its way is nearer by this part
+   !> Part of the first attempt, and part of the distance that is left within it, of a touch that
+   !> comes on the way.
+   real(dp), parameter :: short = 0.1_dp, nearer = 0.5_dp
 
    !> A search within one increment.
    type :: touch_search_type
