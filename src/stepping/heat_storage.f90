@@ -30,10 +30,12 @@ module heat_storage
    real(dp), parameter :: rounding = 1.0e-13_dp !! part of all heat of a body that is none
    real(dp), parameter :: most_relaxed = 1.0e3_dp  !! of corrections
    integer, parameter :: most_passes = 60       !! of heat that strains take up
+   real(dp), parameter :: own = 2.0_dp          !! growth of a range that an increment makes
 
    !> A stage of an increment.
    type :: stage_type
       type(step_clock_type) :: clock = step_clock_type()   !! its end
+      type(step_clock_type) :: of_increment = step_clock_type()   !! end of the increment
       real(dp) :: size = 0.0_dp                            !! from the end of the one before [time]
       real(dp) :: duration = 0.0_dp                        !! dt of its equation [time]
       real(dp), allocatable :: temperature(:)              !! (nodes) T* of its equation
@@ -166,6 +168,8 @@ contains
 
       here = extremes_of(model, next%temperature)
       next%extremes = [min(before%extremes(1), here(1)), max(before%extremes(2), here(2))]
+      record%makes_range = next%extremes(2) - next%extremes(1) > own*(before%extremes(2) - &
+         before%extremes(1))
       range = max(next%extremes(2) - next%extremes(1), &
          epsilon(range)*maxval(abs(next%extremes)), tiny(range))
       associate (scheme => model%steps(record%step)%scheme)

@@ -67,6 +67,15 @@ module increments
       procedure :: release
    end type simulation_type
 
+   !> A stage that is being solved.
+   type :: trial_type
+      type(increment_data_type) :: data = increment_data_type()
+      type(increment_workspace_type) :: workspace = increment_workspace_type()
+      type(solution_state_type) :: next = solution_state_type()          !! state at its end
+      type(increment_record_type) :: record = increment_record_type()
+      real(dp), allocatable :: taken_up(:)   !! (nodes) by strains, where they take up heat [energy]
+   end type trial_type
+
 contains
 
    !> Prepares a run, sees whether its steps can all be numbered, and enters the first.
@@ -307,48 +316,31 @@ contains
       type(solution_state_type), intent(out) :: next
       type(increment_record_type), intent(out) :: record
       type(error_type), allocatable, intent(out) :: error
-      type(increment_record_type) :: of_first
       type(solution_state_type) :: before
       type(stage_type) :: stage
+      type(trial_type) :: first, last
 
       before = self%state
       stage%clock = clock
+      stage%of_increment = clock
       stage%size = clock%step_time - self%control%step_time
       associate (step => model%steps(self%control%step))
-         if (step%is_transient) then
-            stage%size = self%control%size_to(clock)
-            stage%duration = stage%size
-            if (self%control%increments_of_step == 0) call begin_storage(model, self%bodies, &
-               self%loads, self%control%start_of_step(model), before)
-            stage%jump = before%temperature - self%state%temperature
-            stage%temperature = before%temperature
-            stage%displacement = before%displacement
-            if (step%scheme%stages == 2) then
-               stage%is_last = .false.
-               stage%duration = stage_part*stage%size
-               stage%size = stage%duration
-               stage%clock%step_time = self%control%step_time + stage%size
-               stage%clock%total_time = self%control%step_start + stage%clock%step_time
-               call solve_stage(self, model, clock, stage, before, next, of_first, error)
-               if (allocated(error)) then
-                  record = of_first
-                  return
-               end if
-               ! C (T_i+1 - T_i)/dt is (1 - gamma) of the first stage's rate and gamma of its own.
-               stage%temperature = before%temperature + (1/stage_part - 1)* &
-                  (next%temperature - before%temperature)
-               stage%displacement = before%displacement + (1/stage_part - 1)* &
-                  (next%displacement - before%displacement)
-               stage%size = clock%step_time - stage%clock%step_time
-               stage%clock = clock
-               stage%is_last = .true.
-               before = next
+         if (step%is_transient) call begin_storing(self, model, stage, before)
+         if (.not. stage%is_last) then
+            call solve_stage(self, model, stage, before, first, error)
+            if (allocated(error)) then
+               record = first%record
+               return
             end if
+            call begin_second_stage(first%next, before, stage)
+            before = first%next
          end if
-         call solve_stage(self, model, clock, stage, before, next, record, error)
-         if (of_first%increment > 0) call add_attempts(of_first, record)
+         call solve_stage(self, model, stage, before, last, error)
+         next = last%next
+         record = last%record
+         if (first%record%increment > 0) call add_attempts(first%record, record)
          if (.not. step%is_transient .or. allocated(error)) return
-         if (of_first%increment > 0) before%temperature = self%state%temperature + stage%jump
+         if (first%record%increment > 0) before%temperature = self%state%temperature + stage%jump
          call measure_changes(model, self%bodies, self%heats(self%in_use), &
             self%loads%temperature%active, before, next, record)
          if (self%control%increments_of_step == 0) call note_shock(model, stage%jump, &
@@ -356,86 +348,133 @@ contains
       end associate
    end subroutine attempt
 
-   !> Solves a stage of an increment, mostly the only one; the last one is recorded.
-   subroutine solve_stage(self, model, clock, stage, before, next, record, error)
+   !> The first stage of an increment that stores heat, and the state that it finds.
+   subroutine begin_storing(self, model, stage, before)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(step_clock_type), intent(in) :: clock             ! end of the increment
+      type(stage_type), intent(inout) :: stage              ! with the clock of the increment
+      type(solution_state_type), intent(inout) :: before    ! state of the run
+
+      associate (step => model%steps(self%control%step))
+         stage%size = self%control%size_to(stage%clock)
+         stage%duration = stage%size
+         if (self%control%increments_of_step == 0) call begin_storage(model, self%bodies, &
+            self%loads, self%control%start_of_step(model), before)
+         stage%jump = before%temperature - self%state%temperature
+         stage%temperature = before%temperature
+         stage%displacement = before%displacement
+         stage%is_last = step%scheme%stages /= 2
+      end associate
+      if (stage%is_last) return
+      stage%duration = stage_part*stage%size
+      stage%size = stage%duration
+      stage%clock%step_time = self%control%step_time + stage%size
+      stage%clock%total_time = self%control%step_start + stage%clock%step_time
+   end subroutine begin_storing
+
+   !> The second stage of an increment: C (T_i+1 - T_i)/dt is (1 - gamma) of the first stage's rate
+   !> and gamma of its own.
+   pure subroutine begin_second_stage(next, before, stage)
+      type(solution_state_type), intent(in) :: next         ! state at the end of the first one
+      type(solution_state_type), intent(in) :: before       ! and at its start
+      type(stage_type), intent(inout) :: stage
+      real(dp), parameter :: weight = 1/stage_part - 1
+
+      stage%temperature = before%temperature + weight*(next%temperature - before%temperature)
+      stage%displacement = before%displacement + weight*(next%displacement - before%displacement)
+      stage%size = stage%of_increment%step_time - stage%clock%step_time
+      stage%clock = stage%of_increment
+      stage%is_last = .true.
+   end subroutine begin_second_stage
+
+   !> Solves a stage of an increment, mostly the only one; the last one is recorded.
+   subroutine solve_stage(self, model, stage, before, trial, error)
+      class(simulation_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before
-      type(solution_state_type), intent(out) :: next
-      type(increment_record_type), intent(out) :: record
+      type(trial_type), intent(out) :: trial
       type(error_type), allocatable, intent(out) :: error
-      type(increment_data_type) :: data
-      type(increment_workspace_type) :: workspace, fresh_workspace
-      type(solution_state_type) :: fresh
-      type(strain_heat_type) :: strain_heat
-      logical :: is_settled
       real(dp) :: since
 
       call self%loads%move_to(stage%clock, model)
       call check_prescribed_ties(model, self%bodies, self%loads, self%control%step, error)
-      call begin_record(self, model, clock, record)
+      call begin_record(self, model, stage%of_increment, trial%record)
       if (allocated(error)) return
-      next = before
-      next%increment_size = stage%size
-      ! (3.4) asks for them at the start of the next increment, whether this one solves heat or not.
-      if (any(solves_heat(model%steps%analysis))) then
-         next%sources%load = self%loads%heat_load()
-         next%sources%film = self%loads%film_matrix()
-      end if
-      next%force_load = self%loads%nodal_forces()
-      associate (step => model%steps(self%control%step), bodies => self%bodies)
-         if (step%dilates) then
-            fresh = next
-            call strain_heat%begin(bodies, stage)
+      trial%next = before
+      associate (step => model%steps(self%control%step), bodies => self%bodies, &
+         next => trial%next, record => trial%record)
+         next%increment_size = stage%size
+         ! (3.4) asks for them at the start of the next increment, whether this one solves heat or
+         ! not.
+         if (any(solves_heat(model%steps%analysis))) then
+            next%sources%load = self%loads%heat_load()
+            next%sources%film = self%loads%film_matrix()
          end if
-         do
-            call solve_fields(self, model, stage, strain_heat, before, data, workspace, next, &
-               record, error)
-            if (allocated(error)) return
-            if (.not. step%dilates) exit
-            call strain_heat%correct(bodies, stage, next, is_settled, error)
-            if (allocated(error)) return
-            if (is_settled) exit
-            next = fresh
-            workspace = fresh_workspace
-         end do
-         if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
-         if (.not. stage%is_last) then
-            call move_alloc(workspace%known, self%known)
-            return
-         end if
-         since = wall_seconds()
-         call complete_record(bodies, model, self%recovery, self%loads, data, next, record)
-         self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
-         call check_record(record, step%analysis, error)
+         next%force_load = self%loads%nodal_forces()
+         call solve_corrected(self, model, stage, before, trial, error)
          if (allocated(error)) return
-         call move_alloc(workspace%known, self%known)
+         if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &
+            trial%workspace%contact, self%loads, next, record, self%undecided)
+         if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
+         if (stage%is_last) then
+            since = wall_seconds()
+            call complete_record(bodies, model, self%recovery, self%loads, trial%data, next, record)
+            self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
+            call check_record(record, step%analysis, error)
+            if (allocated(error)) return
+         end if
+         call move_alloc(trial%workspace%known, self%known)
       end associate
    end subroutine solve_stage
 
-   !> Solves the fields of a stage, with the heat that strains take up given.
-   subroutine solve_fields(self, model, stage, strain_heat, before, data, workspace, next, record, &
-      error)
+   !> Solves the fields of a stage until the heat that strains take up is that of its solution.
+   subroutine solve_corrected(self, model, stage, before, trial, error)
       class(simulation_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(stage_type), intent(in) :: stage
-      type(strain_heat_type), intent(in) :: strain_heat
       type(solution_state_type), intent(in) :: before
-      type(increment_data_type), intent(out) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
-      type(solution_state_type), intent(inout) :: next
-      type(increment_record_type), intent(inout) :: record
+      type(trial_type), intent(inout) :: trial
+      type(error_type), allocatable, intent(out) :: error
+      type(solution_state_type) :: fresh
+      type(increment_workspace_type) :: fresh_workspace
+      type(strain_heat_type) :: strain_heat
+      logical :: is_settled
+
+      if (.not. model%steps(self%control%step)%dilates) then
+         call solve_fields(self, model, stage, before, trial, error)
+         return
+      end if
+      fresh = trial%next
+      call strain_heat%begin(self%bodies, stage)
+      do
+         trial%taken_up = strain_heat%taken_up
+         call solve_fields(self, model, stage, before, trial, error)
+         if (allocated(error)) return
+         call strain_heat%correct(self%bodies, stage, trial%next, is_settled, error)
+         if (allocated(error) .or. is_settled) return
+         trial%next = fresh
+         trial%workspace = fresh_workspace
+      end do
+   end subroutine solve_corrected
+
+   !> Solves the fields of a stage, with the heat that strains take up given.
+   subroutine solve_fields(self, model, stage, before, trial, error)
+      class(simulation_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before
+      type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
 
-      workspace%record%increment = record%increment
-      associate (step => model%steps(self%control%step), bodies => self%bodies)
+      associate (step => model%steps(self%control%step), bodies => self%bodies, &
+         data => trial%data, workspace => trial%workspace, next => trial%next)
+         workspace%record%increment = trial%record%increment
          call begin_increment(bodies, step, before, next, data)
          if (step%is_transient) call data%equation%hold_heat(bodies%capacity, stage%duration, &
             stage%temperature, before%stored)
-         if (allocated(strain_heat%taken_up)) data%equation%taken_up = strain_heat%taken_up
+         if (allocated(trial%taken_up)) data%equation%taken_up = trial%taken_up
          if (solves_heat(step%analysis)) then
             call reduce_heat(self, model, data%equation%left_film(bodies%capacity), error)
             if (allocated(error)) return
@@ -445,7 +484,7 @@ contains
          if (allocated(self%known)) workspace%known = self%known
          call solve_points(bodies, self%heats(self%in_use), self%loads, data, workspace, next, &
             error)
-         record%solution_report_type = workspace%record
+         trial%record%solution_report_type = workspace%record
          self%seconds%iterate = self%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
             call check_heat(model, bodies, self%loads, self%control%step, &
@@ -457,8 +496,6 @@ contains
                self%loads%displacement%active, next%contact%contact_state)
             return
          end if
-         if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &
-            workspace%contact, self%loads, next, record, self%undecided)
          since = wall_seconds()
          call recover_fields(bodies, self%heats(self%in_use), self%loads, data, workspace, next)
          if (step%is_transient) next%stored = data%equation%stored_rate(bodies%capacity, &

@@ -16,6 +16,10 @@ module touch_instants
 
    real(dp), parameter :: small = 1.0e-3_dp   !! part of the distance at the start that is none
    integer, parameter :: most_tries = 20      !! attempts at one instant
+   real(dp), parameter :: rounding = 1.0e3_dp !! of gaps, in the least length of the contact points
+   !> Part of the first attempt, and part of the distance that is left within it, of a touch that
+   !> comes on the way.
+   real(dp), parameter :: short = 0.1_dp, nearer = 0.5_dp
 
    !> A search within one increment.
    type :: touch_search_type
@@ -24,6 +28,7 @@ module touch_instants
       integer, private :: tries = 0, last = 0        !! attempts; which end the last one moved
       real(dp), private :: times(2) = 0.0_dp         !! before and behind the instant [time]
       real(dp), private :: distances(2) = 0.0_dp     !! at these [length]
+      real(dp), private :: first(2) = 0.0_dp         !! first attempt: [time], distance [length]
    contains
       procedure :: ends_behind
    end type touch_search_type
@@ -45,7 +50,8 @@ contains
          if (self%interface > 0 .and. self%interface /= i) cycle
          at_start = distance(bodies, before, i)
          at_end = distance(bodies, next, i)
-         passes = at_start > 0.0_dp .neqv. at_end > 0.0_dp
+         passes = (at_start > 0.0_dp .neqv. at_end > 0.0_dp) .and. abs(at_start) > rounding* &
+            bodies%equilibrium%contact%least_length
          if (self%interface == 0) then
             if (.not. passes) cycle
             self%interface = i
@@ -57,6 +63,11 @@ contains
       if (self%interface == 0) return
       self%tries = self%tries + 1
       ends_behind = passes .and. abs(at_end) <= small*abs(at_start) .or. self%tries > most_tries
+      if (ends_behind) return
+      if (self%tries == 1) self%first = [times(2) - times(1), abs(at_end)]
+      ! Loads that act at once close it where the increment begins.
+      ends_behind = passes .and. times(2) - times(1) <= short*self%first(1) .and. &
+         abs(at_end) > nearer*self%first(2)
       if (ends_behind) return
       if (self%tries > 1) call narrow(self, passes, times(2), at_end)
       associate (t => self%times, d => self%distances, goal => -0.3_dp*small*at_start)
