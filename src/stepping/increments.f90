@@ -69,10 +69,10 @@ module increments
 
    !> A stage that is being solved.
    type :: trial_type
-      type(increment_data_type) :: data = increment_data_type()
-      type(increment_workspace_type) :: workspace = increment_workspace_type()
-      type(solution_state_type) :: next = solution_state_type()          !! state at its end
-      type(increment_record_type) :: record = increment_record_type()
+      type(increment_data_type) :: data
+      type(increment_workspace_type) :: workspace
+      type(solution_state_type) :: next           !! state at its end
+      type(increment_record_type) :: record
       real(dp), allocatable :: taken_up(:)   !! (nodes) by strains, where they take up heat [energy]
    end type trial_type
 
