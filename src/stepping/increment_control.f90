@@ -20,7 +20,7 @@ module increment_control
    real(dp), parameter :: alike = 1.0e-9_dp        !! relative difference of sizes that is none
    real(dp), parameter :: allowance = 1.2_dp       !! of what a step allows its increments
    real(dp), parameter :: aim = 0.7_dp             !! part of it that they are made for
-   real(dp), parameter :: helps = 0.7_dp           !! part of an error that shortening leaves
+   real(dp), parameter :: same = 0.1_dp            !! relative difference of errors that are alike
 
    !> Position in the steps, and size of the next increment.
    type :: increment_control_type
@@ -32,7 +32,9 @@ module increment_control
       real(dp) :: step_time = 0.0_dp          !! time since then [time]
       real(dp) :: largest = 0.0_dp            !! largest size of the next increment [time]
       real(dp) :: useful = 0.0_dp             !! size below which none is shortened [time]
-      real(dp) :: error_before = 0.0_dp       !! of a longer attempt at this increment, or 0
+      !> Of a longer attempt at this increment that erred too much: its size [time], error, and
+      !> largest change of a temperature; 0 without one
+      real(dp), private :: longer(3) = 0.0_dp
       !> Instants on which increments of the step land, from its start [time]
       real(dp), allocatable :: landings(:)
    contains
@@ -194,13 +196,27 @@ contains
 
       goes_too_far = .false.
       if (.not. adapts_increments(model%steps(self%step))) return
-      ! Where bodies leave one temperature, the range grows with the error: shorter ones err alike.
-      if (record%makes_range .and. self%error_before > 0.0_dp .and. &
-         record%local_error > helps*self%error_before) return
+      if (errs_alike(self, increment_size, record)) return
       goes_too_far = excess(model%steps(self%step), record) > allowance .and. &
          self%can_cut_back(model, increment_size) .and. &
          0.5_dp*increment_size > hardly_longer*self%useful_size(model%steps(self%step), record)
    end function goes_too_far
+
+   !> Whether an increment errs by the same part of the range of temperatures as a longer attempt,
+   !> however short: bodies leave one temperature, and heat that grows from nothing changes it by a
+   !> power of time, which makes the range, too. What it errs is none beside later ranges, since
+   !> changes fall at least as fast as the size.
+   pure logical function errs_alike(self, increment_size, record)
+      type(increment_control_type), intent(in) :: self
+      real(dp), intent(in) :: increment_size
+      type(increment_record_type), intent(in) :: record
+
+      associate (size_before => self%longer(1), error => self%longer(2), change => self%longer(3))
+         errs_alike = record%makes_range .and. size_before > 0.0_dp .and. &
+            abs(record%local_error - error) <= same*error .and. &
+            record%largest_change*size_before <= (1.0_dp + same)*change*increment_size
+      end associate
+   end function errs_alike
 
    !> Size below which an increment is not shortened for what it errs.
    pure real(dp) function useful_size(self, step, record)
@@ -238,7 +254,7 @@ contains
          call halve(self, step, increment_size*sqrt(aim/excess(step, record)), &
             self%useful_size(step, record))
       end associate
-      self%error_before = record%local_error
+      self%longer = [increment_size, record%local_error, record%largest_change]
       self%cut_backs = self%cut_backs + 1
    end function shorten
 
@@ -290,7 +306,7 @@ contains
       self%increments_of_step = self%increments_of_step + 1
       associate (step => model%steps(self%step))
          if (adapts_increments(step)) then
-            self%error_before = 0.0_dp
+            self%longer = 0.0_dp
             if (.not. present(record)) return
             self%useful = max(self%useful, record%useful_increment)
             if (excess(step, record) <= allowance) self%useful = 0.0_dp

@@ -71,10 +71,10 @@ module increments
 
    !> A stage that is being solved.
    type :: trial_type
-      type(increment_data_type) :: data = increment_data_type()
-      type(increment_workspace_type) :: workspace = increment_workspace_type()
-      type(solution_state_type) :: next = solution_state_type()          !! state at its end
-      type(increment_record_type) :: record = increment_record_type()
+      type(increment_data_type) :: data
+      type(increment_workspace_type) :: workspace
+      type(solution_state_type) :: next           !! state at its end
+      type(increment_record_type) :: record
       !> (m) conductances of a solution with other corrections, where there is one
       real(dp), allocatable :: omega_start(:)
    end type trial_type

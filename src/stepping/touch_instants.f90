@@ -28,8 +28,7 @@ module touch_instants
       integer, private :: tries = 0, last = 0        !! attempts; which end the last one moved
       real(dp), private :: times(2) = 0.0_dp         !! before and behind the instant [time]
       real(dp), private :: distances(2) = 0.0_dp     !! at these [length]
-      !> Of the first attempt [time], [length]
-      real(dp), private :: first_length = 0.0_dp, first_distance = 0.0_dp
+      real(dp), private :: first(2) = 0.0_dp         !! first attempt: [time], distance [length]
    contains
       procedure :: ends_behind
    end type touch_search_type
@@ -51,8 +50,8 @@ contains
          if (self%interface > 0 .and. self%interface /= i) cycle
          at_start = distance(bodies, before, i)
          at_end = distance(bodies, next, i)
-         passes = at_start > 0.0_dp .neqv. at_end > 0.0_dp
-         if (abs(at_start) <= rounding*bodies%equilibrium%contact%least_length) passes = .false.
+         passes = (at_start > 0.0_dp .neqv. at_end > 0.0_dp) .and. abs(at_start) > rounding* &
+            bodies%equilibrium%contact%least_length
          if (self%interface == 0) then
             if (.not. passes) cycle
             self%interface = i
@@ -65,13 +64,10 @@ contains
       self%tries = self%tries + 1
       ends_behind = passes .and. abs(at_end) <= small*abs(at_start) .or. self%tries > most_tries
       if (ends_behind) return
-      if (self%tries == 1) then
-         self%first_length = times(2) - times(1)
-         self%first_distance = at_end
-      end if
+      if (self%tries == 1) self%first = [times(2) - times(1), abs(at_end)]
       ! Loads that act at once close it where the increment begins.
-      ends_behind = passes .and. times(2) - times(1) <= short*self%first_length .and. &
-         abs(at_end) > nearer*abs(self%first_distance)
+      ends_behind = passes .and. times(2) - times(1) <= short*self%first(1) .and. &
+         abs(at_end) > nearer*self%first(2)
       if (ends_behind) return
       if (self%tries > 1) call narrow(self, passes, times(2), at_end)
       associate (t => self%times, d => self%distances, goal => -0.3_dp*small*at_start)

@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 import pytest
 import transients as two
+from blocks import write
 from deck_runs import PROGRAM, assert_alike, datasets, run, solve
 from physics import judge, material, mesh
 
@@ -202,3 +203,40 @@ def test_stored_heat_and_heat_of_strains_are_judged(tmp_path, dilatation):
     """T0 beta:eps' of a block that cannot widen, and what a source gives beside it."""
     judge(tmp_path, *squeezed(1.0, dilatation))
     judge(tmp_path, *squeezed(1.01, dilatation), status=4)
+
+
+def test_heat_that_grows_from_nothing_does_not_take_the_smallest_increment(tmp_path):
+    """An insulated body at one temperature: rho c T' = q t/P, so that T - T0 = q t^2/(2 P rho c)."""
+    start, load, period = 20.0, 40.0, 2.0
+    deck = write(tmp_path / "grows.inp", mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPE8"), material(
+        "BODY", None, None, 1.0, 3.0, 2.0), ["*AMPLITUDE, NAME=GROWS", f"0., 0., {period!r}, 1.",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"BODY, {start!r}", "*STEP, INC=1000",
+        "*HEAT TRANSFER", f"0.1, {period!r}", "*DFLUX, AMPLITUDE=GROWS", f"BODY, BF, {load!r}",
+        "*NODE FILE", "NT", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        time = file["history/time"][()]
+        found = file["VTKHDF/PointData/temperature"][()].reshape(len(time), -1)
+    # Errors by the range so far let increments grow by a part of the time that has passed.
+    assert time[0] > 1e-3
+    rise = load * time**2 / (2 * period * 3.0 * 2.0)
+    np.testing.assert_allclose(found, np.tile(start + rise, (found.shape[1], 1)).T,
+                               atol=1e-3 * rise[-1])
+
+
+def test_faces_that_loads_close_at_once_are_not_searched_for(tmp_path):
+    """The upper block, 0.01 above the other one, is pushed onto it as the step begins."""
+    deck = write(tmp_path / "closes.inp",
+                 mesh("UP", [0.0, 1.0], [0.01, 1.01], "CPE8"),
+                 mesh("LOW", [0.0, 1.0], [-1.0, 0.0], "CPE8", first=1001),
+                 material("UP", (1000.0, 0.0), 1e-5, 1.0, 1.0, 1.0),
+                 material("LOW", (1000.0, 0.0), 1e-5, 1.0, 1.0, 1.0),
+                 ["*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", "0., 1., 1.",
+                  "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "UP.BOTTOM, LOW.TOP",
+                  "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UP, 10.", "LOW, 0.", "*STEP, INC=500",
+                  "*COUPLED TEMPERATURE-DISPLACEMENT", "0.05, 1.", "*BOUNDARY",
+                  "UP.TOP, 2, 2, -0.05", "LOW.BOTTOM, 2", "UP, 1", "LOW, 1", "*END STEP"])
+    listing = solve(deck).with_suffix(".lst").read_text()
+    assert listing.count("touches or parts within it") <= 3
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        # Strains of 0.04 over both heights, E 1000 and nu 0; heat that is stored changes it little.
+        np.testing.assert_allclose(file["contact/FACE/pressure"][0], 20.0, rtol=1e-2)
