@@ -2,8 +2,8 @@
 !> shape functions. Where an element on one side of a side is divided and the one on the other is
 !> not, the new nodes of that side hang (hanging_nodes).
 module mesh_division
-   use element_kinds, only: element_node_count, kind_count, quad4, &
-      quad8, quad8_reduced, triangle6
+   use element_kinds, only: element_node_count, kind_count, quad4, quad4_enhanced, quad8, &
+      quad8_reduced, triangle6
    use element_sides, only: element_sides_type, find_sides
    use local_refinement, only: coarse_side, fine_sides, hanging_count, nodes_between
    use kinds, only: dp
@@ -15,7 +15,7 @@ module mesh_division
    public :: refined_members
 
    !> New nodes inside an element by its kind.
-   integer, parameter :: inner_count(kind_count) = [5, 5, 1, 3, 0]
+   integer, parameter :: inner_count(kind_count) = [5, 5, 1, 3, 0, 1]
 
    !> Shape functions of a three-node side at xi = -1/2; reversed at xi = 1/2.
    real(dp), parameter :: quarter_weights(3) = [0.375_dp, 0.75_dp, -0.125_dp]
@@ -200,7 +200,7 @@ contains
       select case (kind)
       case (quad8, quad8_reduced)
          weights = quad8_weights(:, position)
-      case (quad4)
+      case (quad4, quad4_enhanced)
          weights = 0.25_dp
       case (triangle6)
          weights = triangle6_weights(:, position)

@@ -3,7 +3,8 @@
 !> temperatures follow; loads and supports are applied anew.
 module refinement
    use mesh_bodies, only: find_bodies
-   use element_kinds, only: element_corner_count, quad4, quad8, quad8_reduced, triangle6
+   use element_kinds, only: element_corner_count, quad4, quad4_enhanced, quad8, quad8_reduced, &
+      triangle6
    use kinds, only: dp, long
    use load_application, only: apply_requests, apply_transforms
    use mesh, only: mesh_type
@@ -232,7 +233,7 @@ contains
          select case (kinds(e))
          case (quad8, quad8_reduced)
             nodes = quad8_children(division, element_nodes(:, e), e)
-         case (quad4)
+         case (quad4, quad4_enhanced)
             nodes(:4, :) = quad4_children(division, element_nodes(:, e), e)
          case (triangle6)
             nodes(:6, :) = triangle6_children(division, element_nodes(:, e), e)

@@ -4,11 +4,14 @@
 !>
 !> Four-node elements of plane strain and axisymmetric ones use the mean dilatation of the element
 !> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that
-!> nearly incompressible materials do not lock them.
+!> nearly incompressible materials do not lock them. Those with incompatible modes have enhanced
+!> strains.
 module element_elasticity
    use blas_lapack, only: dgemm
    use element_integrals, only: area_factor
-   use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_stress, quad4
+   use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_stress, quad4, &
+      quad4_enhanced
+   use enhanced_strains, only: enhance_strains
    use field_recovery, only: recovery_rules
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -39,6 +42,7 @@ contains
       integer :: g, j
 
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
+      call enhance(kind, plane, coordinates, e, volumes, b)
       do g = 1, size(volumes)
          weighted = volumes(g)*e(:, :, min(g, size(e, 3)))
          do j = 1, size(k, 1)
@@ -55,10 +59,12 @@ contains
 
    !> Nodal forces of a temperature increment, per unit nodal temperature: integral of B^T beta
    !> psi^q.
-   pure function element_thermal_load(kind, plane, coordinates, beta, thickness) result(load)
+   pure function element_thermal_load(kind, plane, coordinates, e, beta, thickness) result(load)
       integer, intent(in) :: kind                 !! kind of the element
       integer, intent(in) :: plane                !! plane_strain, ...
       real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
+      !> (4, 4, points of integration_rule, or 1 for all) [stress]
+      real(dp), intent(in) :: e(:, :, :)
       !> (4, points of integration_rule, or 1 for all) [stress/temperature]
       real(dp), intent(in) :: beta(:, :)
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
@@ -71,6 +77,7 @@ contains
 
       call integration_rule(kind, points, weights)
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
+      call enhance(kind, plane, coordinates, e, volumes, b)
       load = 0.0_dp
       do g = 1, size(volumes)
          psi = element_shape(kind, points(:, g))
@@ -81,7 +88,8 @@ contains
       end do
    end function element_thermal_load
 
-   !> Nodal forces that a uniform stress of the element exerts: minus the integral of B^T sigma.
+   !> Nodal forces that a uniform stress of the element exerts: minus the integral of B^T sigma. It
+   !> does no work on enhanced strains.
    pure function element_stress_force(kind, plane, coordinates, stress, thickness) result(force)
       integer, intent(in) :: kind                 !! kind of the element
       integer, intent(in) :: plane                !! plane_strain, ...
@@ -129,6 +137,18 @@ contains
          end do
       end do
    end subroutine strain_matrices
+
+   !> Adds to B the enhanced strains of the kinds that have them.
+   pure subroutine enhance(kind, plane, coordinates, e, volumes, b)
+      integer, intent(in) :: kind, plane
+      real(dp), intent(in) :: coordinates(:, :), e(:, :, :), volumes(:)
+      real(dp), intent(inout) :: b(:, :, :)
+      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
+
+      if (kind /= quad4_enhanced) return
+      call integration_rule(kind, points, weights)
+      call enhance_strains(coordinates, points, plane == axisymmetric, e, volumes, b)
+   end subroutine enhance
 
    !> B at a point, and the volume per d xi d eta.
    pure subroutine strain_matrix(kind, plane, coordinates, thickness, point, b, volume)

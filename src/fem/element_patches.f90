@@ -2,7 +2,7 @@
 !> fitted by least squares to the values at their recovery points. A fit knows the sites alone: its
 !> value at a position is a sum of the values with weights.
 module element_patches
-   use element_kinds, only: element_corner_count, element_node_count, quad4, triangle3
+   use element_kinds, only: element_corner_count, element_node_count
    use field_recovery, only: point_map_type
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -192,7 +192,7 @@ contains
    elemental logical function is_linear(kind)
       integer, intent(in) :: kind   !! kind of the element
 
-      is_linear = kind == quad4 .or. kind == triangle3
+      is_linear = element_node_count(kind) == element_corner_count(kind)
    end function is_linear
 
    !> Adds the elements beyond the sides of a patch.
@@ -233,7 +233,7 @@ contains
       do i = 1, size(patch)
          associate (mine => layout%position(:, layout%first_sample(patch(i)): &
             layout%first_sample(patch(i) + 1) - 1))
-            if (mesh%element_kind(patch(i)) == quad4) then
+            if (is_linear(mesh%element_kind(patch(i)))) then
                sites(:, n + 1) = sum(mine, dim=2)/size(mine, 2)
                n = n + 1
             else
@@ -273,13 +273,13 @@ contains
       do i = 1, size(patch)
          samples = layout%first_sample(patch(i) + 1) - layout%first_sample(patch(i))
          do s = 0, samples - 1
-            if (mesh%element_kind(patch(i)) == quad4) then
+            if (is_linear(mesh%element_kind(patch(i)))) then
                call add_weight(row, layout%first_sample(patch(i)) + s, weights(n + 1)/samples)
             else
                call add_weight(row, layout%first_sample(patch(i)) + s, weights(n + 1 + s))
             end if
          end do
-         n = n + merge(1, samples, mesh%element_kind(patch(i)) == quad4)
+         n = n + merge(1, samples, is_linear(mesh%element_kind(patch(i))))
       end do
    end subroutine add_weights
 

@@ -5,12 +5,14 @@
 !> weight.
 module point_fields
    use element_integrals, only: area_factor
-   use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4
+   use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4, quad4_enhanced
+   use enhanced_strains, only: release_stresses
    use kinds, only: dp
    use materials, only: material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
    use point_materials, only: point_material_type, point_materials_type
    use point_rules, only: most => most_points_of_rule, point_rule_type
+   use shape_functions, only: node_position
    implicit none
    private
    public :: point_fields_type
@@ -132,12 +134,34 @@ contains
                   self%materials(self%at_point(element, g))%thermal_stress
             end do
          end if
+         if (kind == quad4_enhanced) call release(self, mesh, element, values)
          if (.not. allocated(mesh%initial_stress)) return
          do g = 1, n
             values(g, :) = values(g, :) + mesh%initial_stress(:, element)
          end do
       end associate
    end subroutine stress
+
+   !> Adds the stresses of enhanced strains.
+   pure subroutine release(self, mesh, element, values)
+      class(point_fields_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      real(dp), intent(inout) :: values(most, 4)
+      real(dp) :: e(4, 4, 4), points(2, 4), stress(4, 4)
+      integer :: g
+
+      associate (first => self%first(element), rule => self%rules(quad4_enhanced))
+         points = matmul(node_position(quad4_enhanced), transpose(rule%shape(:4, :4)))
+         do g = 1, 4
+            e(:, :, g) = self%materials(self%at_point(element, g))%elasticity
+         end do
+         stress = transpose(values(:4, :))
+         call release_stresses(mesh%coordinates(:, mesh%element_nodes(:4, element)), points, &
+            mesh%element_plane(element) == axisymmetric, e, self%volume(first:first + 3), stress)
+         values(:4, :) = transpose(stress)
+      end associate
+   end subroutine release
 
    !> Two points of one material.
    pure subroutine stress_from_strain(material, g, strain, warmth, values)
@@ -180,7 +204,7 @@ contains
    end subroutine heat_flux
 
    !> Nodal forces that stresses of an element balance: the integral of B^T sigma, B as in
-   !> element_elasticity.
+   !> element_elasticity, but without enhanced strains, on which stresses do no work.
    pure function nodal_forces(self, mesh, element, stress) result(forces)
       class(point_fields_type), intent(in) :: self   !! points of integration_rules
       type(mesh_type), intent(in) :: mesh

@@ -1,6 +1,7 @@
 !> Gauss points on [-1, 1], on the square and on the triangle.
 module quadrature
-   use element_kinds, only: kind_count, quad4, quad8, quad8_reduced, triangle3, triangle6
+   use element_kinds, only: kind_count, quad4, quad4_enhanced, quad8, quad8_reduced, triangle3, &
+      triangle6
    use kinds, only: dp
    implicit none
    private
@@ -22,18 +23,18 @@ module quadrature
    real(dp), parameter :: gauss_weight_10(10) = [upper_weight_10, upper_weight_10]
 
    !> Points of integration_rule by the kind of the element.
-   integer, parameter :: point_count(kind_count) = [9, 4, 4, 3, 3]
+   integer, parameter :: point_count(kind_count) = [9, 4, 4, 3, 3, 4]
 
    integer, parameter :: most_points = 9   !! largest of them
 
    !> Points of recovery_points by the kind of the element.
-   integer, parameter :: recovery_count(kind_count) = [4, 4, 4, 3, 1]
+   integer, parameter :: recovery_count(kind_count) = [4, 4, 4, 3, 1, 4]
 
    real(dp), parameter :: square_corner(2, 4) = &
       reshape([-1.0_dp, -1.0_dp, 1.0_dp, -1.0_dp, 1.0_dp, 1.0_dp, -1.0_dp, 1.0_dp], [2, 4])
 
    !> Points of load_rule by the kind of the element.
-   integer, parameter :: load_point_count(kind_count) = [9, 9, 9, 6, 6]
+   integer, parameter :: load_point_count(kind_count) = [9, 9, 9, 6, 6, 9]
 
    ! The rule of degree 4 on the triangle: two orbits of three points, their area coordinate and
    ! weight. Dunavant, Int. J. Num. Meth. Eng. 21 (1985) 1129.
@@ -53,7 +54,7 @@ contains
       select case (kind)
       case (quad8)
          call square_3(points, weights)
-      case (quad8_reduced, quad4)
+      case (quad8_reduced, quad4, quad4_enhanced)
          points = gauss_coordinate_2*square_corner(:, [1, 2, 4, 3])
          weights = 1.0_dp
       case (triangle6, triangle3)

@@ -1,7 +1,8 @@
 !> Shape functions of the elements and of their sides. The square runs over xi, eta = -1..1; the
 !> triangle has its corners at (0, 0), (1, 0), (0, 1).
 module shape_functions
-   use element_kinds, only: element_node_count, quad4, quad8, quad8_reduced, triangle3, triangle6
+   use element_kinds, only: element_node_count, quad4, quad4_enhanced, quad8, quad8_reduced, &
+      triangle3, triangle6
    use kinds, only: dp
    implicit none
    private
@@ -65,7 +66,7 @@ contains
          do q = 6, 8, 2
             psi(q) = (1 - point(2)**2)*(1 + point(1)*square_position(1, q))/2
          end do
-      case (quad4)
+      case (quad4, quad4_enhanced)
          psi = (1 + point(1)*square_position(1, :4))*(1 + point(2)*square_position(2, :4))/4
       case (triangle6)
          psi(1:3) = area*(2*area - 1)
@@ -105,7 +106,7 @@ contains
             slope(1, q) = a*(1 - point(2)**2)/2
             slope(2, q) = -point(2)*(1 + point(1)*a)
          end do
-      case (quad4)
+      case (quad4, quad4_enhanced)
          slope(1, :) = square_position(1, :4)*(1 + point(2)*square_position(2, :4))/4
          slope(2, :) = square_position(2, :4)*(1 + point(1)*square_position(1, :4))/4
       case (triangle6)

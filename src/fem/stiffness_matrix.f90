@@ -49,7 +49,7 @@ contains
       class(point_materials_type), intent(in) :: points      !! at those of integration_rules
       type(sparse_matrix_type) :: load                       !! (2 nodes, nodes)
       type(element_assembly_type) :: assembly
-      real(dp) :: beta(4, most_points)
+      real(dp) :: beta(4, most_points), e(4, 4, most_points)
       integer :: element, g, n
 
       call assembly%begin(mesh, 2, 1)
@@ -59,10 +59,13 @@ contains
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
             n = merge(1, point_count(kind), points%one_material(element))
             do g = 1, n
-               beta(:, g) = points%materials(points%at_point(element, g))%thermal_modulus
+               associate (there => points%materials(points%at_point(element, g)))
+                  e(:, :, g) = there%elasticity
+                  beta(:, g) = there%thermal_modulus
+               end associate
             end do
             call assembly%add(nodes, element_thermal_load(kind, plane, &
-               mesh%coordinates(:, nodes), beta(:, :n), section%thickness))
+               mesh%coordinates(:, nodes), e(:, :, :n), beta(:, :n), section%thickness))
          end associate
       end do
       load = assembly%matrix

@@ -2,7 +2,7 @@
 module element_kinds
    implicit none
    private
-   public :: quad8, quad8_reduced, quad4, triangle6, triangle3, kind_count
+   public :: quad8, quad8_reduced, quad4, triangle6, triangle3, quad4_enhanced, kind_count
    public :: element_node_count, element_corner_count, side_node_count, side_nodes
    public :: linear_kind
    public :: plane_strain, plane_stress, axisymmetric
@@ -12,7 +12,8 @@ module element_kinds
    integer, parameter :: quad4 = 3           !! four nodes, 2 x 2 points
    integer, parameter :: triangle6 = 4       !! six nodes, three points
    integer, parameter :: triangle3 = 5       !! three nodes
-   integer, parameter :: kind_count = 5      !! number of kinds
+   integer, parameter :: quad4_enhanced = 6  !! four nodes, incompatible modes, 2 x 2 points
+   integer, parameter :: kind_count = 6      !! number of kinds
 
    integer, parameter :: plane_strain = 1    !! eps_zz = 0
    integer, parameter :: plane_stress = 2    !! sigma_zz = 0
@@ -20,16 +21,17 @@ module element_kinds
 
    !> Nodes of an element by its kind: corners anticlockwise, then the midside nodes of sides 1, 2,
    !> ...
-   integer, parameter :: element_node_count(kind_count) = [8, 8, 4, 6, 3]
+   integer, parameter :: element_node_count(kind_count) = [8, 8, 4, 6, 3, 4]
 
    !> Corners, and so sides, of an element by its kind.
-   integer, parameter :: element_corner_count(kind_count) = [4, 4, 4, 3, 3]
+   integer, parameter :: element_corner_count(kind_count) = [4, 4, 4, 3, 3, 4]
 
    !> Nodes of a side by the kind of the element.
-   integer, parameter :: side_node_count(kind_count) = [3, 3, 2, 3, 2]
+   integer, parameter :: side_node_count(kind_count) = [3, 3, 2, 3, 2, 2]
 
    !> The kind with the same corners and no midside nodes, by the kind.
-   integer, parameter :: linear_kind(kind_count) = [quad4, quad4, quad4, triangle3, triangle3]
+   integer, parameter :: linear_kind(kind_count) = &
+      [quad4, quad4, quad4, triangle3, triangle3, quad4_enhanced]
 
 contains
 

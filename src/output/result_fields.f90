@@ -71,9 +71,9 @@ module result_fields
 
    character(*), parameter :: interface_sets(1) = ['interface']   !! cell data of contact points
 
-   !> VTK's cell types of quad8, quad8_reduced, quad4, triangle6 and triangle3. Its corners and
-   !> midside nodes are in our order.
-   integer, parameter :: vtk_types(kind_count) = [23, 23, 9, 22, 5]
+   !> VTK's cell types of quad8, quad8_reduced, quad4, triangle6, triangle3 and quad4_enhanced. Its
+   !> corners and midside nodes are in our order.
+   integer, parameter :: vtk_types(kind_count) = [23, 23, 9, 22, 5, 9]
    integer, parameter :: vtk_line = 3
 
    !> Fields of the result file.

@@ -11,7 +11,7 @@
 !> not reduce what is left over to 0.3 of the one before, the operators are to be formed again.
 module operator_corrections
    use anderson_mixing, only: mixing_type
-   use element_kinds, only: element_node_count
+   use element_kinds, only: element_node_count, quad4_enhanced
    use errors, only: error_type, set_error, status_no_convergence
    use increment_data, only: stage_type
    use kinds, only: dp
@@ -246,7 +246,8 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:), displacement(:)
       real(dp), intent(out) :: heat(:), forces(:)            ! (nodes), (2 nodes)
-      real(dp) :: flux(most, 2), stress(most, 4), of_nodes(2, 8), u(2, size(temperature))
+      real(dp) :: flux(most, 2), stress(most, 4), of_bodies(most, 4), of_nodes(2, 8)
+      real(dp) :: u(2, size(temperature))
       real(dp) :: warming(size(temperature))
       integer :: e, i, q
 
@@ -265,6 +266,12 @@ contains
          associate (mesh => model%mesh, first => self%excess%material(e), &
             n => self%excess%rules(model%mesh%element_kind(e))%count, &
             nodes => model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e))
+            of_bodies = 0.0_dp
+            if (allocated(mesh%initial_stress)) of_bodies(:n, :) = &
+               spread(mesh%initial_stress(:, e), 1, n)
+            ! Enhanced strains are not linear in the properties: both stresses are formed.
+            if (mesh%element_kind(e) == quad4_enhanced) call self%excess%stress(mesh, e, u, &
+               warming, of_bodies)
             call take_from(bodies%materials(first:first + n - 1), &
                self%excess%materials(first:first + n - 1))
             if (allocated(bodies%thermal%matrix%value)) then
@@ -273,9 +280,14 @@ contains
                heat(nodes) = heat(nodes) + of_nodes(1, :size(nodes))
             end if
             if (.not. allocated(bodies%mechanical%matrix%value)) cycle
+            if (mesh%element_kind(e) == quad4_enhanced) then
+               self%excess%materials(first:first + n - 1) = bodies%materials(first:first + n - 1)
+               do q = first, first + n - 1
+                  self%excess%materials(q)%thermal_stress = 0.0_dp
+               end do
+            end if
             call self%excess%stress(mesh, e, u, warming, stress)
-            if (allocated(mesh%initial_stress)) stress(:n, :) = stress(:n, :) - &
-               spread(mesh%initial_stress(:, e), 1, n)
+            stress = stress - of_bodies
             of_nodes = self%excess%nodal_forces(mesh, e, stress)
             do q = 1, size(nodes)
                associate (there => forces(2*nodes(q) - 1:2*nodes(q)))

@@ -11,7 +11,7 @@ STIFF, SOFT = 2e5, 1e5
 # Two blocks of height 1 take up what is left of the motion.
 HELD = (-MOVED - GAP) / (1 / STIFF + 1 / SOFT)
 
-CASES = list(product(("CPE4", "CPE8", "CAX4", "CAX8", "CPE3", "CPE6"), ("NODES", "SURFACES"),
+CASES = list(product(("CPE4", "CPE4I", "CPE8", "CAX4", "CAX8", "CPE3", "CPE6"), ("NODES", "SURFACES"),
                      (1, 4), (1, 3)))
 
 

@@ -49,10 +49,12 @@ def cylinder(kind, poisson, elements, plane="strain"):
 # degrees) more; the quadratic ones by h^3/6 u'''/u/9 sqrt(3) on a side. The nodes of CAX8R are
 # exact, but for rounding times lambda/mu = 5e4 and the condition of the strip. In six-node
 # triangles the volume is held at points that outnumber what they can follow, so that they lose an
-# order: h^2/6 as the linear ones, in the plane with sides of 15 degrees, 0.26 and 0.52 long.
+# order: h^2/6 as the linear ones, in the plane with sides of 15 degrees, 0.26 and 0.52 long. Enhanced
+# strains hold the volume at each point, and with it eps_zz = u/r of linear sides: twice h^2/6.
 H = (OUTER - INNER) / 6
-FOLLOW = {"CAX8R": 1e-9, "CAX4": H**2 / 6, "CAX6": H**2 / 6, "CPE8R": 2e-4,
-          "CPE4": H**2 / 6 + 1 - float(np.cos(np.pi / 24)), "CPE6": 0.52**2 / 24}
+FOLLOW = {"CAX8R": 1e-9, "CAX4": H**2 / 6, "CAX4I": H**2 / 3, "CAX6": H**2 / 6, "CPE8R": 2e-4,
+          "CPE4": H**2 / 6 + 1 - float(np.cos(np.pi / 24)),
+          "CPE4I": H**2 / 3 + 1 - float(np.cos(np.pi / 24)), "CPE6": 0.52**2 / 24}
 
 
 @pytest.mark.parametrize("kind", FOLLOW)
@@ -66,7 +68,7 @@ def test_elements_that_do_not_lock(tmp_path, kind):
         judge(tmp_path, deck, checks(max(part * FOLLOW[kind], rounding)))
 
 
-@pytest.mark.parametrize("kind", ["CAX8R", "CPE8R", "CAX4", "CPE4"])
+@pytest.mark.parametrize("kind", ["CAX8R", "CPE8R", "CAX4", "CPE4", "CPE4I", "CAX4I"])
 def test_elements_that_do_not_lock_are_not_warned_of(tmp_path, kind):
     process = run("check", write(tmp_path / "deck.inp", cylinder(kind, POISSON, 3)[0]))
     assert (process.returncode, process.stderr) == (0, "")

@@ -9,7 +9,7 @@ from changes import note_changes
 from deck_runs import CYLINDER, copy_deck, run, solve
 from physics import judge, judge_linear_fields, material, mesh
 
-KINDS = ["CPE8", "CPE8R", "CPE6", "CPS8", "CPS6", "CPE4", "CPE3"]
+KINDS = ["CPE8", "CPE8R", "CPE6", "CPS8", "CPS6", "CPE4", "CPE4I", "CPE3"]
 EDGES = [0.0, 0.6, 1.5, 2.0, 2.6, 3.0], [0.0, 0.5, 1.2, 1.7, 2.1, 2.6]
 
 
@@ -74,7 +74,8 @@ CORNER = "*REFINE, LEVELS=3, SURFACE=CORNER"
 
 
 @pytest.mark.parametrize("refine", [FACE, CORNER, FACE + ", DISTANCE=0.45"])
-@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE6", "CPE4", "CPE3", "CAX8", "CAX6", "CAX4"])
+@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE6", "CPE4", "CPE3", "CAX8", "CAX6", "CAX4",
+                                  "CPE4I", "CAX4I"])
 def test_uniform_pressure_and_flux_cross_a_locally_refined_face(tmp_path, kind, refine):
     """q = (T1 - T2)/(L1/k1 + L2/k2 + 1/omega); both faces are divided together."""
     deck = pressed(tmp_path / "deck.inp", [refine], kind)

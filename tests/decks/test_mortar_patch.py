@@ -14,7 +14,8 @@ PRESSURE, HOT, EXACT = 7.0, 100.0, 1e-9
 RADIUS = 5.0   # inner radius of the blocks about an axis
 CONDUCTIVITY, CLOSED = 2.0, "10., 1., 0.5"
 UPPER, LOWER = [0.0, 0.6, 1.0], [-1.0, -0.4, 0.0]
-KINDS = ["CPE8", "CPE8R", "CPS8", "CPE4", "CPE6", "CPE3", "CAX8", "CAX8R", "CAX4", "CAX6", "CAX3"]
+KINDS = ["CPE8", "CPE8R", "CPS8", "CPE4", "CPE6", "CPE3", "CAX8", "CAX8R", "CAX4", "CAX6", "CAX3",
+         "CPE4I", "CPS4I", "CAX4I"]
 
 
 def even(low, high, count):

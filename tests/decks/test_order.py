@@ -44,7 +44,7 @@ def test_bending_of_one_element(tmp_path):
     follows(tmp_path, make, 2, 1)
 
 
-@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE6", "CPS8", "CPS6", "CPE4", "CPE3"])
+@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE6", "CPS8", "CPS6", "CPE4", "CPE4I", "CPE3"])
 def test_patch_of_distorted_elements_is_exact(tmp_path, kind):
     """Linear displacements and temperatures, given node by node, at midside nodes too."""
     judge_linear_fields(tmp_path, FIRST, mesh("BODY", [0.0, 0.6, 1.5, 2.0], [0.0, 0.5, 1.2], kind,

@@ -60,7 +60,7 @@ def squeezed(kind, tilt, friction=0.0, gap=0.0, slave_above=True):
             "*END STEP"]
 
 
-@pytest.mark.parametrize("kind", ["CPE4", "CPE8", "CPE6"])
+@pytest.mark.parametrize("kind", ["CPE4", "CPE4I", "CPE8", "CPE6"])
 @pytest.mark.parametrize("tilt", TILTS)
 def test_a_tilted_cut_is_under_the_same_pressure_up_to_its_held_ends(tmp_path, kind, tilt):
     path = solve(write(tmp_path / "cut.inp", ["*OPTIONS, WIDTH=300"], squeezed(kind, tilt)))

@@ -65,7 +65,7 @@ def test_forces_on_one_node_add_up(tmp_path):
 @pytest.mark.parametrize(("face", "held", "stress"), [
     (1, "BODY.TOP, 2", (0, 1)), (2, "BODY.LEFT, 1", (1, 0)), (3, "BODY.BOTTOM, 2", (0, 1)),
     (4, "BODY.RIGHT, 1", (1, 0))])
-@pytest.mark.parametrize("kind", ["CPE3", "CPE4", "CPE6", "CPE8", "CPE8R"])
+@pytest.mark.parametrize("kind", ["CPE3", "CPE4", "CPE4I", "CPE6", "CPE8", "CPE8R"])
 @pytest.mark.changes("DLOAD")
 def test_pressure_on_a_face_of_an_element(tmp_path, kind, face, held, stress):
     """One rectangle; triangles have the faces of their own, found by the surface."""

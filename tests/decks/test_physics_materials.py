@@ -132,7 +132,7 @@ def conducting(along, across, degrees, kind="CPE8", analysis="*HEAT TRANSFER"):
                           for n, p in nodes_of(cards).items()]
 
 
-@pytest.mark.parametrize("kind", ["CPE3", "CPE4", "CPE6", "CPE8", "CPE8R"])
+@pytest.mark.parametrize("kind", ["CPE3", "CPE4", "CPE4I", "CPE6", "CPE8", "CPE8R"])
 def test_uniform_flux_in_turned_axes(tmp_path, kind):
     judge(tmp_path, *conducting(3.0, 0.5, 40.0, kind))
 

@@ -136,10 +136,10 @@ def test_temperatures_and_external_heat_of_a_wall(tmp_path, flux):
         np.testing.assert_allclose(float(found[k][4][0][0]), rate, rtol=ROUNDING)
 
 
-@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE4", "CPE6", "CPE3"])
+@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CPE4", "CPE4I", "CPE6", "CPE3"])
 def test_stress_and_flux_stand_at_the_integration_points(tmp_path, kind):
     """Uniform states; the centroid of the points is that of each element."""
-    points = {"CPE8": 9, "CPE8R": 4, "CPE4": 4, "CPE6": 3, "CPE3": 3}[kind]
+    points = {"CPE8": 9, "CPE8R": 4, "CPE4": 4, "CPE4I": 4, "CPE6": 3, "CPE3": 3}[kind]
     body = mesh("BODY", [0.0, 0.5, 1.5], [0.0, 1.0], kind)
     found = tables(tmp_path, body, material("BODY", (YOUNG, POISSON), conductivity=CONDUCTIVITY), [
         "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",

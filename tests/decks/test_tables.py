@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 import tables
 
 KINDS = ["CPE3", "CPE4", "CPE6", "CPE8", "CPE8R", "CPS3", "CPS4", "CPS6", "CPS8", "CPS8R", "CAX3",
-         "CAX4", "CAX6", "CAX8", "CAX8R"]
+         "CAX4", "CAX6", "CAX8", "CAX8R", "CPE4I", "CPS4I", "CAX4I"]
 XS, YS = [1.0, 1.7, 2.4, 3.0], [0.0, 0.5, 1.1]
 START, ZERO, WARM = 50.0, 20.0, 230.0
 EXACT = 1e-8   # of the largest value: corrections end at 1e-9 of the largest heat and force
@@ -115,7 +115,7 @@ def test_a_uniform_temperature_takes_the_constants_of_its_row(tmp_path, kind, te
     assert_last_alike(one, other)
 
 
-@pytest.mark.parametrize("kind", ["CPE8", "CPS8", "CPE8R", "CPE4", "CPS3", "CAX8"])
+@pytest.mark.parametrize("kind", ["CPE8", "CPS8", "CPE8R", "CPE4", "CPS3", "CAX8", "CPS4I"])
 def test_orthotropic_constants_of_a_table_turn_with_their_axes(tmp_path, kind):
     section = "" if kind.startswith("CAX") else ", ORIENTATION=TURNED"
     one = solved(tmp_path, strained(kind, WARM, section, **ORTHOTROPIC), "one")
@@ -209,7 +209,7 @@ def test_increments_of_a_steady_state_end_in_one_state(tmp_path, kind):
     assert_whole(tmp_path, one, other)
 
 
-@pytest.mark.parametrize("kind", ["CPE8", "CPS8R", "CPE4", "CAX6"])
+@pytest.mark.parametrize("kind", ["CPE8", "CPS8R", "CPE4", "CAX6", "CAX4I"])
 def test_given_temperatures_strain_as_solved_ones(tmp_path, kind):
     """*STATIC with *TEMPERATURE, and the same field with heat."""
     cards = mesh("BODY", XS, YS, kind)
@@ -222,7 +222,7 @@ def test_given_temperatures_strain_as_solved_ones(tmp_path, kind):
                  [*body, *step("*BOUNDARY", *held)], names=("displacement",))
 
 
-@pytest.mark.parametrize("kind", ["CPE8", "CPS6", "CPE4"])
+@pytest.mark.parametrize("kind", ["CPE8", "CPS6", "CPE4", "CPE4I"])
 def test_orthotropic_tables_of_equal_constants_are_isotropic(tmp_path, kind):
     """In turned axes, with a field that is not uniform."""
     elastic = [(e, 0.3, t) for e, _, t in ISOTROPIC["elastic"]]
@@ -259,7 +259,7 @@ def test_a_refined_deck_is_the_deck_of_its_mesh(tmp_path):
 # Known answers
 
 @pytest.mark.parametrize("joint", ["NODES", "SURFACES"])
-@pytest.mark.parametrize("kind", ["CPE8", "CPE4", "CPS8R"])
+@pytest.mark.parametrize("kind", ["CPE8", "CPE4", "CPS8R", "CPS4I"])
 def test_heat_through_two_slabs_and_their_contact(tmp_path, kind, joint):
     """Rectangles are exact where conductivities are linear; each slab has a table of its own."""
     upper, lower = [(2.0, 0.0), (1.0, 600.0)], [(0.5, 0.0), (1.5, 600.0)]
@@ -290,7 +290,7 @@ CAPACITY = tables.product([(row[0], row[1]) for row in STORING["density"]],
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("kind", ["CPE8", "CAX8R", "CPS3", "CAX4", "CPE6"])
+@pytest.mark.parametrize("kind", ["CPE8", "CAX8R", "CPS3", "CAX4", "CPE6", "CPE4I"])
 def test_a_body_that_is_warmed_evenly_has_the_enthalpy_that_it_was_given(tmp_path, scheme, kind):
     """Heat within it, or cooled below its table, none through its sides; the integral of rho c."""
     for power in (200.0, -60.0):

@@ -11,7 +11,7 @@ from test_physics_rings import polar
 
 import lame
 
-KINDS = "CPE8", "CPE8R", "CPE4", "CPE6", "CPE3"
+KINDS = "CPE8", "CPE8R", "CPE4", "CPE4I", "CPE6", "CPE3"
 YOUNG, POISSON, CONDUCTIVITY = 1e4, 0.3, 2.0
 GLUE = ["*TIE, NAME=GLUE", "UPPER.BOTTOM, LOWER.TOP"]
 COUPLED = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1."]

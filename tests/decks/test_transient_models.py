@@ -331,7 +331,7 @@ def test_reactions_of_prescribed_temperatures_are_the_heat_that_enters(tmp_path,
     assert min(top) < 0 < max(top) and max(bottom) < 0
 
 
-@pytest.mark.parametrize("kind", ["CPE8R", "CPS8", "CAX8", "CPE6", "CPE4", "CPE3", "CAX4"])
+@pytest.mark.parametrize("kind", ["CPE8R", "CPS8", "CAX8", "CPE6", "CPE4", "CPE4I", "CPE3", "CAX4"])
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
 def test_heat_balances_in_elements_of_all_kinds(tmp_path, kind, pairing):
     """A uniform source heats insulated bodies as a whole: the heat that is stored is known."""

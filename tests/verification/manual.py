@@ -29,8 +29,8 @@ tolerance.
 
 | section | cases | result |
 |---|---|---|
-| [Elements](#elements) | manufactured solutions, thick cylinder | every element converges with its theoretical order |
-| [NAFEMS benchmarks](#nafems-benchmarks) | LE1, LE11, T1, T4 | on the finest mesh within 1 % of the targets |
+| [Elements](#elements) | manufactured solutions, thick cylinder, cantilever, Cook's membrane | every element converges with its theoretical order |
+| [NAFEMS benchmarks](#nafems-benchmarks) | LE1, also of four-node elements, LE11, T1, T4 | on the finest mesh within 1 % of the targets |
 | [Contact](#contact) | patch test, Hertz, NAFEMS cylinder on block, receding layer, press fit | uniform pressure to rounding; Hertz's pressures to 0.1 % |
 | [Friction](#friction) | Cattaneo and Mindlin, block of Feijoo, Barbosa and Zouain | edges of stick within half a side, displacements to 3 % |
 | [Heat and contact](#heat-and-contact) | walls and a slit, crack closed by heat, gas and radiation, rods, the published cylinder | closed forms of walls and rods to 1e-8; the cylinder on the mesh of the paper to 0.5 % in force and 2.5 % in heat |

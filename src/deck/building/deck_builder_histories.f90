@@ -21,7 +21,7 @@ module deck_builder_histories
    public :: build_amplitudes, build_time_points, build_temperatures, build_initial_stresses
 
    !> Points of CalculiX's solid element, by the kind of the plane one.
-   integer, parameter :: solid_points(kind_count) = [27, 8, 8, 9, 2]
+   integer, parameter :: solid_points(kind_count) = [27, 8, 8, 9, 2, 1]
 
    !> Stresses of points of one element agree within what printed digits leave.
    real(dp), parameter :: printed = 1.0e-6_dp

@@ -1,7 +1,7 @@
 !> Element types of the dialect: which are built, which are refused.
 module element_types
    use element_kinds, only: axisymmetric, element_node_count, plane_strain, plane_stress, quad4, &
-      quad8, quad8_reduced, triangle3, triangle6
+      quad4_enhanced, quad8, quad8_reduced, triangle3, triangle6
    use spelling, only: nearest_known
    use text, only: string_type, to_upper
    implicit none
@@ -11,9 +11,9 @@ module element_types
    character(3), parameter :: plane_names(3) = ['CPE', 'CPS', 'CAX']
    integer, parameter :: planes(3) = [plane_strain, plane_stress, axisymmetric]
 
-   character(2), parameter :: kind_names(5) = ['8 ', '8R', '4 ', '6 ', '3 ']
-   integer, parameter :: element_kinds_named(5) = &
-      [quad8, quad8_reduced, quad4, triangle6, triangle3]
+   character(2), parameter :: kind_names(6) = ['8 ', '8R', '4 ', '6 ', '3 ', '4I']
+   integer, parameter :: element_kinds_named(6) = &
+      [quad8, quad8_reduced, quad4, triangle6, triangle3, quad4_enhanced]
 
 contains
 
@@ -48,7 +48,7 @@ contains
             return
          end do
       end do
-      message = refusal_of(name, own)
+      message = refusal_of(name)
       if (len(message) == 0) message = 'unknown element type '//name//nearest_known(name, names)
    end subroutine take_element_type
 
@@ -67,6 +67,8 @@ contains
       if (own(last:) == 'T') last = last - 1
       if (last > 4 .and. own(last:last) == 'H' .and. own(:3) /= 'CPS') last = last - 1
       own = own(:last)
+      if (own(4:) == '4R') own(5:) = 'I'
+      if (own(4:) == '6M') own = own(:4)
    end function own_name
 
    !> In what a type of Abaqus differs from that of this program in whose place it is.
@@ -75,28 +77,25 @@ contains
       character(:), allocatable :: words
 
       words = ''
+      if (index(name(4:), '4R') == 1) words = '; its hourglass control is that of '// &
+         'incompatible modes'
+      if (index(name(4:), '6M') == 1) words = '; it has no modes of its own'
       if (scan(name(4:), '68') > 0 .and. name(len(name):) == 'T') words = words// &
          '; its temperatures are quadratic, as its displacements'
       if (index(name(4:), 'H') > 0) words = words//'; it has no pressure of its own'
    end function difference
 
    !> Why a type cannot be used, and which one to take; empty for one that nobody knows.
-   pure function refusal_of(name, own) result(message)
+   pure function refusal_of(name) result(message)
       character(*), intent(in) :: name   ! as in the deck
-      character(*), intent(in) :: own    ! without the letters that mean nothing here
       character(:), allocatable :: message
       character(:), allocatable :: reason
 
       reason = ''
-      if (any(plane_names//'4R' == own)) then
-         reason = 'linear elements with reduced integration need hourglass control; take '//own(:4)
-      else if (any(plane_names//'4I' == own)) then
-         reason = 'incompatible modes are not built; take '//own(:3)//'8 or, with a finer mesh '// &
-            'where it bends, '//own(:4)
-      else if (any(plane_names//'6M' == own)) then
-         reason = 'modified triangles are not built; take '//own(:4)
-      else if (index(name, 'C3D') == 1 .or. index(name, 'DC3D') == 1) then
+      if (index(name, 'C3D') == 1 .or. index(name, 'DC3D') == 1) then
          reason = 'models are two-dimensional'
+      else if (index(name, 'CPEG') == 1) then
+         reason = 'eps_zz is 0 in plane strain; take CPE'//name(5:)
       else if (name == 'M3D9') then
          reason = 'quadrilaterals of second order have 8 nodes; in gmsh set '// &
             'Mesh.SecondOrderIncomplete = 1'
