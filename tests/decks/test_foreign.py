@@ -28,8 +28,10 @@ def pressed_and_heated():
             ("NT", "Top", 0.5, 50.0, 1e-12)]
 
 
-def test_a_flat_deck_of_abaqus_cae(tmp_path):
-    judge(tmp_path, cards_of("abaqus_cae_flat.inp"), pressed_and_heated())
+@pytest.mark.parametrize("kind", ["CPE4T", "CPE4RT", "CPE4RHT", "CPE4I"])
+def test_a_flat_deck_of_abaqus_cae(tmp_path, kind):
+    cards = [card.replace("CPE4T", kind) for card in cards_of("abaqus_cae_flat.inp")]
+    judge(tmp_path, cards, pressed_and_heated())
 
 
 def test_a_deck_of_abaqus_cae_with_parts(tmp_path):

@@ -158,7 +158,7 @@ def cases():
              "The same with incompatible modes.", "As above.",
              """40 % on the coarsest mesh, halved on each finer one: stresses of linear elements are
              of the first order.""",
-             [(n, 3 * n // 4, kind) for kind in ("CPS4I",) for n in (4, 8, 16, 32)], le1,
+             [(n, 3 * n // 4, "CPS4I") for n in (4, 8, 16, 32)], le1,
              lambda m: f"{m[0]} x {m[1]} {m[2]}", kind="EXTERNAL", cite="NAFEMS LE1", short=2),
         Case("LE11, cylinder, taper and sphere under heat",
              """A hollow solid of revolution, inside a sphere of radius 1 m and above 45 degrees a

@@ -171,7 +171,8 @@ module keywords
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
       advice_type(passed_over, '', 'CONTACT CONTROLS', 'contact is exact'), &
-      advice_type(passed_over, '', 'SECTION CONTROLS', 'elements have no hourglass modes'), &
+      advice_type(passed_over, '', 'SECTION CONTROLS/HOURGLASS STIFFNESS', &
+         'hourglass control is that of incompatible modes'), &
       advice_type(passed_over, '', 'OUTPUT', 'fields are written at every increment'), &
       advice_type(passed_over, '', 'DAMPING/CONTACT DAMPING', 'loads are slow'), &
       advice_type(passed_over, '', 'NORMAL', 'the normal of the plane is z'), &
