@@ -48,7 +48,7 @@ def draw(result, options):
     axes.set_ylabel("bound of the error / target")
     figure.legend(loc="outside lower center", ncols=2, fontsize=7)
     name = style.file_name(result, "accuracy")
-    return style.write(figure, stack_tables(tables), options.out, name)
+    return style.write(figure, stack_tables(tables), options, name)
 
 
 def draw_target(axes, cost, ratio, is_uncertain, number, label):

@@ -1,6 +1,7 @@
 """The mesh of the result file: points, elements, curved element edges."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -68,6 +69,14 @@ class Cells:
     def count(self):
         """Number of cells."""
         return sum(len(each) for each in self.groups.values())
+
+    @cached_property
+    def used(self):
+        """Which points are of an element: reference nodes are not."""
+        found = np.zeros(len(self.points), dtype=bool)
+        for group in self.groups.values():
+            found[group] = True
+        return found
 
     def edges(self):
         """Return element edges (e, 3) as corner, corner, midside and how often each is used.

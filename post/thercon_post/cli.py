@@ -8,7 +8,7 @@ from . import accuracy, convergence, courses, fields, mesh, profiles, style, tra
 from .errors import UserError, program
 from .result import FIELD_SOURCES, Result
 
-SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG, and what was drawn as CSV.
+SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG.
 
 Files are DIR/NAME.PICTURE.png and so on, RESULT being NAME.vtkhdf; what was chosen by options
 stands in the name. Axes have the units of `*OPTIONS, UNITS=`, or none."""
@@ -77,6 +77,7 @@ def add_picture(pictures, name, help_, epilog=None):
     added.add_argument(
         "--out", default=".", metavar="DIR", help="folder for the files (default: here)"
     )
+    added.add_argument("--csv", action="store_true", help="write what is drawn as CSV too")
     return added
 
 
@@ -131,7 +132,15 @@ def add_fields(picture):
         choices=tuple(FIELD_SOURCES),
         metavar="QUANTITY ...",
         help=f"panel to draw, or several, of {', '.join(FIELD_SOURCES)} "
-        f"(default: those present of {', '.join(fields.DEFAULT_QUANTITIES)})",
+        f"(default: those present of {', '.join(fields.USUAL[False])}; in axisymmetry of "
+        f"{', '.join(fields.USUAL[True])})",
+    )
+    picture.add_argument(
+        "--colours",
+        choices=("panel", "body"),
+        default="panel",
+        help="one colour scale for a panel (default), or one for each group of bodies whose ranges "
+        "differ tenfold",
     )
     picture.add_argument(
         "--scale",

@@ -98,7 +98,7 @@ def draw(results, options):
     parts = [run.result.name for run in runs[1:]]
     name = style.file_name(results[0], "convergence", *parts)
     columns = stack_tables([run.table() for run in runs])
-    return style.write(figure, columns, options.out, name)
+    return style.write(figure, columns, options, name)
 
 
 def draw_residuals(figure, place, run, first, several):

@@ -36,7 +36,7 @@ def draw(result, options):
         picture = Picture(result, contact, options.log)
         parts = [contact.name] if len(result.contact_names) > 1 else []
         name = style.file_name(result, "courses", *parts, *(["log"] if options.log else []))
-        written += style.write(picture.draw(), picture.table(), options.out, name)
+        written += style.write(picture.draw(), picture.table(), options, name)
     return written
 
 

@@ -1,9 +1,7 @@
 """Fields with one number an element, drawn element by element."""
 
-import matplotlib
 import numpy as np
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import BoundaryNorm
 
 from .cells import CORNERS, outlines
 
@@ -33,16 +31,15 @@ def in_window(cells, points, window):
     return found
 
 
-def fill(axes, cells, points, values, levels, colours, extend):
+def fill(axes, cells, points, values, colours, norm):
     """Fill each element with the colour of its value; return what a colour bar needs."""
     shapes = {kind: outlines(kind, group, points) for kind, group in cells.groups.items()}
     numbers = np.concatenate([cells.members[kind] for kind in shapes])
-    colours = matplotlib.colormaps[colours]
     filled = PolyCollection(
         [shape for group in shapes.values() for shape in group],
         array=np.ma.masked_invalid(values[numbers]),
         cmap=colours,
-        norm=BoundaryNorm(levels, colours.N, extend=extend),
+        norm=norm,
         edgecolors="face",  # no light seams between elements
         linewidths=0.15,
     )

@@ -1,11 +1,14 @@
 """Colours of the fields: which bodies share them, their levels and their bars."""
 
+import matplotlib
 import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.ticker import MaxNLocator
 
 PRINCIPAL = ("principal_1", "principal_2", "principal_3")
 SIGNED = ("xx", "yy", "zz", "xy", *PRINCIPAL, "radial", "hoop", "flux_x", "flux_y")
 ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are the same
+UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
 WIDE = 1.8  # width over height of models whose panels are one below the other
 
 
@@ -30,22 +33,20 @@ def scale_groups(near):
 def limits(values, quantity, scale):
     """Return levels for the colours: round numbers that cover the values of the window.
 
-    Values that differ by rounding only, measured by the magnitude `scale`, have levels about them.
+    Values whose range is below UNIFORM of the magnitude `scale` have two levels, about their middle.
 
     Stress peaks in re-entrant and clamped corners grow with every refinement and would leave one
     colour for the rest: beyond the middle 99 % stresses share the colours at the ends.
     """
     values = values[np.isfinite(values)]
-    if quantity == "temperature":
-        low, high = values.min(), values.max()
-    else:
-        low, high = np.percentile(values, (0.5, 99.5))
-    if high - low <= ROUNDING * scale:
-        room = 0.05 * scale or 0.5
-        low, high = low - room, high + room
-    elif quantity in SIGNED and low < 0.0 < high and min(-low, high) > 0.15 * max(-low, high):
-        high = max(-low, high)
-        low = -high
+    low, high = values.min(), values.max()
+    if high - low <= UNIFORM * scale:
+        middle = 0.5 * (low + high)
+        middle = middle if abs(middle) > ROUNDING * scale else 0.0
+        return middle + np.array([-1.0, 1.0]) * (scale or 1.0)  # one band
+    if quantity != "temperature":
+        ends = np.percentile(values, (0.5, 99.5))
+        low, high = ends if np.ptp(ends) > UNIFORM * scale else (low, high)
     return MaxNLocator(nbins=14, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
 
 
@@ -55,14 +56,23 @@ def settle(values, levels, scale):
     return np.where(np.abs(values - nearest) <= ROUNDING * scale, nearest, values)
 
 
-def colour_map(quantity, levels):
-    """Return colours that the colour-blind can tell apart: about zero where values have both signs,
-    else dark where the magnitude is small."""
-    if quantity == "temperature":
-        return "inferno"
-    if abs(levels[0] + levels[-1]) <= 1e-9 * abs(levels[-1]):
-        return "RdBu_r"
-    return "viridis" if levels[-1] > -levels[0] else "viridis_r"
+def colours_of(quantity, levels):
+    """Return colours of the bands between levels that the colour-blind can tell apart, and their
+    norm.
+
+    A colour means the same in every panel: of quantities with a sign, red is positive, as tension,
+    and blue negative, as compression, the darker the larger; of the others, bright is large.
+    """
+    count = len(levels) - 1
+    shades = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
+    if quantity in SIGNED:
+        middles = 0.5 * (levels[1:] + levels[:-1])
+        sizes = np.abs(middles)
+        least = 0.0 if levels[0] < 0.0 < levels[-1] else sizes.min()
+        dark = 0.15 + 0.85 * (sizes - least) / (sizes.max() - least) if count > 1 else 0.5
+        shades = 0.5 + 0.5 * np.sign(middles) * dark
+    name = "RdBu_r" if quantity in SIGNED else "inferno" if quantity == "temperature" else "viridis"
+    return ListedColormap(matplotlib.colormaps[name](shades)), BoundaryNorm(levels, count)
 
 
 def overflow(values, levels):
@@ -72,28 +82,22 @@ def overflow(values, levels):
     return [["neither", "max"], ["min", "both"]][int(below)][int(above)]
 
 
-def draw_bar(axes, filled, levels, bodies, place):
-    """Draw a colour bar of a panel; `place` is its number, from 0, and how many there are."""
-    number, count = place
-    bar = axes.figure.colorbar(filled, cax=axes.inset_axes(bar_place(axes, number, count)))
-    bar.ax.tick_params(direction="out", width=0.4, length=2)
+def draw_bar(axes, filled, levels, extend, bodies):
+    """Draw a colour bar of a panel beside it, below wide panels, with arrows at the ends that values
+    run past; it names `bodies`."""
+    width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
+    is_wide = width > WIDE * height
+    across = 0.03 * max(width, height) / (height if is_wide else width)
+    bar = axes.figure.colorbar(filled, ax=axes, location="bottom" if is_wide else "right", extend=extend,
+                               fraction=max(0.05, across), pad=0.02, aspect=30, shrink=0.9)
+    bar.ax.tick_params(direction="out", width=0.4, length=2, labelsize=7)
     bar.outline.set_linewidth(0.4)
-    every = max(1, round(len(levels) / (8 if bar.ax.get_window_extent().height > 100 else 4)))
+    every = max(1, round(len(levels) / 7))
     steps = np.rint(levels / (levels[1] - levels[0])).astype(int)
     bar.set_ticks(levels[steps % every == 0])
-    if count > 1:
+    if len(levels) == 2:
+        middle = 0.5 * (levels[0] + levels[1])
+        bar.set_ticks([middle], labels=[f"{middle:.4g}".replace("-", "\N{MINUS SIGN}")])
+    if len(bodies):
         words = ", ".join(str(body) for body in sorted(bodies))
-        bar.ax.set_title(f"bod{'y' if len(bodies) == 1 else 'ies'} {words}", fontsize=7, pad=6,
-                         loc="left")
-
-
-def bar_place(axes, number, count):
-    """Return the place of a colour bar in fractions of the axes: beside them; several are one below
-    the other, or, where the axes are wide, one beside the other."""
-    width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
-    thick = 0.03 * max(width, height) / width
-    if count == 1:
-        return [1.0 + thick, 0.0, thick, 1.0]
-    if width > WIDE * height:
-        return [1.0 + thick + number * (thick + 0.12), 0.0, thick, 0.85]
-    return [1.0 + thick, (count - 1 - number) / count, thick, 0.7 / count]
+        bar.set_label(f"bod{'y' if len(bodies) == 1 else 'ies'} {words}", fontsize=7)

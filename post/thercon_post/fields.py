@@ -13,7 +13,7 @@ from .errors import UserError
 from .field_colours import (
     ROUNDING,
     WIDE,
-    colour_map,
+    colours_of,
     draw_bar,
     limits,
     overflow,
@@ -24,7 +24,7 @@ from .fine_mesh import refine
 from .result import CELL_FIELDS, FIELD_SOURCES, OPEN
 from .style import plt
 
-DEFAULT_QUANTITIES = ("temperature", "von_mises", "yy")
+USUAL = {False: ("temperature", "von_mises", "yy"), True: ("temperature", "radial", "hoop")}
 TITLES = {
     "temperature": ("Temperature $T$", "temperature"),
     "von_mises": (r"von Mises stress $\sigma_\mathrm{M}$", "stress"),
@@ -66,7 +66,7 @@ def draw_row(result, row, options):
     fine = refine(result.cells, pieces)
     at = fine.values(moved)
     grid = Triangulation(*at.T, fine.triangles)
-    window = mesh.bounds_of(moved)
+    window = mesh.bounds_of(moved[result.cells.used])
     if options.region == "contact":
         window = mesh.contact_window(result.contacts(), result.cells, moved)
     figure, panels = layout(len(fields), window)
@@ -75,12 +75,12 @@ def draw_row(result, row, options):
         mesh.frame(axes, window, result.units, cut=options.region == "contact")
         scale = magnitude(result, quantity, step)
         if quantity in CELL_FIELDS:
-            draw_elements(axes, result.cells, moved, given, quantity, scale, window)
+            draw_elements(axes, result.cells, moved, given, (quantity, scale, options.colours), window)
         else:
             values = fine.values(given.astype(float))
             if quantity == "von_mises":
                 values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
-            draw_points(axes, grid, fine, values, quantity, scale, inside)
+            draw_points(axes, grid, fine, values, (quantity, scale, options.colours), inside)
         draw_lines(axes, result.cells, moved)
         title = result.units.label(*TITLES[quantity])
         if figure.axes[0].get_subplotspec().get_gridspec().ncols > 1:  # room for symbol and unit
@@ -91,7 +91,7 @@ def draw_row(result, row, options):
     return style.write(
         figure,
         table(result, moved, displacement, fields),
-        options.out,
+        options,
         name_of(result, row, options),
     )
 
@@ -99,12 +99,18 @@ def draw_row(result, row, options):
 def words_below(result, row, factor):
     """Return load, time and what a magnification does."""
     words = result.load_words(row)
-    if factor == 1.0:
-        return words
-    words += f"; displacements $\\times$ {factor:g}"
+    words += f"; displacements $\\times$ {factor:g}" if factor != 1.0 else ""
+    if result.given_gaps:
+        return f"{words},\n{apart_words(result, factor)}"
     if factor > 1.0 and touches_after_a_gap(result):
         words += ",\ninitial gaps are not magnified:\nbodies that touch seem to overlap"
     return words
+
+
+def apart_words(result, factor):
+    """Return where faces that touch are drawn if a card gives gaps that the mesh does not have."""
+    times = f"{factor:g} times " if factor != 1.0 else ""
+    return f"touching faces are drawn {times}their {result.given_gaps} apart, or overlapping"
 
 
 def touches_after_a_gap(result):
@@ -149,7 +155,7 @@ def read_fields(result, step, quantities):
         raise UserError(
             f"{' and '.join(CELL_FIELDS)} are fields of elements: draw them apart from those of nodes"
         )
-    chosen = quantities or [q for q in DEFAULT_QUANTITIES if q in there]
+    chosen = quantities or [q for q in USUAL[result.is_axisymmetric] if q in there]
     if not quantities and len(chosen) > 1 and tells_nothing(result, there, step):
         chosen.remove("temperature")
     if not chosen:
@@ -176,7 +182,7 @@ def layout(count, window):
     if width > WIDE * height:
         size = (
             style.DOUBLE_COLUMN * 0.75,
-            count * (style.DOUBLE_COLUMN * 0.6 * height / width + 0.6),
+            count * (style.DOUBLE_COLUMN * 0.6 * height / width + 1.0),
         )
         figure, panels = plt.subplots(count, 1, layout="compressed", figsize=size, squeeze=False)
     else:
@@ -204,30 +210,34 @@ def share_labels(panels):
             axes.tick_params(labelbottom=False)
 
 
-def draw_elements(axes, cells, moved, values, quantity, scale, window):
-    """Fill one panel element by element, with a colour bar for each group of bodies."""
+def draw_elements(axes, cells, moved, values, look, window):
+    """Fill one panel element by element, with a colour bar for each group of bodies.
+
+    `look` is the quantity, its magnitude and whose colours are asked for."""
+    quantity, scale, whose = look
     bodies = element_fields.of_elements(cells, cells.bodies)
     inside = element_fields.in_window(cells, moved, window)
     near = {body: values[inside & (bodies == body)] for body in np.unique(bodies)}
-    groups = scale_groups(near)
-    for number, group in enumerate(groups):
+    groups = scale_groups(near) if whose == "body" else [list(near)]
+    for group in groups:
         own = np.where(np.isin(bodies, group), values, np.nan)
         levels = limits(own[inside], quantity, scale)
         extend = overflow(own[np.isfinite(own)], levels)
-        colours = colour_map(quantity, levels)
-        filled = element_fields.fill(axes, cells, moved, own, levels, colours, extend)
-        draw_bar(axes, filled, levels, group, (number, len(groups)))
+        colours, norm = colours_of(quantity, levels)
+        filled = element_fields.fill(axes, cells, moved, own, colours, norm)
+        draw_bar(axes, filled, levels, extend, group if len(groups) > 1 else ())
 
 
-def draw_points(axes, grid, fine, values, quantity, scale, inside):
+def draw_points(axes, grid, fine, values, look, inside):
     """Fill one panel with colours between thin lines of equal value, with a colour bar for each
-    group of bodies. `inside` are the fine points in the window."""
+    group of bodies. `look` is as above, `inside` are the fine points in the window."""
+    quantity, scale, whose = look
     broken = ~np.isfinite(values)
     members = {body: fine.triangles[fine.bodies == body] for body in np.unique(fine.bodies)}
     members = {body: np.unique(triangles) for body, triangles in members.items()}
     near = {body: values[points[inside[points]]] for body, points in members.items()}
-    groups = scale_groups(near)
-    for number, group in enumerate(groups):
+    groups = scale_groups(near) if whose == "body" else [list(near)]
+    for group in groups:
         levels = limits(np.concatenate([near[body] for body in group]), quantity, scale)
         settled = settle(np.where(broken, levels[0], values), levels, scale)
         hidden = ~np.isin(fine.bodies, group) | broken[grid.triangles].any(axis=1)
@@ -235,13 +245,14 @@ def draw_points(axes, grid, fine, values, quantity, scale, inside):
             continue
         grid.set_mask(hidden)
         extend = overflow(settled[np.unique(grid.triangles[~hidden])], levels)
-        colours = colour_map(quantity, levels)
-        filled = axes.tricontourf(grid, settled, levels=levels, cmap=colours, extend=extend)
+        colours, norm = colours_of(quantity, levels)
+        filled = axes.tricontourf(grid, settled, levels=levels, cmap=colours, norm=norm, extend=extend)
         filled.set_edgecolor("face")  # no light seams between the bands of an SVG
         filled.set_linewidth(0.15)
         lines = {"colors": "black", "linewidths": 0.15, "linestyles": "solid"}
-        axes.tricontour(grid, settled, levels=levels[1:-1], **lines)
-        draw_bar(axes, filled, levels, group, (number, len(groups)))
+        if len(levels) > 2:
+            axes.tricontour(grid, settled, levels=levels[1:-1], **lines)
+        draw_bar(axes, filled, levels, extend, group if len(groups) > 1 else ())
 
 
 def draw_lines(axes, cells, moved):

@@ -21,7 +21,7 @@ def draw(result, options):
     """Draw the mesh of `result`; return the files written."""
     cells = result.cells
     contacts = result.contacts() if result.contact_names else []
-    model = bounds_of(cells.points)
+    model = bounds_of(cells.points[cells.used])
     near = contact_window(contacts, cells, cells.points) if contacts else model
     has_close_up = np.max(np.ptp(near, axis=0)) < SMALLER * np.max(np.ptp(model, axis=0))
     if has_close_up:
@@ -48,7 +48,7 @@ def draw(result, options):
         columnspacing=1.4,
     )
     name = style.file_name(result, "mesh")
-    return style.write(figure, table(cells), options.out, name)
+    return style.write(figure, table(cells), options, name)
 
 
 def two_panels(model, window):
@@ -84,7 +84,7 @@ def contact_window(contacts, cells, points):
 
     `points` (n, 2) are those of `cells`, where they are drawn.
     """
-    model, chosen = bounds_of(points), []
+    model, chosen = bounds_of(points[cells.used]), []
     for contact in contacts:
         ever = (contact["status"] > 0).any(axis=0)
         if not ever.any():

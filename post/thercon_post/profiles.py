@@ -29,7 +29,7 @@ def draw(result, options):
         if options.range:
             parts += ["range", *options.range]
         name = style.file_name(result, "profiles", *parts, *file_parts(options.figures))
-        written += style.write(figure, table(result, contact, rows), options.out, name)
+        written += style.write(figure, table(result, contact, rows), options, name)
     return written
 
 

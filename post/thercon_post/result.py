@@ -230,6 +230,13 @@ class Result:
         return stresses.is_axisymmetric(self.deck)
 
     @cached_property
+    def given_gaps(self):
+        """The first keyword of the deck that gives gaps that the mesh does not have; empty where
+        there is none."""
+        found = (re.match(r"\*(CLEARANCE|CONTACT +INTERFERENCE)\b", card.upper()) for card in self.deck)
+        return next((each[0] for each in found if each), "")
+
+    @cached_property
     def contact_names(self):
         """Names of the contact pairs, in the file's order."""
         return list(self.file["contact"]) if "contact" in self.file else []
@@ -368,13 +375,16 @@ class Result:
         return values
 
     def source(self, quantity, step):
-        """Return the array that a picture quantity is of, with all components; None where it is
-        absent."""
+        """Return the array that a picture quantity is of, with all components, NaN at nodes of no
+        element; None where it is absent."""
         name = FIELD_SOURCES[quantity][0]
         if quantity in CELL_FIELDS:
             return self.cell_data(name, step)
         values = self.point_data(name, step)
-        return self.stress_of(name, step) if values is None else values
+        values = self.stress_of(name, step) if values is None else values
+        if values is None or self.cells.used.all():
+            return values
+        return np.where(self.cells.used.reshape(-1, *[1] * (values.ndim - 1)), values, np.nan)
 
     def stress_of(self, name, step):
         """Return principal, radial or hoop stress computed from the stress, where the file has the

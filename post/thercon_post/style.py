@@ -64,23 +64,23 @@ def apply():
     plt.rcParams.update(SETTINGS)
 
 
-def write(figure, columns, folder, name):
-    """Write figure and curves as folder/name.png, .svg and .csv, without curves the first two alone;
-    return what was written."""
-    folder = Path(folder)
+def write(figure, columns, options, name):
+    """Write figure and, where they are asked for and there are some, curves to the folder of the
+    options as name.png, .svg and .csv; return what was written."""
+    folder, is_told = Path(options.out), options.csv and columns is not None
     try:
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(folder / f"{name}.png")
         figure.set_layout_engine("none")  # both files have one layout, which takes long
         # No date in the file: the same result gives the same picture.
         figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
-        if columns is not None:
+        if is_told:
             write_table(folder / f"{name}.csv", columns)
     except OSError as reason:
         raise UserError(f"{folder / name}: cannot be written ({reason})") from None
     finally:
         plt.close(figure)
-    return [folder / f"{name}.{kind}" for kind in ("png", "svg", "csv")[: 2 + bool(columns)]]
+    return [folder / f"{name}.{kind}" for kind in ("png", "svg", "csv")[: 2 + is_told]]
 
 
 def file_name(result, picture, *parts):

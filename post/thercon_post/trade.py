@@ -14,7 +14,6 @@ from .style import plt
 
 NEEDED = ["row", "default", "elements", "level", "contact_level", "increment_factor", "varied"]
 NEEDED += ["status", "pareto", "cpu_seconds", "error_worst"]
-SHAPES = {"Q8": "o", "Q4": "s"}
 LOCAL = "D"  # meshes that are finer at the contact
 SMALLEST = 1e-6  # percent: errors below it are marked at the foot
 BEYOND = 3.0
@@ -69,7 +68,7 @@ class Trade:
 def draw(path, options):
     """Draw a table; return the files written."""
     trade = Trade(path)
-    return style.write(figure_of(trade), None, options.out, f"{trade.name}.trade")
+    return style.write(figure_of(trade), None, options, f"{trade.name}.trade")
 
 
 def figure_of(trade):
@@ -173,8 +172,11 @@ def is_below(text):
 
 
 def shape(row):
-    """Return the marker of a row of the grid."""
-    return SHAPES.get(row["elements"], "o") if row["contact_level"] == "0" else LOCAL
+    """Return the marker of a row of the grid; that of its elements tells whether all have nodes on
+    their sides."""
+    if row["contact_level"] != "0":
+        return LOCAL
+    return "s" if set(row["elements"].split("+")) & {"Q4", "T3"} else "o"
 
 
 def percent(text):
@@ -191,9 +193,8 @@ def legend(trade):
         return Line2D([], [], **({"ls": "none", "color": "black", "ms": 4} | look), label=label)
 
     handles = [
-        handle(kind, marker=shape)
-        for kind, shape in SHAPES.items()
-        if any(row["elements"] == kind for row in trade.rows)
+        handle(row["elements"], marker=shape(row))
+        for row in {row["elements"]: row for row in trade.rows if row["contact_level"] == "0"}.values()
     ]
     if any(row["contact_level"] != "0" for row in trade.rows):
         handles.append(handle("finer at the contact", marker=LOCAL))

@@ -37,10 +37,10 @@ def draw(results, options):
         parts = [contact.name] if len(first.contact_names) > 1 else []
         parts += axis_words(options.along) + file_parts(options.figures) + further
         name = style.file_name(first, "zones", *parts)
-        written += style.write(figure, tables_of(pictures, "table"), options.out, name)
-        pairs = Path(options.out) / f"{style.file_name(first, 'zones', *parts, 'pairs')}.csv"
-        write_table(pairs, tables_of(pictures, "pair_table"))
-        written.append(pairs)
+        written += style.write(figure, tables_of(pictures, "table"), options, name)
+        if options.csv:
+            written.append(Path(options.out) / f"{style.file_name(first, 'zones', *parts, 'pairs')}.csv")
+            write_table(written[-1], tables_of(pictures, "pair_table"))
     return written
 
 
@@ -200,6 +200,10 @@ class Picture:
         others = self.edges(key.replace("edge_", "edges_"))
         count = np.sum(~np.isnan(others), axis=1)
         others = np.where(np.isclose(others, main[:, None], rtol=1e-12, atol=0.0), np.nan, others)
+        below = np.where(others < main[:, None], others, -np.inf).max(axis=1)  # of the same zone
+        if np.isfinite(below).any():
+            axes.plot(self.abscissa, np.where(np.isfinite(below), below, np.nan), zorder=3, **looks)
+        others = np.where(others == below[:, None], np.nan, others)
         looks = FURTHER | {"mfc": FURTHER_FILLS[key], "linestyle": LINES[key]}
         for column in others.T:
             # Columns belong together only between increments with as many edges.

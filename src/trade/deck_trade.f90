@@ -4,6 +4,7 @@ module deck_trade
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
+   use accuracy_targets, only: whole_request
    use adaptive_rounds, only: adaptive_rounds_type, increment_taker_type
    use clock, only: wall_seconds
    use command_line, only: command_type
@@ -13,7 +14,7 @@ module deck_trade
    use deck_preparation, only: prepare_deck, read_deck_type
    use element_kinds, only: side_node_count
    use errors, only: error_type, set_error, status_internal, status_interrupted, &
-      status_no_convergence
+      status_no_convergence, status_verify
    use file_calls, only: make_folder, try_file
    use increments, only: simulation_type
    use interface_quantities, only: closed_length
@@ -247,6 +248,7 @@ contains
                if (run%row > 0 .or. next > size(rows)) cycle
                run%row = next
                run%task%variation = rows(next)%variation
+               run%task%command%accuracy = rows(next)%accuracy
                next = next + 1
                call progress%say('level '//to_text(run%task%variation%levels)//', row '// &
                   to_text(run%row)//' of '//to_text(size(rows)))
@@ -326,24 +328,43 @@ contains
       call set_reason(report, error%message)
    end subroutine execute
 
-   !> A round without estimates and without a request.
-   !> Errors: as prepare_deck and solve_increments.
+   !> A round, or the rounds of a requested accuracy.
+   !> Errors: as solve_round; status_verify, where the accuracy is not reached.
    subroutine solve_once(self, error)
       class(row_task_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
+      type(adaptive_rounds_type) :: rounds
+
+      rounds%variation = self%variation
+      do
+         rounds%accuracy%goes_on = .false.
+         call solve_round(self, rounds, error)
+         if (allocated(error) .or. .not. rounds%accuracy%goes_on) exit
+      end do
+      if (allocated(error) .or. .not. rounds%accuracy%is_on) return
+      if (.not. rounds%accuracy%is_reached()) call set_error(error, status_verify, &
+         'accuracy not reached: '//rounds%accuracy%reason)
+   end subroutine solve_once
+
+   !> A round, without estimates where no accuracy is requested.
+   !> Errors: as prepare_deck and solve_increments.
+   subroutine solve_round(self, rounds, error)
+      class(row_task_type), intent(inout) :: self
+      type(adaptive_rounds_type), intent(inout) :: rounds
+      type(error_type), allocatable, intent(out) :: error
       type(model_type) :: model
       type(simulation_type) :: simulation
-      type(adaptive_rounds_type) :: rounds
       type(increment_record_type) :: record
       type(number_index_type) :: index
       integer :: i
 
       call prepare_deck(self%path, self%command, self%deck, model, simulation, error, &
-         self%variation)
+         rounds%variation)
       if (allocated(error)) return
-      model%estimates_errors = .false.
+      model%estimates_errors = self%command%accuracy > 0.0_dp
       model%steps%restart_frequency = 0
       if (allocated(model%accuracy%targets)) deallocate (model%accuracy%targets)
+      if (model%estimates_errors) model%accuracy%targets = whole_request(self%command%accuracy)
       call index%build(model%mesh%node_number)
       self%found%nodes = [(index%find(self%nodes(i)), i=1, size(self%nodes))]
       self%found%figures(:, 2) = 0.0_dp
@@ -351,7 +372,7 @@ contains
       call rounds%solve_increments(model, simulation, self%found, record, error)
       if (allocated(error)) error%status = max(error%status, status_no_convergence)
       call simulation%release()
-   end subroutine solve_once
+   end subroutine solve_round
 
    !> Takes the values at the instants of comparison; their order is that of item_quantities.
    subroutine take(self, simulation, record, error)

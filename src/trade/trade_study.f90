@@ -6,8 +6,9 @@ module trade_study
    use contact_definitions, only: pairing_name, pairing_nodes, pairing_surfaces
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
       l_stable_scheme, method_names, solver_mumps, solver_skyline, thermal_scheme_type
+   use element_kinds, only: kind_count, linear_kind
    use kinds, only: dp
-   use model, only: model_type
+   use model, only: model_type, unbounded
    use reported_quantities, only: traded
    use steps, only: analysis_coupled, solves_heat
    use text, only: percent, rounded, string_type, to_text
@@ -31,7 +32,9 @@ module trade_study
    !> A variation of the deck, measured.
    type :: trade_row_type
       type(variation_type) :: variation                 !! with its order and levels
+      character(:), allocatable :: elements             !! their names, such as Q8
       character(:), allocatable :: varied               !! one thing; empty: mesh or increments
+      real(dp) :: accuracy = 0.0_dp                     !! requested, a part of the values; 0: none
       logical :: is_default = .false.                   !! the deck as written
       integer :: status = 0                             !! exit status
       character(:), allocatable :: reason               !! why it failed; empty where it did not
@@ -59,6 +62,8 @@ module trade_study
       !> Limits of a recommendation, or why there is none; empty for neither
       type(string_type) :: remarks(target_count)
    end type trade_type
+
+   character(3), parameter :: shapes(kind_count) = ['Q8 ', 'Q8R', 'Q4 ', 'T6 ', 'T3 ']
 
    !> Factors on the increments of the deck, each half the one before.
    real(dp), parameter :: factors(5) = [4.0_dp, 2.0_dp, 1.0_dp, 0.5_dp, 0.25_dp]
@@ -171,6 +176,7 @@ contains
       allocate (rows(0))
       row%varied = ''
       do order = 1, highest
+         row%elements = elements_of(model, order)
          do f = 1, size(factors)
             associate (is_default => order == min(model%written_order, highest))
                if (contact_level > 0 .and. .not. (is_default .and. is_local(f))) cycle
@@ -186,7 +192,24 @@ contains
       end do
    end subroutine mesh_rows
 
-   !> The rows that vary one thing, each where the deck has a use for it.
+   !> Names of the elements of an order, such as Q8 or Q8+T6.
+   pure function elements_of(model, order) result(names)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: order
+      character(:), allocatable :: names
+      integer :: k, kinds(size(model%mesh%element_kind))
+
+      kinds = model%mesh%element_kind
+      if (order == 1) kinds = linear_kind(kinds)
+      names = ''
+      do k = 1, kind_count
+         if (any(kinds == k)) names = names//'+'//trim(shapes(k))
+      end do
+      names = names(2:)
+   end function elements_of
+
+   !> The rows that vary one thing, each where the deck has a use for it, and those of requested
+   !> accuracies.
    subroutine single_rows(model, highest, pairings, rows)
       type(model_type), intent(in) :: model        !! on the deck's mesh
       integer, intent(in) :: highest               !! order of its elements
@@ -226,13 +249,20 @@ contains
       varied = written
       varied%solver = merge(solver_mumps, solver_skyline, model%solver == solver_skyline)
       call add(merge('MUMPS  ', 'SKYLINE', model%solver == solver_skyline))
+      if (size(model%contacts) == 0 .or. unbounded(model) /= '') return
+      do i = 1, target_count
+         call add('--accuracy '//percent(targets(i)), targets(i))
+      end do
    contains
       !> Adds the row with what is varied, and goes back to the deck.
-      subroutine add(name)
+      subroutine add(name, accuracy)
          character(*), intent(in) :: name
+         real(dp), intent(in), optional :: accuracy
          type(trade_row_type) :: row
 
          row%variation = varied
+         row%elements = elements_of(model, written%order)
+         if (present(accuracy)) row%accuracy = accuracy
          row%varied = trim(name)
          rows = [rows, row]
          varied = written

@@ -15,7 +15,6 @@ module trade_table
    public :: imbalanced_rows, print_trade, write_trade
 
    real(dp), parameter :: megabyte = 1.0e6_dp               !! [byte]
-   character(2), parameter :: elements(2) = ['Q4', 'Q8']    !! by their order
    character(*), parameter :: columns_of_row = 'row,default,elements,level,contact_level,'// &
       'increment_factor,varied,status,reason,increments,passes,runs,cpu_seconds,peak_megabytes'
    integer, parameter :: longest_line = 10000               !! reasons are shorter than half of it
@@ -45,16 +44,16 @@ contains
       character(*), intent(in) :: name          !! the deck
       character(*), intent(in) :: table         !! the CSV file
       type(trade_type), intent(in) :: trade
-      character(68 + 9*(quantity_count + 1)) :: head
-      character(12) :: mesh
-      character(14) :: varied
-      character(68) :: line
+      character(71 + 9*(quantity_count + 1)) :: head
+      character(13) :: mesh
+      character(16) :: varied
+      character(71) :: line
       character(:), allocatable :: times
       integer :: i
 
       call say(name//': speed against accuracy; errors in %, those of the reference included')
       call say('')
-      write (head, '(a, *(a9))') ' row  mesh          incr.  number  varied           CPU s'// &
+      write (head, '(a, *(a9))') ' row  mesh           incr.  number  varied             CPU s'// &
          '      MB', (trim(traded(i)%head), i=1, quantity_count), 'worst'
       call say(trim(head))
       do i = 1, size(trade%rows)
@@ -69,7 +68,7 @@ contains
                row%reason)
          end associate
       end do
-      call say('      reference uncertain by'//repeat(' ', 37)//columns(trade%uncertainty))
+      call say('      reference uncertain by'//repeat(' ', 40)//columns(trade%uncertainty))
       call say('')
       call say('* no row that takes at most '//to_text(nint(1000.0_dp*same_time))// &
          ' ms more is better (worst error); = the deck as written')
@@ -130,7 +129,7 @@ contains
       character(:), allocatable :: name
 
       associate (mesh => row%variation)
-         name = elements(mesh%order)//' x '//to_text(2**mesh%levels)
+         name = row%elements//' x '//to_text(2**mesh%levels)
          if (mesh%contact_levels > 0) name = name//':'//to_text(2**(mesh%levels + &
             mesh%contact_levels))
       end associate
@@ -179,7 +178,7 @@ contains
       text = trim(line)//new_line('a')
       do i = 1, size(trade%rows)
          associate (row => trade%rows(i), mesh => trade%rows(i)%variation)
-            write (line, '(*(g0, ","))') i, merge(1, 0, row%is_default), elements(mesh%order), &
+            write (line, '(*(g0, ","))') i, merge(1, 0, row%is_default), row%elements, &
                mesh%levels, mesh%contact_levels, to_text(mesh%increments), row%varied, &
                row%status, quoted(row%reason), row%increments, row%passes, size(row%cpu)
             text = text//trim(line)//fields([row%cpu_seconds, row%peak_bytes/megabyte, &

@@ -40,6 +40,7 @@ CARDS = {"TOL": "*FIXED POINT, <>", "MUMPS": "*SOLVER, TYPE=<>"}
 CARDS |= {name: "*FIXED POINT, METHOD=<>" for name in ("NEWTON", "ANDERSON", "ZAITSEV", "PICARD")}
 CARDS |= {name: "*THERMAL SCHEME, TYPE=<>" for name in ("IMPLICIT", "L-STABLE", "GALERKIN", "CRANK", "EXPLICIT")}
 PAIRINGS = "NODES", "SURFACES"
+ACCURACIES = "--accuracy 10 %", "--accuracy 1 %", "--accuracy 0.1 %"
 
 
 def trade(deck, folder, *arguments, status=0):
@@ -77,6 +78,7 @@ def as_cards(deck, row, target):
                               for name in slaves(deck)]
                 lines += [card for word, card in CARDS.items() if row["varied"].startswith(word)]
                 lines = [card.replace("<>", row["varied"]) for card in lines]
+                lines += accuracy_cards(row["varied"])
             line = line.replace("INC=100", "INC=1000")
             if line.startswith("*CONTACT PAIR") and row["varied"] in PAIRINGS:
                 line = re.sub(r", PAIRING=\w+", "", line) + f", PAIRING={row['varied']}"
@@ -88,6 +90,15 @@ def as_cards(deck, row, target):
             lines.append(line)
     target.write_text("\n".join(lines) + "\n")
     return target
+
+
+def accuracy_cards(varied):
+    """Return the cards that ask for what --accuracy asks for; none where nothing is."""
+    if not varied.startswith("--accuracy"):
+        return []
+    target = float(varied.split()[1]) / 100.0
+    names = ("normal_force", "heat_rate", "peak_pressure", "edge_contact")
+    return ["*ACCURACY", *(f"{name}, {target!r}" for name in names)]
 
 
 def last_figures(result, name):
@@ -201,9 +212,35 @@ def test_every_axis_is_varied(r2):
                              for more in range(1, 4 - level)]
     single = {row["varied"] for row in rows} - {""}
     assert single == {"TOL=1E-3", "TOL=1E-5", "TOL=1E-8", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT",
-                      "PICARD", "ZAITSEV", "ANDERSON", "SURFACES", "MUMPS"}
+                      "PICARD", "ZAITSEV", "ANDERSON", "SURFACES", "MUMPS", *ACCURACIES}
     (default,) = (row for row in rows if row["default"] == "1")
     assert (default["elements"], default["level"], default["increment_factor"]) == ("Q8", "0", "1")
+
+
+def test_rows_of_a_requested_accuracy_meet_it(r2):
+    """R2 is one-dimensional and linear over each rod: its first round is exact."""
+    rows, _ = r2
+    found = {row["varied"]: row for row in rows if row["varied"] in ACCURACIES}
+    for name, target in zip(ACCURACIES, WISHES.values(), strict=True):
+        assert found[name]["status"] == "0"
+        assert float(found[name]["error_heat_rate"]) <= target
+
+
+def test_elements_are_named_as_the_deck_has_them(tmp_path):
+    """The first rod of two six-node triangles, the second of one element with eight nodes."""
+    deck = copied(INPUT / "rods" / "r2.inp", tmp_path)
+    rods_ = tmp_path / "rods.inc"
+    rods_.write_text(rods_.read_text().replace("""*ELEMENT, TYPE=CPE8, ELSET=FIRST
+1, 1, 3, 8, 6, 2, 5, 7, 4
+""", """*NODE, NSET=FIRST
+9, 0.025, 0.05
+*ELEMENT, TYPE=CPE6, ELSET=FIRST
+1, 1, 3, 8, 2, 5, 9
+3, 1, 8, 6, 9, 7, 4
+""").replace("FIRST, S1", "1, S1"))
+    rows, process = trade(deck, tmp_path, "--limit", "0.001")
+    assert {row["elements"] for row in rows[:-1]} == {"Q8+T6", "Q4+T3"}
+    assert "Q8+T6 x 1" in process.stdout and "Q8 x" not in process.stdout
 
 
 def test_a_row_that_fails_is_listed_with_its_reason(r2):

@@ -45,8 +45,23 @@ class Browser:
             return json.load(answer)["value"]
 
     def open(self, path):
-        """Load a file."""
+        """Load a file; a page of a result is ready once it tells the load."""
         self.call("/url", {"url": path.resolve().as_uri()})
+        ready = "return !document.getElementById('now') || document.getElementById('now').textContent"
+        for _ in range(200):
+            if self.run(ready):
+                break
+
+    def look(self, width, mode):
+        """Show pages in a window of this width, for a reader of the light or dark colour scheme."""
+        for command, values in (
+            ("Emulation.setDeviceMetricsOverride",
+             {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}),
+            ("Emulation.setEmulatedMedia",
+             {"features": [{"name": "prefers-color-scheme", "value": mode}]}),
+            ("Emulation.setAutoDarkModeOverride", {"enabled": mode == "dark"}),
+        ):
+            self.call("/goog/cdp/execute", {"cmd": command, "params": values})
 
     def run(self, script, *arguments):
         """Return what a script of the page returns, after the next picture was drawn."""

@@ -346,7 +346,7 @@ def test_a_picture_is_drawn_for_every_kind_of_table(compare, result, tmp_path):
     other = tmp_path / "other.vtkhdf"
     write_result(other, loads=tuple(np.arange(180.0, 901.0, 180.0)))
     quantities = ["pressure", "edge_contact", "NT", "status"]
-    arguments = [result, other, other, "--only", *quantities, "--at", 180, 540]
+    arguments = [result, other, other, "--csv", "--only", *quantities, "--at", 180, 540]
     status, said, error = compare(*arguments, picture=True)
     assert (status, error) == (0, "")
     for ending in ("png", "svg", "csv"):
@@ -509,3 +509,10 @@ def test_a_contact_point_beside_its_node_is_matched_by_the_node(compare, refused
     columns["x"] = at + 0.1
     write_csv(other, columns)
     assert "other meshes are matched" in refused(files[0], other)
+
+
+def test_each_row_says_the_tolerance_that_it_is_judged_by(compare, result):
+    _, said, _ = compare(result, result, "--tol", "pressure=block:0.02,abs:1", "--mismatches", 2)
+    lines = {line.split()[0]: line for line in said.splitlines() if "  ok" in line}
+    assert "  abs 1, block 0.02  " in lines["pressure"]
+    assert "  block 0.001  " in lines["NT"] and "  2 at a time  " in lines["status"]

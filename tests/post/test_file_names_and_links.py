@@ -39,12 +39,12 @@ def result(tmp_path):
 
 @pytest.mark.parametrize("language", ["C.UTF-8", "C"])
 @pytest.mark.parametrize(("arguments", "written"), [
-    (["plot", "convergence", NAME, NAME], [b"joint\xff.convergence-joint_." + end
+    (["plot", "convergence", "--csv", NAME, NAME], [b"joint\xff.convergence-joint_." + end
                                            for end in (b"png", b"svg", b"csv")]),
-    (["plot", "zones", NAME], [b"joint\xff.zones" + end
+    (["plot", "zones", "--csv", NAME], [b"joint\xff.zones" + end
                                for end in (b".png", b".svg", b".csv", b"-pairs.csv")]),
     (["report", NAME], [b"joint\xff.html"]),
-    (["compare", NAME, NAME], [b"joint\xff.compare" + end
+    (["compare", "--csv", NAME, NAME], [b"joint\xff.compare" + end
                                for end in (b"-blocks.csv", b".png", b".svg", b".csv")]),
 ])
 def test_a_name_that_is_no_utf8_is_read_shown_and_kept(result, arguments, written, language):
@@ -73,11 +73,11 @@ def test_a_mistake_of_the_program_is_told_in_one_line_or_in_full(result):
     """It is planted: a module of the standard library that ends every picture."""
     (result / "sitecustomize.py").write_text(
         "import csv\ndef writer(*_, **__): raise KeyError('planted\\nhere')\ncsv.writer = writer\n")
-    status, out, said = call(result, "plot", "zones", NAME, PYTHONPATH=str(result))
+    status, out, said = call(result, "plot", "zones", "--csv", NAME, PYTHONPATH=str(result))
     assert status == 2 and said.count(b"\n") == 1
     assert said.startswith(b"plot: error: joint\xff.vtkhdf: cannot be evaluated (KeyError: ")
     assert b"at tables.py:" in said and b"THERCON_TRACEBACK=1" in said
-    status, out, said = call(result, "plot", "zones", NAME, PYTHONPATH=str(result),
+    status, out, said = call(result, "plot", "zones", "--csv", NAME, PYTHONPATH=str(result),
                              THERCON_TRACEBACK="1")
     assert status == 1 and said.startswith(b"Traceback") and b"planted" in said
 

@@ -49,7 +49,8 @@ def draw(tmp_path, capsys):
     """Return a function that calls plot with --out and gives the names of the files written."""
 
     def call(*arguments):
-        status = main([*map(str, arguments), "--out", str(tmp_path / "out")])
+        csv = [] if arguments[0] == "trade" else ["--csv"]
+        status = main([*map(str, arguments), *csv, "--out", str(tmp_path / "out")])
         captured = capsys.readouterr()
         assert status == 0, captured.err
         written = [Path(line) for line in captured.out.splitlines()]
@@ -335,7 +336,7 @@ def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(tabulate, tmp_pa
 def test_the_legend_of_further_edges_has_a_line_where_one_is_drawn(kept, result, last, line):
     with h5py.File(result, "r+") as file:
         edges = file["contact/CYLINDER/edges_stick"]
-        edges[5:last, 1] = 0.5 * edges[5:last, 0]
+        edges[5:last, 1], edges[5:last, 2] = 0.5 * edges[5:last, 0], 0.7 * edges[5:last, 0]
     (figure,) = kept("zones", result)
     entries = zip(figure.legends[0].get_texts(), figure.legends[0].legend_handles)
     found = {text.get_text(): handle.get_linestyle() for text, handle in entries}
@@ -391,7 +392,8 @@ def test_names_of_zones_cover_no_mark_where_there_is_room_between_them(kept, tmp
     (_, place), marks, box = name_and_marks(".os")
     assert len(marks) == 21 * count and (count > 5 or box.count_contains(marks) == 0)
     with h5py.File(path, "r+") as file:
-        file["contact/CYLINDER/edges_contact"][:, 0] = place
+        contact = file["contact/CYLINDER"]
+        contact["edges_contact"][:, 0], contact["edges_contact"][:, 1] = place, contact["s"][-3]
     _, marks, box = name_and_marks("d")
     assert len(marks) == count and box.count_contains(marks) == 0
 
@@ -488,16 +490,100 @@ def test_fields_are_those_of_the_file_at_the_load(draw, result, tmp_path):
 
 def test_values_that_differ_by_rounding_have_one_colour():
     values = -10.0 + 1e-14 * np.array([-3.0, 0.0, 2.0])
-    levels = field_colours.limits(values, "yy", 10.0)
-    assert levels[0] < -10.0 < levels[-1]
-    assert np.ptp(field_colours.settle(values, levels, 10.0)) == 0.0
+    np.testing.assert_allclose(field_colours.limits(values, "yy", 10.0), [-20.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(field_colours.limits(values + 0.009, "yy", 10.0), [-19.991, 0.009])
     noise = 1e-15 * np.array([-1.0, 0.5, 1.0])
-    levels = field_colours.limits(noise, "xx", 10.0)
-    assert np.ptp(levels) > 0.1 and np.ptp(field_colours.settle(noise, levels, 10.0)) == 0.0
+    assert list(field_colours.limits(noise, "xx", 10.0)) == [-10.0, 10.0]
+    assert len(field_colours.limits(np.array([10.0, 10.02]), "temperature", 10.0)) > 2
     # What differs by more stays as it is.
     values = np.array([0.0, 4.0, 4.0 + 1e-6, 10.0])
     levels = field_colours.limits(values, "von_mises", 10.0)
     np.testing.assert_array_equal(field_colours.settle(values, levels, 10.0), values)
+
+
+@pytest.mark.parametrize("levels", [[-400, -200, 0, 50], [-20, -10, 0], [-99, -98, -97], [-1, 0]])
+def test_compression_is_blue_and_tension_red_in_every_panel(levels):
+    for sign in (1.0, -1.0):
+        given = np.sort(sign * np.array(levels, dtype=float))
+        colours, norm = field_colours.colours_of("yy", given)
+        middles = 0.5 * (given[1:] + given[:-1])
+        red, _, blue, _ = colours(norm(middles)).T
+        assert (np.sign(red - blue) == np.sign(middles)).all()
+        darkness = -colours(norm(middles))[:, :3].sum(axis=1)
+        same = np.sign(middles) == np.sign(middles[np.argmax(np.abs(middles))])
+        assert (np.diff(darkness[same][np.argsort(np.abs(middles[same]))]) > 0.0).all()
+
+
+def test_a_uniform_panel_has_one_colour_with_its_value(kept, result):
+    with h5py.File(result, "r+") as file:
+        stress = file["VTKHDF/PointData/stress"]
+        stress[:, 1] = -100.0 + 0.04 * np.tile(np.linspace(-1.0, 1.0, len(stress) // 15), 15)
+    (figure,) = kept("fields", result, "--quantity", "yy")
+    (bar,) = bars_of(figure)
+    assert [text.get_text() for text in bar.get_xticklabels() + bar.get_yticklabels()
+            if text.get_text()] == ["\N{MINUS SIGN}100"]
+
+
+@pytest.mark.parametrize("factors", [(1.0, 0.02), (0.02, 1.0), (1.0, 1.0)])
+@pytest.mark.parametrize("colours", ["panel", "body"])
+def test_colour_bars_of_thin_and_flat_bodies_overlap_nothing(kept, result, factors, colours):
+    with h5py.File(result, "r+") as file:
+        for axis in (0, 1):
+            file["VTKHDF/Points"][:, axis] *= factors[axis]
+        data, points = file["VTKHDF/PointData/temperature"], len(file["VTKHDF/Points"])
+        data[...] = np.where(np.tile(np.arange(points) < points // 2, 15), data[...], 20.0 + 0.01 * data[...])
+        file["VTKHDF/PointData/displacement"][...] = 0.0
+    (figure,) = kept("fields", result, "--colours", colours, "--quantity", "temperature", "xx", "yy")
+    assert len(bars_of(figure)) == (3 if colours == "panel" else 4)
+    groups = [[axes.get_window_extent() for axes in panels_of(figure)]
+              + [bar.get_tightbbox() for bar in bars_of(figure)]]
+    for bar in bars_of(figure):
+        labels = bar.get_xticklabels() + bar.get_yticklabels()
+        groups.append([label.get_window_extent() for label in labels if label.get_text()])
+    for boxes in groups:
+        for number, box in enumerate(boxes):
+            assert not any(box.overlaps(other) for other in boxes[:number])
+
+
+def test_stresses_of_axisymmetry_are_radial_and_hoop(tabulate, result, tmp_path):
+    with h5py.File(result, "r+") as file:
+        del file["deck"]
+        file["deck"] = ["*OPTIONS, PLANE=AXISYMMETRIC"]
+    tabulate("fields", result)
+    assert {"temperature", "radial", "hoop"} <= set(table(tmp_path, "case.fields.csv"))
+    assert "yy" not in table(tmp_path, "case.fields.csv")
+
+
+def test_a_reference_node_is_in_no_range_and_no_window(kept, result):
+    with h5py.File(result, "r+") as file:
+        last = file["VTKHDF/Connectivity"][-8:].max()
+        lone = int(np.setdiff1d(np.arange(len(file["VTKHDF/Points"])), file["VTKHDF/Connectivity"][8:])[0])
+        file["VTKHDF/Connectivity"][:8] = file["VTKHDF/Connectivity"][8:16]  # the first cell goes
+        file["VTKHDF/Points"][lone] = [1e3, 1e3, 0.0]
+        data, points = file["VTKHDF/PointData/temperature"], len(file["VTKHDF/Points"])
+        assert last < points
+        data[lone::points] = -5e4
+    with Result(result) as opened:
+        assert not opened.cells.used[lone] and np.isnan(opened.field("temperature", 3)[lone])
+    (figure,) = kept("fields", result, "--quantity", "temperature")
+    assert figure.axes[0].get_xlim()[1] < 100.0
+    assert bars_of(figure)[0].get_ylim()[0] >= 0.0
+
+
+def test_without_csv_there_are_pictures_alone(result, tmp_path, unrendered, capsys):
+    for picture in ("zones", "profiles", "fields"):
+        assert main([picture, str(result), "--out", str(tmp_path / "out")]) == 0
+    assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".png", ".svg"}
+
+
+def bars_of(figure):
+    """Return the axes of the colour bars."""
+    return [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
+
+
+def panels_of(figure):
+    """Return the axes of the panels."""
+    return [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
 
 
 def test_the_window_of_the_contact_follows_the_deformed_faces(result):
@@ -532,7 +618,7 @@ def test_titles_of_fields_side_by_side_stand_apart(kept, result):
         file["VTKHDF/Points"][:, 0] *= 0.3  # a slender model has narrow panels
     for quantities in ((), ("--quantity", "stress_error", "heat_flux_error")):
         (figure,) = kept("fields", result, *quantities)
-        titles = [axes._left_title for axes in figure.axes]
+        titles = [axes._left_title for axes in panels_of(figure)]
         boxes = [title.get_window_extent() for title in titles]
         assert [title.get_text()[:3] for title in titles] == ["(a)", "(b)", "(c)"][: len(boxes)]
         for left, right in zip(boxes, boxes[1:]):
@@ -541,10 +627,11 @@ def test_titles_of_fields_side_by_side_stand_apart(kept, result):
 def test_many_fields_are_drawn_in_rows_of_panels_large_enough(kept, result):
     quantities = ["xx", "yy", "zz", "xy", "von_mises"]
     (figure,) = kept("fields", result, "--region", "contact", "--quantity", *quantities)
-    boxes = [axes.get_window_extent() for axes in figure.axes]
+    panels = panels_of(figure)
+    boxes = [axes.get_window_extent() for axes in panels]
     assert len(boxes) == 5 and min(min(box.size) for box in boxes) > figure.dpi  # an inch
-    assert [bool(axes.get_xlabel()) for axes in figure.axes] == [False, False, True, True, True]
-    assert [bool(axes.get_ylabel()) for axes in figure.axes] == [True, False, False, True, False]
+    assert [bool(axes.get_xlabel()) for axes in panels] == [False, False, True, True, True]
+    assert [bool(axes.get_ylabel()) for axes in panels] == [True, False, False, True, False]
 
 
 def test_errors_are_drawn_element_by_element(kept, result, tmp_path):
@@ -583,8 +670,8 @@ def test_errors_of_elements_of_several_types_stay_with_their_elements():
     window = np.array([[3.0, 0.0], [5.0, 2.0]])
     assert list(element_fields.in_window(cells, cells.points, window)) == [False, True]
     filled = element_fields.fill(
-        Figure().subplots(), cells, cells.points, np.array([1.0, 9.0]), np.arange(11.0), "viridis",
-        "neither"
+        Figure().subplots(), cells, cells.points, np.array([1.0, 9.0]),
+        *field_colours.colours_of("stress_error", np.arange(11.0))
     )
     corners = [len(np.unique(np.round(path.vertices[::8], 9), axis=0)) for path in filled.get_paths()]
     assert dict(zip(corners, filled.get_array())) == {3: 9.0, 4: 1.0}
@@ -595,36 +682,26 @@ def test_fields_of_elements_are_drawn_apart_from_those_of_nodes(fail, result):
     assert "stress_error and heat_flux_error are fields of elements" in message
 
 
-def test_bodies_whose_ranges_differ_tenfold_have_colour_bars_of_their_own(kept, result):
+def test_bodies_whose_ranges_differ_tenfold_have_colour_bars_of_their_own_if_asked(kept, result):
     def bars(figure):
-        return [axes.get_title(loc="left") for axes in figure.axes[0].child_axes]
-
-    def are_apart(figure):
-        bars = figure.axes[0].child_axes
-        for bar in bars:
-            ticks = [label.get_window_extent().y1 for label in bar.get_yticklabels()]
-            assert bar._left_title.get_window_extent().y0 > max(ticks) - 0.01 * figure.dpi
-        return all(upper.get_window_extent().y0 - lower._left_title.get_window_extent().y1 > 1.0
-                   for upper, lower in zip(bars, bars[1:]))
+        return [axes.get_xlabel() + axes.get_ylabel() for axes in bars_of(figure)]
 
     with h5py.File(result, "r+") as file:
         data = file["VTKHDF/PointData/temperature"]
         points = len(file["VTKHDF/Points"])
         upper = np.tile(np.arange(points) < points // 2, 15)
         given = data[...]
-        file["VTKHDF/Points"][:, 0] *= 2.0  # the bars of a square model are short
         for factor, titles in ((0.2, [""]), (0.01, ["body 1", "body 2"]), (0.0, [""])):
             data[...] = np.where(upper, given, 20.0 + factor * given)
             file.flush()
-            (figure,) = kept("fields", result, "--quantity", "temperature")
+            (figure,) = kept("fields", result, "--quantity", "temperature", "--colours", "body")
             assert bars(figure) == titles
-            if factor == 0.01:
-                (figure,) = kept("fields", result, "--quantity", "temperature", "xx", "yy")
-                assert are_apart(figure)
+            (figure,) = kept("fields", result, "--quantity", "temperature")
+            assert bars(figure) == [""]
         file["VTKHDF/CellData/stress_error"][...] = np.tile(np.where(np.arange(80) < 40, 1.0, 50.0)
                                                             * np.linspace(0.0, 1.0, 80), 15)
         file.flush()
-        (figure,) = kept("fields", result, "--quantity", "stress_error")
+        (figure,) = kept("fields", result, "--quantity", "stress_error", "--colours", "body")
         assert bars(figure) == ["body 2", "body 1"]
 
 
@@ -662,6 +739,11 @@ def test_magnified_displacements_name_their_factor_and_why_bodies_overlap(result
     with h5py.File(result, "r+") as file:  # faces that touch in the mesh, as those of a crack
         file["contact/CYLINDER/master_node"][...] = file["contact/CYLINDER/slave_node"][()]
     assert r"$\times$ 20" in words(20.0) and "overlap" not in words(20.0)
+    with h5py.File(result, "r+") as file:
+        del file["deck"]
+        file["deck"] = ["*Clearance, SLAVE=A, MASTER=B, VALUE=-0.01"]
+    assert words(20.0).endswith("touching faces are drawn 20 times their *CLEARANCE apart, or overlapping")
+    assert words(1.0).endswith("touching faces are drawn their *CLEARANCE apart, or overlapping")
 
 
 def test_uniform_contact_is_tinted_and_names_hide_no_symbol(kept, result):

@@ -104,7 +104,7 @@ def drawn(folder, name):
 
 def test_pictures_have_the_time_as_abscissa(result, tmp_path):
     for picture in ("mesh", "profiles", "zones", "fields", "courses", "convergence"):
-        assert plot([picture, str(result), "--out", str(tmp_path)]) == 0
+        assert plot([picture, str(result), "--csv", "--out", str(tmp_path)]) == 0
     times, stored, strains = two.history(result, "time", "heat_stored", "heat_dilatation")
     courses = drawn(tmp_path, "deck.courses.csv")
     np.testing.assert_allclose(courses["time"], times, rtol=1e-12)
@@ -114,7 +114,7 @@ def test_pictures_have_the_time_as_abscissa(result, tmp_path):
     assert set(zones["load"]) == set(times)
     row = len(times) // 3
     chosen = ["--load", repr(float(times[row]))]
-    assert plot(["profiles", str(result), *chosen, "--out", str(tmp_path)]) == 0
+    assert plot(["profiles", str(result), *chosen, "--csv", "--out", str(tmp_path)]) == 0
     (name,) = (path.name for path in tmp_path.glob("deck.profiles-*.csv"))
     with h5py.File(result) as file:
         np.testing.assert_allclose(drawn(tmp_path, name)["pressure"],

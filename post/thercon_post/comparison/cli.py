@@ -50,7 +50,6 @@ def run(arguments):
     tolerances, mappings = read_tolerances(options.tol), mapping.read_mappings(options.map)
     template = read_templates(options.template)
     usual = Tolerance(options.abs, options.rel, options.block)
-    print(f"tolerance: {usual.words()}; states: {options.mismatches} mismatches at a time")
     compared, used = [], []
     with ExitStack() as stack:
         a = open_source(options.a, template, stack)
@@ -110,7 +109,7 @@ def write(a, compared, options):
     if not options.no_picture:
         style.apply()
         figure, drawn = picture.draw(a, compared, options)
-        written += style.write(figure, drawn, folder, name)
+        written += style.write(figure, drawn, options, name)
     print("\n".join(map(str, written)))
 
 

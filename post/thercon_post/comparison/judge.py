@@ -24,7 +24,7 @@ class Tolerance:
 
     def words(self):
         """Return the tolerance in words."""
-        return ", ".join(f"{kind} {getattr(self, kind):g}" for kind in KINDS)
+        return ", ".join(f"{kind} {getattr(self, kind):g}" for kind in KINDS if getattr(self, kind)) or "0"
 
 
 def read_tolerances(texts):
@@ -81,8 +81,8 @@ class Block:
         self.largest = float(np.max(np.abs(self.b[np.isfinite(self.b)]), initial=0.0))
         self.limit = np.zeros(len(self.a)) if self.state else tolerance.limit(self.b)
         self.outside = self.difference > self.limit
-        allowed = mismatches if self.state else 0
-        self.passed = int(self.outside.sum()) <= allowed
+        self.passed = int(self.outside.sum()) <= (mismatches if self.state else 0)
+        self.allowed = f"{mismatches} at a time" if self.state else tolerance.words()
         return self
 
     @property

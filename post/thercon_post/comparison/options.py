@@ -56,6 +56,7 @@ def parser():
     shown = top.add_argument_group("what is written")
     shown.add_argument("--draw", nargs="+", metavar="QUANTITY", help="quantities in the picture")
     shown.add_argument("--no-picture", action="store_true", help="draw nothing")
+    shown.add_argument("--csv", action="store_true", help="write what is drawn as CSV too")
     shown.add_argument("--rows", action="store_true", help="also write every compared row")
     return top
 

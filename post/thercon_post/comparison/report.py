@@ -15,6 +15,7 @@ HEADING = (
     "of max |b|",
     "a",
     "b",
+    "tolerance",
     "outside",
     "",
     "where",
@@ -41,7 +42,7 @@ def table(blocks, all_keys):
     rows = [HEADING]
     for name, group in quantities(blocks).items():
         rows.append(row(name, group, all_keys))
-    left = (0, 1, 11, 12)
+    left = (0, 1, 10, 12, 13)
     widths = [max(len(each[k]) for each in rows) for k in range(len(HEADING))]
     lines = []
     for each in rows:
@@ -61,7 +62,7 @@ def row(name, group, all_keys):
     rows = str(sum(block.rows for block in group))
     head = [name, group[0].by, times, rows, *counts]
     if not judged:
-        return (*head, "", "", "", "", "0", verdict, "every value is missing")
+        return (*head, "", "", "", "", group[0].allowed, "0", verdict, "every value is missing")
     worst = max(judged, key=lambda block: float(np.max(block.difference)))
     k = worst.worst
     outside = str(sum(int(block.outside.sum()) for block in judged))
@@ -73,7 +74,7 @@ def row(name, group, all_keys):
         differences = [f"{largest:.4g}", share]
     where = place(worst, k) if worst.difference[k] > 0.0 else ""
     values = [f"{worst.a[k]:.7g}", f"{worst.b[k]:.7g}"]
-    return (*head, *differences, *values, outside, verdict, where)
+    return (*head, *differences, *values, worst.allowed, outside, verdict, where)
 
 
 def percent(part):

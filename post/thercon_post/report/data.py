@@ -6,15 +6,20 @@ import numpy as np
 
 from .. import mesh
 from ..courses import HEAT
-from ..field_colours import SIGNED
-from ..fields import TITLES, touches_after_a_gap
+from ..field_colours import PRINCIPAL, SIGNED
+from ..cells import CORNERS
+from ..fields import TITLES, USUAL, apart_words, touches_after_a_gap
 from ..result import CELL_FIELDS, FIELD_SOURCES, words_of
 from ..style import matplotlib
 
-FIELD_NUMBERS = 700_000  # numbers of all fields together: 3.7 MB of text
-PROFILES = ("pressure", "shear", "heat_flux", "gap", "slip", "conductance")
+FIELD_NUMBERS = 1_400_000  # numbers of all fields together: at most 3.7 MB of text
+FINE = 20_000  # elements: nodes on sides cannot be seen
+DERIVED = (*PRINCIPAL, "radial", "hoop")  # left out of the pages of fine meshes
+NOISE = 1e-9  # of what it is beside: smaller values are rounding
+PROFILES = ("pressure", "shear", "heat_flux", "gap")
 COLOURS = ("viridis", "inferno", "RdBu_r")
 SHADES = 64
+LINEAR = {22: 5, 23: 9}  # VTK cell type without its midside nodes
 
 
 def page_data(result):
@@ -43,6 +48,11 @@ def packed(values, kind="<f4"):
     """Return an array as base64."""
     with np.errstate(over="ignore"):
         return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode()
+
+
+def counted(numbers):
+    """Return whole numbers as base64 of their differences, which are small."""
+    return packed(np.diff(np.ravel(numbers), prepend=0), "<i4")
 
 
 def shades(name):
@@ -78,9 +88,7 @@ def contact_data(result, contact):
         "part": contact.part_words(coordinate, window, unit),
         "friction": contact.friction,
         "status": packed(contact["status"], "u1"),
-        "profiles": {
-            key: packed(contact[key]) for key in PROFILES if contact.get(key) is not None
-        },
+        "profiles": {key: packed(contact[key]) for key in PROFILES if is_told(result, contact, key)},
         "edges": {
             key: packed(contact.edge_on_axis(contact[f"edges_{key}"], coordinate))
             for key in ("contact", "stick")
@@ -93,9 +101,28 @@ def contact_data(result, contact):
     }
 
 
+def is_told(result, contact, key):
+    """Whether a contact has a profile that is more than rounding."""
+    if contact.get(key) is None:
+        return False
+    size = {"shear": largest(contact["pressure"]), "gap": np.ptp(result.cells.points[result.cells.used]),
+            "heat_flux": largest(hottest(contact) * contact.data.get("conductance", 0.0))}
+    return key == "pressure" or largest(contact[key]) > NOISE * size[key]
+
+
+def largest(values):
+    """Return the largest magnitude."""
+    return float(np.nanmax(np.abs(values), initial=0.0))
+
+
+def hottest(contact):
+    """Return the largest magnitude of temperature of a face; zero where there is no heat."""
+    return largest(contact.data.get("slave_temperature", 0.0))
+
+
 def totals(contact):
     """Return the quantities of a contact over the increments; its edges are drawn elsewhere."""
-    return [{"label": words_of(key), "unit": contact.unit(key), "values": listed(values)}
+    return [{"key": key, "label": words_of(key), "unit": contact.unit(key), "values": listed(values)}
             for key, values in contact.totals().items() if not key.startswith("edge_")]
 
 
@@ -105,59 +132,70 @@ def listed(values):
 
 
 def histories(result):
-    """Return what there is of every increment: totals of the contacts, then of the whole run."""
-    found, contacts = [], contacts_of(result)
+    """Return what there is of every increment: totals of the contacts, then of the whole run, without
+    what is rounding beside others of its kind. Balances are checked by the run."""
+    found, contacts, peaks = [], contacts_of(result), {}
     for contact in contacts:
         of = f" of {contact.name}" if len(contacts) > 1 else ""
-        for each in totals(contact):
-            if any(each["values"]):
-                found.append(each | {"label": each["label"].capitalize() + of})
+        crossing = contact.data.get("conductance", 0.0) * contact["weight"]
+        peaks["heat"] = max(peaks.get("heat", 0.0), hottest(contact) * largest(crossing))
+        found += [each | {"label": each["label"].capitalize() + of} for each in totals(contact)]
     for key, values in result.history.items():
-        if key in ("time", "load") or values.ndim > 1 or not np.nan_to_num(values).any():
-            continue
-        unit = plain(result.units.names.get("power", "")) if key in HEAT else ""
-        found.append({"label": words_of(key).capitalize(), "unit": unit, "values": listed(values)})
-    return found
+        if key not in ("time", "load") and values.ndim == 1 and not key.endswith("_imbalance"):
+            unit = plain(result.units.names.get("power", "")) if key in HEAT else ""
+            found.append({"key": key, "label": words_of(key).capitalize(), "unit": unit,
+                          "values": listed(values)})
+    kinds = ["heat" if "heat" in each["key"] else each["key"].split("_")[-1] for each in found]
+    sizes = [largest([v or 0.0 for v in each["values"]]) for each in found]
+    for kind, size in zip(kinds, sizes):
+        peaks[kind] = max(peaks.get(kind, 0.0), size)
+    return [each for each, kind, size in zip(found, kinds, sizes) if size > NOISE * peaks[kind]]
 
 
 def fields_data(result):
-    """Return mesh and fields at the increments that the page keeps; None without fields."""
-    times = result.field_times
-    if len(times) == 0:
-        return None
-    there = {q: result.field(q, len(times) - 1) for q in FIELD_SOURCES}
-    there = [q for q, values in there.items() if values is not None]
+    """Return mesh and fields at the increments that the page keeps; None without fields. Fine meshes
+    have corners only, and no derived stresses."""
+    times, cells = result.field_times, result.cells
+    is_fine = cells.count > FINE
+    there = [q for q in FIELD_SOURCES if len(times) and not (is_fine and q in DERIVED)
+             and result.field(q, len(times) - 1) is not None]
     if not there:
         return None
-    cells = result.cells
-    points, each = cells.points, len(there) * max(len(cells.points), cells.count)
-    keep = kept_steps(len(times), each + 2 * len(points))
+    groups = {kind: group[:, : CORNERS[kind] if is_fine else None] for kind, group in cells.groups.items()}
+    used = np.isin(np.arange(len(cells.points)), np.concatenate([g.ravel() for g in groups.values()]))
+    place = np.append(np.cumsum(used) - 1, -1)  # of midside -1, too
+    place[:-1][~used] = -1
+    each = sum(cells.count if q in CELL_FIELDS else used.sum() for q in there)
+    keep = kept_steps(len(times), each + 2 * used.sum())
+    edges, _ = cells.edges() if cells.count <= 600 else (np.empty((0, 3), int), None)
+    near = None
+    if result.contact_names:
+        near = mesh.contact_window(contacts_of(result), cells, cells.points).tolist()
     moved = [result.point_data("displacement", step) for step in keep]
-    edges, _ = cells.edges() if cells.count <= 600 else (np.empty((0, 3)), None)
-    near = mesh.contact_window(contacts_of(result), cells, points) if result.contact_names else None
-    rows = [int(np.argmin(np.abs(result.history["time"] - times[step]))) for step in keep]
+    usual = USUAL[result.is_axisymmetric][1]
     return {
-        "rows": rows,
-        "all": len(times) == len(keep),
-        "points": packed(points),
-        "node_id": packed(cells.node_id, "<i4"),
+        "rows": [int(np.argmin(np.abs(result.history["time"] - times[step]))) for step in keep],
+        "points": packed(cells.points[used]),
+        "node_id": counted(cells.node_id[used]),
         "cells": [
             {
-                "kind": kind,
+                "kind": LINEAR.get(kind, kind) if is_fine else kind,
                 "nodes": group.shape[1],
-                "connectivity": packed(group, "<i4"),
-                "body": packed(cells.bodies[kind], "<i4"),
-                "member": packed(cells.members[kind], "<i4"),
-                "element": packed(cells.element_ids[kind], "<i4"),
+                "connectivity": counted(place[group]),
+                "body": counted(cells.bodies[kind]),
+                "member": counted(cells.members[kind]),
+                "element": counted(cells.element_ids[kind]),
             }
-            for kind, group in cells.groups.items()
+            for kind, group in groups.items()
         ],
-        "edges": packed(edges, "<i4"),
-        "boundary": packed(cells.boundary(), "<i4"),
+        "edges": counted(place[edges]),
+        "boundary": counted(place[cells.boundary()]),
         "overlaps": touches_after_a_gap(result),
-        "near": None if near is None else near.tolist(),
-        "displacement": None if moved[0] is None else packed([u[:, :2] for u in moved]),
-        "quantities": [quantity_data(result, q, keep) for q in there],
+        "apart": apart_words(result, 1.0) if result.given_gaps else "",
+        "near": near,
+        "displacement": None if moved[0] is None else whole_numbers([u[used, :2] for u in moved]),
+        "first": there.index(usual) if usual in there else 0,
+        "quantities": [quantity_data(result, q, keep, used) for q in there],
     }
 
 
@@ -167,17 +205,30 @@ def kept_steps(count, numbers):
     return sorted({count - 1 - round(k * (count - 1) / max(most - 1, 1)) for k in range(most)})
 
 
-def quantity_data(result, quantity, steps):
-    """Return one field at the steps that the page keeps."""
+def quantity_data(result, quantity, steps, used):
+    """Return one field at the steps that the page keeps; `used` are the points that it has."""
     words, unit = TITLES[quantity]
+    is_of_elements = quantity in CELL_FIELDS
+    values = [result.field(quantity, step) for step in steps]
     return {
         "key": quantity,
         "label": in_words(words),
         "unit": plain(result.units.names.get(unit, "")),
-        "of": "elements" if quantity in CELL_FIELDS else "points",
+        "of": "elements" if is_of_elements else "points",
         "signed": quantity in SIGNED,
-        "values": packed([result.field(quantity, step) for step in steps]),
+        "values": whole_numbers(values if is_of_elements else [each[used] for each in values]),
     }
+
+
+def whole_numbers(steps):
+    """Return values at each step as whole numbers from 0 for the smallest to 65534 for the largest
+    of that step, 65535 for NaN."""
+    low = [float(np.nan_to_num(np.min(each, initial=np.inf, where=np.isfinite(each)), posinf=0.0))
+           for each in steps]
+    high = [max(a, float(np.max(each, initial=a, where=np.isfinite(each)))) for a, each in zip(low, steps)]
+    parts = [np.where(np.isfinite(each), np.rint(65534.0 * (each - a) / ((b - a) or 1.0)), 65535)
+             for each, a, b in zip(steps, low, high)]
+    return {"low": low, "high": high, "parts": packed(parts, "<u2")}
 
 
 def in_words(title):

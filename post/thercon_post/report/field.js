@@ -1,23 +1,24 @@
 'use strict';
 // The deformed bodies with one field: a raster of colour bands below outlines in SVG.
-function fieldPicture(data, {$, floats, integers, show, html, put, ticks, loadWords, withUnit, later}) {
-const BANDS = 14, ROUNDING = 1e-6;   // values are stored with seven digits
+function fieldPicture(data, {$, floats, integers, wholes, show, html, put, ticks, loadWords, withUnit, later}) {
+const BANDS = 14, UNIFORM = 1e-3;   // of the largest magnitude: a smaller range has one colour
 const all = data.fields, points = floats(all.points), count = points.length / 2;
-const nodes = integers(all.node_id), displacement = all.displacement && floats(all.displacement);
+const nodes = integers(all.node_id), displacement = all.displacement && wholes(all.displacement);
 const edges = integers(all.edges), boundary = integers(all.boundary);
 const groups = all.cells.map(cell => ({...cell, connectivity: integers(cell.connectivity),
    body: integers(cell.body), member: integers(cell.member), element: integers(cell.element)}));
 const elements = groups.reduce((sum, group) => sum + group.member.length, 0);
-const quantities = all.quantities.map(each => ({...each, values: floats(each.values)}));
+const quantities = all.quantities.map(each => ({...each, values: wholes(each.values)}));
 const bodies = [...new Set(groups.flatMap(group => Array.from(group.body)))].sort((a, b) => a - b);
 const palettes = Object.fromEntries(Object.entries(data.colours).map(([name, hex]) =>
    [name, hex.match(/.{6}/g).map(c => [0, 2, 4].map(k => parseInt(c.slice(k, k + 2), 16)))]));
 
 put($('quantity'), html`${quantities.map((each, k) => html`<option value="${k}">${each.label}</option>`)}`);
-$('quantity').value = String(Math.max(0, quantities.findIndex(each => each.key === 'von_mises')));
+$('quantity').value = String(all.first);
+if (bodies.length === 1) $('apart').parentElement.hidden = true;
 if (!all.near) $('region').parentElement.hidden = true;
 if (!displacement) $('scale').parentElement.hidden = true;
-for (const id of ['quantity', 'region', 'scale', 'fixed']) $(id).addEventListener('input', later);
+for (const id of ['quantity', 'region', 'scale', 'fixed', 'apart']) $(id).addEventListener('input', later);
 
 // Shape functions at the points of a cut element, and its triangles.
 function cut(kind, n) {
@@ -86,7 +87,7 @@ function valuesOf(quantity, body, steps, places, box) {
    for (const step of steps) for (const p of taken) found.push(quantity.values[step * size + p]);
    return found.filter(Number.isFinite).sort((a, b) => a - b);
 }
-// One scale for bodies whose ranges are alike; ranges that differ tenfold have their own.
+// One scale for all bodies; where it is asked for, those whose ranges differ tenfold have their own.
 function scalesOf(quantity, steps, places, box) {
    const peak = quantity.values.reduce((most, v) => Number.isFinite(v) ? Math.max(most, Math.abs(v)) : most, 0);
    const ranges = bodies.map(body => {
@@ -97,30 +98,28 @@ function scalesOf(quantity, steps, places, box) {
    const found = [];
    for (const range of ranges) {
       const extent = range.high - range.low, last = found.at(-1);
-      if (last && (extent > 0.1 * last.extent || extent <= ROUNDING * peak)) {
+      if (last && (!$('apart').checked || extent > 0.1 * last.extent || extent <= UNIFORM * peak)) {
          last.low = Math.min(last.low, range.low); last.high = Math.max(last.high, range.high);
          last.bodies.push(range.body);
       } else found.push({low: range.low, high: range.high, extent, bodies: [range.body]});
    }
    return found.map(scale => levelled(scale, quantity, peak));
 }
-function levelled(scale, quantity, peak) {
-   let {low, high} = scale;
-   if (high - low <= ROUNDING * peak) {
-      const room = 0.05 * peak || 0.5;
-      low -= room; high += room;
-   } else if (quantity.signed && low < 0 && high > 0 && Math.min(-low, high) > 0.15 * Math.max(-low, high)) {
-      high = Math.max(-low, high); low = -high;
-   }
-   const inner = ticks(low, high, BANDS - 2), step = inner.length > 1 ? inner[1] - inner[0] : high - low;
-   const first = step * Math.floor(low / step + 1e-6), last = step * Math.ceil(high / step - 1e-6);
-   const balanced = Math.abs(first + last) <= 1e-9 * Math.abs(last);
-   const name = quantity.key === 'temperature' ? 'inferno' : balanced ? 'RdBu_r' : 'viridis';
+// Levels and their colours, which mean the same in every picture: red is positive, as tension, and blue
+// negative, the darker the larger; of quantities without a sign bright is large.
+function levelled({low, high, bodies}, quantity, peak) {
+   const isUniform = high - low <= UNIFORM * peak, value = 0.5 * (low + high);
+   const inner = isUniform ? [] : ticks(low, high, BANDS - 2), step = inner.length > 1 ? inner[1] - inner[0] : 2 * peak || 1;
+   const first = isUniform ? value - 0.5 * step : step * Math.floor(low / step + 1e-6);
+   const last = isUniform ? value + 0.5 * step : step * Math.ceil(high / step - 1e-6);
    const bands = Math.max(1, Math.round((last - first) / step));
-   let colours = palettes[name];
-   if (name === 'viridis' && last <= -first) colours = colours.slice().reverse();
-   const shades = Array.from({length: bands}, (_, k) => colours[Math.round((bands === 1 ? 0.5 : k / (bands - 1)) * (colours.length - 1))]);
-   return {bodies: scale.bodies, first, last, step, bands, shades};
+   const middles = Array.from({length: bands}, (_, k) => first + (k + 0.5) * step), sizes = middles.map(Math.abs);
+   const least = first < 0 && last > 0 ? 0 : Math.min(...sizes), range = Math.max(...sizes) - least;
+   const places = middles.map((middle, k) => bands === 1 ? 0.5 : quantity.signed ? 0.15 + 0.85 * (sizes[k] - least) / range : k / (bands - 1));
+   const signed = places.map((place, k) => quantity.signed ? 0.5 + 0.5 * Math.sign(Math.abs(middles[k]) > 1e-9 * peak ? middles[k] : 0) * place : place);
+   const colours = palettes[quantity.signed ? 'RdBu_r' : quantity.key === 'temperature' ? 'inferno' : 'viridis'];
+   const shades = signed.map(place => colours[Math.round(place * (colours.length - 1))]);
+   return {bodies, first, last, step, bands, shades, value: isUniform ? value : null};
 }
 
 function paint(places, quantity, step, scales, box, canvas) {
@@ -188,14 +187,16 @@ function drawBars(scales, quantity, tallest) {
       const tall = (H - 58) / scale.bands, out = [];
       scale.shades.forEach(([r, g, b], k) => out.push(html`<rect x="4" y="${42 + (scale.bands - 1 - k) * tall}" width="18" height="${tall + 0.3}" fill="rgb(${r},${g},${b})"/>`));
       const every = scale.bands > 8 ? 2 : 1;
-      for (let k = 0; k <= scale.bands; k++) {
+      const middle = 42 + 0.5 * scale.bands * tall;
+      if (scale.value !== null) out.push(html`<path d="M22 ${middle}h5" stroke="var(--ink)"/><text x="31" y="${middle + 4}">${show(scale.value, 4)}</text>`);
+      else for (let k = 0; k <= scale.bands; k++) {
          if (Math.round(scale.first / scale.step + k) % every) continue;
          const y = 42 + (scale.bands - k) * tall;
-         out.push(html`<path d="M22 ${y}h5" stroke="#333"/><text x="31" y="${y + 4}">${show(scale.first + k * scale.step)}</text>`);
+         out.push(html`<path d="M22 ${y}h5" stroke="var(--ink)"/><text x="31" y="${y + 4}">${show(scale.first + k * scale.step)}</text>`);
       }
       const whose = scales.length > 1 ? `bod${scale.bodies.length > 1 ? 'ies' : 'y'} ${scale.bodies.sort((a, b) => a - b).join(', ')}` : '';
       return html`<svg viewBox="0 0 136 ${H}" role="img" aria-label="Colours of ${quantity.label} ${whose}"><text x="4" y="14">${quantity.unit}</text>
-         <text x="4" y="28">${whose}</text><rect x="4" y="42" width="18" height="${H - 58}" fill="none" stroke="#333"/>${out}</svg>`;
+         <text x="4" y="28">${whose}</text><rect x="4" y="42" width="18" height="${H - 58}" fill="none" stroke="var(--ink)"/>${out}</svg>`;
    })}`);
 }
 function tellRange(quantity, step, row, given) {
@@ -225,15 +226,16 @@ function draw(given) {
    const canvas = $('panel').querySelector('canvas'), shape = (box[2] - box[0]) / (box[3] - box[1]);
    $('panel').style.maxWidth = `min(100%, ${Math.round(640 * shape)}px)`;
    const frame = paint(places, quantity, step, scales, box, canvas);
-   const thin = edges.length ? html`<path d="${curves(edges, places, box, frame)}" fill="none" stroke="#000" stroke-opacity="0.3" stroke-width="0.7"/>` : '';
+   const thin = edges.length ? html`<path d="${curves(edges, places, box, frame)}" fill="none" stroke="var(--ink)" stroke-opacity="0.3" stroke-width="0.7"/>` : '';
    put($('lines'), html`<svg viewBox="0 0 ${frame.width} ${frame.height}" style="overflow:hidden" role="img" aria-label="${quantity.label} on the deformed bodies, ${loadWords(all.rows[step])}">
-      ${thin}<path d="${curves(boundary, places, box, frame)}" fill="none" stroke="#000" stroke-width="2"/></svg>`);
+      ${thin}<path d="${curves(boundary, places, box, frame)}" fill="none" stroke="var(--ink)" stroke-width="2"/></svg>`);
    drawBars(scales, quantity, $('panel').clientHeight);
    tellRange(quantity, step, all.rows[step], given);
    $('field-note').textContent = [
-      factor > 1 && all.overlaps ? `Displacements are drawn ${show(factor)} times too large, the initial gaps are not: bodies that touch seem to overlap by ${show(factor - 1)} times their initial gap.` : '',
-      factor > 1 && !all.overlaps ? `Displacements are drawn ${show(factor)} times too large.` : '',
-      scales.length > 1 ? 'The ranges of the bodies differ more than tenfold: each has its own colours.' : '',
+      all.apart ? `${all.apart[0].toUpperCase()}${all.apart.slice(1)}${factor === 1 ? '' : `, times ${show(factor)}`}.` : '',
+      factor > 1 && all.overlaps && !all.apart ? `Displacements are drawn ${show(factor)} times too large, the initial gaps are not: bodies that touch seem to overlap by ${show(factor - 1)} times their initial gap.` : '',
+      factor !== 1 && (all.apart || !all.overlaps) ? `Displacements are drawn ${show(factor)} times as large.` : '',
+      scales.length > 1 ? 'Bodies whose ranges differ more than tenfold have their own colours.' : '',
    ].filter(Boolean).join(' ');
 }
 return {draw};

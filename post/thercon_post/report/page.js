@@ -1,11 +1,24 @@
 'use strict';
-(() => {
+(async () => {
 const $ = id => document.getElementById(id);
-const data = JSON.parse($('data').textContent);
 const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+const unpacked = new Blob([bytes($('data').textContent)]).stream().pipeThrough(new DecompressionStream('gzip'));
+const data = JSON.parse(await new Response(unpacked).text());
 const floats = text => new Float32Array(bytes(text).buffer);
-const integers = text => new Int32Array(bytes(text).buffer);
-const BLUE = '#0072b2', ORANGE = '#c26a00', VERMILION = '#d55e00', GREY = '#666';
+function integers(text) {
+   const found = new Int32Array(bytes(text).buffer);
+   for (let k = 1; k < found.length; k++) found[k] += found[k - 1];
+   return found;
+}
+// Values of all steps, of which each has its whole numbers from 0 to 65534; 65535 is no value.
+function wholes({low, high, parts}) {
+   const given = new Uint16Array(bytes(parts).buffer), size = given.length / low.length;
+   return Float32Array.from(given, (part, k) => {
+      const step = Math.floor(k / size);
+      return part === 65535 ? NaN : low[step] + (high[step] - low[step]) * part / 65534;
+   });
+}
+const INK = 'var(--ink)', PAPER = 'var(--paper)', BLUE = 'var(--blue)', VERMILION = '#d55e00', GREY = 'var(--dim)';
 
 // ---- words ----
 // What html`...` makes: each value put into it is escaped, unless it is such HTML, or a list of it.
@@ -52,7 +65,7 @@ function rangeOf(values, zero) {
 const peak = values => values.reduce((most, v) => Math.abs(v) > most ? Math.abs(v) : most, 0);
 // lines: {x, y, colour, dash, mark, name}; clouds: {points, shape, colour, name}; uprights: [x]
 function chart(box, options) {
-   const W = options.width || 480, H = options.height || 300;
+   const W = Math.min(options.width || 480, box.clientWidth || 480), H = options.height || 300;
    const [x0, x1] = options.xRange, [y0, y1] = options.yRange;
    const widest = Math.max(...ticks(y0, y1, 5).map(t => show(t).length));
    const left = Math.max(50, 30 + 7.5 * widest), right = 10, top = 14, bottom = 44;
@@ -61,15 +74,15 @@ function chart(box, options) {
    const out = [], id = `${box.id}-clip`;
    out.push(html`<clipPath id="${id}"><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}"/></clipPath>`);
    for (const t of ticks(x0, x1, 6))
-      out.push(html`<path d="M${X(t)} ${H - bottom}v5" stroke="#333"/><text class="tick" x="${X(t)}" y="${H - bottom + 18}" text-anchor="middle">${show(t)}</text>`);
+      out.push(html`<path d="M${X(t)} ${H - bottom}v5" stroke="var(--ink)"/><text class="tick" x="${X(t)}" y="${H - bottom + 18}" text-anchor="middle">${show(t)}</text>`);
    for (const t of ticks(y0, y1, 5))
-      out.push(html`<path d="M${left} ${Y(t)}H${W - right}" stroke="#e6e6e6"/><text class="tick" x="${left - 6}" y="${Y(t) + 4}" text-anchor="end">${show(t)}</text>`);
+      out.push(html`<path d="M${left} ${Y(t)}H${W - right}" stroke="var(--rule)"/><text class="tick" x="${left - 6}" y="${Y(t) + 4}" text-anchor="end">${show(t)}</text>`);
    out.push(html`<g clip-path="url(#${id})">`);
    for (const cloud of options.clouds || [])
       out.push(html`<path d="${cloud.points.map(([x, y]) => cloud.shape(X(x), Y(y))).join('')}" fill="${cloud.fill}" stroke="${cloud.colour}"/>`);
-   if (y0 < 0 && y1 > 0) out.push(html`<path d="M${left} ${Y(0)}H${W - right}" stroke="#888"/>`);
+   if (y0 < 0 && y1 > 0) out.push(html`<path d="M${left} ${Y(0)}H${W - right}" stroke="var(--dim)"/>`);
    for (const x of options.uprights || [])
-      out.push(html`<path d="M${X(x)} ${top}V${H - bottom}" stroke="#333" stroke-dasharray="2 3" class="upright"/>`);
+      out.push(html`<path d="M${X(x)} ${top}V${H - bottom}" stroke="var(--ink)" stroke-dasharray="2 3" class="upright"/>`);
    for (const line of options.lines) {
       let path = '', pen = 'M', marks = '';
       for (let k = 0; k < line.x.length; k++) {
@@ -81,9 +94,9 @@ function chart(box, options) {
             marks += `M${(X(a) - 2.6).toFixed(1)} ${Y(b).toFixed(1)}a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0`;
       }
       out.push(html`<path d="${path}" fill="none" stroke="${line.colour}" stroke-width="${line.width || 1.6}" stroke-dasharray="${line.dash || ''}"/>`);
-      if (marks) out.push(html`<path d="${marks}" fill="${line.hollow ? '#fff' : line.colour}" stroke="${line.colour}"/>`);
+      if (marks) out.push(html`<path d="${marks}" fill="${line.hollow ? PAPER : line.colour}" stroke="${line.colour}"/>`);
    }
-   out.push(html`</g><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}" fill="none" stroke="#333"/>`);
+   out.push(html`</g><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}" fill="none" stroke="var(--ink)"/>`);
    out.push(html`<text x="${(left + W - right) / 2}" y="${H - 8}" text-anchor="middle">${options.xLabel}</text>`);
    if (options.yLabel)
       out.push(html`<text transform="translate(14 ${(top + H - bottom) / 2}) rotate(-90)" text-anchor="middle">${options.yLabel}</text>`);
@@ -131,19 +144,24 @@ const contacts = data.contacts.map(each => {
 const contact = () => contacts[$('interface') ? Number($('interface').value) : 0];
 const part = () => contact().part && `${contact().part}.`;
 const rowOf = (values, width, k = row) => values.subarray(k * width, (k + 1) * width);
-// Points of all edges of a kind beside the main one.
-function further(key) {
-   const c = contact(), found = [];
-   for (let k = 0; k < count; k++)
-      for (const edge of finite(rowOf(c.edges[key], 4, k)))
-         if (!(Math.abs(edge - c.main[key][k]) <= 1e-6 * Math.abs(edge))) found.push([abscissa[k], edge]);
-   return found;
+// The other edge of the zone that the main edge ends, and points of the edges of other zones.
+function others(key) {
+   const c = contact(), other = new Float32Array(count).fill(NaN), further = [];
+   for (let k = 0; k < count; k++) {
+      const main = c.main[key][k], edges = finite(rowOf(c.edges[key], 4, k));
+      const below = edges.filter(edge => edge < main - 1e-6 * Math.abs(main));
+      if (below.length) other[k] = Math.max(...below);
+      for (const edge of edges)
+         if (edge !== other[k] && !(Math.abs(edge - main) <= 1e-6 * Math.abs(edge))) further.push([abscissa[k], edge]);
+   }
+   return {other, further};
 }
 function drawZones() {
    const c = contact(), m = c.at.length, states = [[], [], []];
    for (let k = 0; k < count; k++)
       for (let i = 0; i < m; i++) states[c.status[k * m + i]].push([abscissa[k], c.at[i]]);
    const frictionless = !c.profiles.shear || c.friction === 0;
+   const contactEdges = others('contact'), stickEdges = others('stick');
    const room = 0.03 * (Math.max(...abscissa) - Math.min(...abscissa)) || 0.5;
    const margin = 0.04 * (c.window[1] - c.window[0]) || 0.5;
    const small = Math.min(3, Math.max(0.8, 130 / Math.max(count, 1)));
@@ -154,15 +172,17 @@ function drawZones() {
       yRange: [c.window[0] - margin, c.window[1] + margin],
       uprights: [abscissa[row]],
       clouds: [
-         {points: states[0], shape: disc(0.4 * small), fill: '#999', colour: '#999', name: 'open'},
-         {points: states[1], shape: disc(small), fill: '#fff', colour: BLUE, name: frictionless ? 'closed' : 'slip'},
+         {points: states[0], shape: disc(0.4 * small), fill: GREY, colour: GREY, name: 'open'},
+         {points: states[1], shape: disc(small), fill: PAPER, colour: BLUE, name: frictionless ? 'closed' : 'slip'},
          {points: states[2], shape: square(0.9 * small), fill: '#e69f00', colour: '#e69f00', name: 'stick'},
-         {points: further('contact'), shape: diamond, fill: '#000', colour: '#000', name: 'further edge of contact'},
-         {points: further('stick'), shape: diamond, fill: '#fff', colour: '#000', name: 'further edge of stick'},
+         {points: contactEdges.further, shape: diamond, fill: INK, colour: INK, name: 'further edge of contact'},
+         {points: stickEdges.further, shape: diamond, fill: PAPER, colour: INK, name: 'further edge of stick'},
       ].filter(cloud => cloud.points.length),
       lines: [
-         {x: abscissa, y: c.main.contact, colour: '#000', name: 'edge of contact'},
-         {x: abscissa, y: c.main.stick, colour: '#000', dash: '6 3', width: 2.6, name: 'edge of stick'},
+         {x: abscissa, y: c.main.contact, colour: INK, name: 'edge of contact'},
+         {x: abscissa, y: contactEdges.other, colour: INK},
+         {x: abscissa, y: c.main.stick, colour: INK, dash: '6 3', width: 2.6, name: 'edge of stick'},
+         {x: abscissa, y: stickEdges.other, colour: INK, dash: '6 3', width: 2.6},
       ].filter(line => finite(line.y).length),
       caption: `Zones. Each symbol is a contact point at one increment, except diamonds. ${part()}`,
    });
@@ -203,13 +223,13 @@ function drawProfiles() {
    const low = values.reduce((a, b) => Math.max(a, -b), 0), high = values.reduce((a, b) => Math.max(a, b), 0);
    const bothSigns = Math.min(low, high) > 0.02 * Math.max(low, high);
    const sign = !bothSigns && values.reduce((a, b) => a + b, 0) < 0 ? -1 : 1;
-   const tractions = [['pressure', 'pressure p', '#000', '']];
+   const tractions = [['pressure', 'pressure p', INK, '']];
    if (shear) tractions.push(['shear', sign < 0 ? 'friction −τ' : 'friction τ', VERMILION, '', sign]);
    if (shear && mu) tractions.push(['pressure', bothSigns ? '±μp' : 'μp', GREY, '3 3', mu]);
    if (shear && mu && bothSigns) tractions.push(['pressure', '', GREY, '3 3', -mu]);
    profile('tractions', 'Contact tractions', tractions, withUnit('traction', unit('stress')), true,
       `Tractions, ${said}. Dotted lines are the edges of contact and stick. ${part()}`);
-   profile('flux', 'Heat flux', [['heat_flux', 'heat flux q', '#000', '']], withUnit('heat flux q', unit('flux')), false,
+   profile('flux', 'Heat flux', [['heat_flux', 'heat flux q', INK, '']], withUnit('heat flux q', unit('flux')), false,
       `Heat flux from slave to master, ${said}.`);
    profile('gap', 'Gap', [['gap', 'gap', BLUE, '']], withUnit('gap', unit('length')), false, `Gap, ${said}.`);
 }
@@ -256,7 +276,7 @@ function later() {
    if (!waiting) requestAnimationFrame(draw);
    waiting = true;
 }
-const fields = data.fields ? fieldPicture(data, {$, floats, integers, show, html, put, ticks, loadWords, withUnit, later}) : null;
+const fields = data.fields ? fieldPicture(data, {$, floats, integers, wholes, show, html, put, ticks, loadWords, withUnit, later}) : null;
 if (!fields) $('fields').hidden = true;
 const slider = $('load'), inTime = slider.step === 'any';
 const nearest = time => times.reduce((best, t, k) => Math.abs(t - time) < Math.abs(times[best] - time) ? k : best, 0);
@@ -271,7 +291,6 @@ if (inTime) slider.addEventListener('keydown', event => {
 });
 for (const id of ['interface', 'same']) if ($(id)) $(id).addEventListener('change', later);
 for (const form of document.forms) form.addEventListener('submit', event => event.preventDefault());
-addEventListener('beforeprint', () => { for (const each of document.querySelectorAll('details')) each.open = true; });
 slider.value = slider.max;
 draw();
 })();

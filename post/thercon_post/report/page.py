@@ -2,8 +2,8 @@
 
 from ..result import text
 from . import tables
-from .data import contacts_of, page_data
-from .html import as_json, digest, html, joined, own
+from .data import FINE, contacts_of, page_data
+from .html import compressed, digest, html, joined, own
 from .listing import read_listing
 
 # Nothing on the page may ask for anything outside it, and no script but its own may run.
@@ -33,11 +33,12 @@ PAGE = """<!DOCTYPE html>
 <noscript><p class="note">The pictures need JavaScript; the tables do not.</p></noscript>
 {body}
 </main>
-<script type="application/json" id="data">{data}</script>
+<script type="application/gzip" id="data">{data}</script>
 <script>{script}</script>
 </body>
 </html>
 """
+LARGE = 5e6  # bytes
 SECTION = """<section id="{key}" aria-labelledby="{key}-title">
 <h2 id="{key}-title">{title}</h2>
 {content}
@@ -49,18 +50,18 @@ def page(result):
     """Return the whole page as text."""
     result.rows()  # without an increment there is nothing to show
     listing = read_listing(result.path.with_suffix(".lst"), result.deck)
+    script, data = own("field.js", "page.js"), compressed(page_data(result))
     summary = [tables.facts(result, listing), tables.bounds(result), tables.rounds(result, listing)]
     sections = [
         ("summary", "Summary", joined(summary)),
         *([("contact", "Contact", contact_section(result))] if result.contact_names else []),
-        ("fields", "Fields", html(FIELDS)),
+        ("fields", "Fields", joined([html(FIELDS), large_words(data, result.cells)])),
         ("history", "History", html('<div id="histories" class="plots"></div>')),
         ("checks", "Checks", tables.checks(result, listing)),
         ("warnings", "Warnings", tables.warnings(result, listing)),
         ("deck", "Deck", tables.deck(result)),
     ]
     named = [dict(zip(("key", "title", "content"), section)) for section in sections]
-    script = own("field.js", "page.js")
     return html(
         PAGE,
         policy=POLICY.format(digest(script)),
@@ -72,9 +73,18 @@ def page(result):
         links=joined(html(LINK, **each) for each in named),
         bar=load_bar(result),
         body=joined([html(SECTION, **each) for each in named], "\n"),
-        data=as_json(page_data(result)),
+        data=data,
         script=script,
     )
+
+
+def large_words(data, cells):
+    """Return what the page of a fine mesh leaves out, and why it is large, where it is."""
+    if cells.count <= FINE:
+        return ""
+    large = f" Even so it has {1e-6 * len(data):.0f} MB." if len(data) > LARGE else ""
+    return html('<p class="note">The mesh has {} elements: to stay small, the page draws sides '
+                "straight and has no principal, radial and hoop stress.{}</p>", cells.count, large)
 
 
 def run_text(result, key):
@@ -117,6 +127,7 @@ FIELDS = """<form class="choice" aria-label="What the field shows">
 <option value="near">contact</option></select></label>
 <label>Displacements × <input type="number" id="scale" min="0" step="any" value="1"></label>
 <label><input type="checkbox" id="fixed"> same colours at all loads</label>
+<label><input type="checkbox" id="apart"> colours for each body</label>
 </form>
 <p id="field-note" class="note"></p>
 <figure id="field">
