@@ -174,7 +174,7 @@ def cases():
              discretizations, Computers and Structures 79 (2001) 1473-1486: pressure 1e5,
              uniform.""",
              "1e-9: rounding. A uniform state is exact or the method is wrong.",
-             ["CPE8", "CPE8R", "CPE4", "CPE6", "CPE3"], patch, named="element", short=5),
+             ["CPE8", "CPE8R", "CPE4", "CPE4I", "CPE6", "CPE3"], patch, named="element", short=6),
         Case("Hertz, line contact",
              """A cylinder of radius 100 mm (E 210 GPa, nu 0.3) on a block (70 GPa, 0.33), 480 N/mm,
              plane strain: input/hertz. Sides of elements at the contact are 0.25 mm long, a/4,

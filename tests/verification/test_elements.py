@@ -226,7 +226,7 @@ def draw(runs, path):
     left.set_title("Manufactured solution")
     log_sizes(left, [4, 8, 16, 32], "elements a side")
     left.set_ylabel("error of u in the mean square")
-    left.legend()
+    left.legend(loc="lower left")
     for k, name in enumerate(("u_r at the bore", "hoop stress at the bore")):
         right.loglog([s.mesh for s in runs["Thick cylinder"]],
                      [s.verdicts[k].error for s in runs["Thick cylinder"]], marker="o", label=name)
