@@ -38,6 +38,8 @@ module element_patches
       real(dp), allocatable :: position(:, :)    !! (2, recovery points) [length]
       integer, allocatable :: start(:)           !! (points + 1) first of the elements round each
       integer, allocatable :: around(:)          !! elements of which the points are corners
+      !> (elements) whether the mean of an element's values is fitted at their centre
+      logical, allocatable :: is_centred(:)
    end type layout_type
 
    integer, parameter :: linear_terms = 3      !! 1, x, y
@@ -176,7 +178,7 @@ contains
          if (layer > 0) call widen(mesh, points, layout, patch)
          if (size(patch) == before) exit
          before = size(patch)
-         sites = sites_of(mesh, layout, patch)
+         sites = sites_of(layout, patch)
          fit = make_fit(sites, corners_of(mesh, patch), terms)
          if (fit%complete .and. size(sites, 2) >= fewest) exit
       end do
@@ -219,10 +221,8 @@ contains
       end do
    end subroutine widen
 
-   !> Where the values of a patch are fitted: at all recovery points, but in elements of four nodes
-   !> at their mean, as the centre is where these are best.
-   pure function sites_of(mesh, layout, patch) result(sites)
-      type(mesh_type), intent(in) :: mesh
+   !> Where the values of a patch are fitted: at all recovery points, or at their centre.
+   pure function sites_of(layout, patch) result(sites)
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: patch(:)
       real(dp), allocatable :: sites(:, :)
@@ -233,7 +233,7 @@ contains
       do i = 1, size(patch)
          associate (mine => layout%position(:, layout%first_sample(patch(i)): &
             layout%first_sample(patch(i) + 1) - 1))
-            if (is_linear(mesh%element_kind(patch(i)))) then
+            if (layout%is_centred(patch(i))) then
                sites(:, n + 1) = sum(mine, dim=2)/size(mine, 2)
                n = n + 1
             else
@@ -261,9 +261,8 @@ contains
    end function corners_of
 
    !> Adds weights of the sites of a patch to those of a point.
-   pure subroutine add_weights(row, mesh, layout, patch, weights)
+   pure subroutine add_weights(row, layout, patch, weights)
       type(row_type), intent(inout) :: row
-      type(mesh_type), intent(in) :: mesh
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: patch(:)
       real(dp), intent(in) :: weights(:)
@@ -273,13 +272,13 @@ contains
       do i = 1, size(patch)
          samples = layout%first_sample(patch(i) + 1) - layout%first_sample(patch(i))
          do s = 0, samples - 1
-            if (is_linear(mesh%element_kind(patch(i)))) then
+            if (layout%is_centred(patch(i))) then
                call add_weight(row, layout%first_sample(patch(i)) + s, weights(n + 1)/samples)
             else
                call add_weight(row, layout%first_sample(patch(i)) + s, weights(n + 1 + s))
             end if
          end do
-         n = n + merge(1, samples, is_linear(mesh%element_kind(patch(i))))
+         n = n + merge(1, samples, layout%is_centred(patch(i)))
       end do
    end subroutine add_weights
 

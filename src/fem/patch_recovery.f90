@@ -9,7 +9,7 @@
 !> times the second derivatives. At the outline of a section, where patches have too few elements,
 !> these are taken from quadratics fitted round the next corners inside.
 module patch_recovery
-   use element_kinds, only: element_corner_count, quad8, quad8_reduced
+   use element_kinds, only: element_corner_count, quad4_enhanced, quad8, quad8_reduced
    use element_patches, only: add_weights, centres_for, corners_of, fit_round_corner, fit_type, &
       is_linear, is_surrounded, layout_type, make_fit, midsides_at, quadratic_terms, row_type, &
       sample_sums_type, sites_of
@@ -61,6 +61,7 @@ contains
       layout%position = position
       call invert_lists(points%element_points, element_corner_count(mesh%element_kind), &
          size(rows), layout%start, layout%around)
+      layout%is_centred = is_linear(mesh%element_kind) .and. .not. is_row(mesh, points, layout)
       allocate (self%inside(size(rows)), source=.false.)
       do p = 1, size(rows)
          has_fit(p) = .false.
@@ -79,11 +80,11 @@ contains
          share = 1.0_dp/size(centres)
          do c = 1, size(centres)
             call fit_round_corner(mesh, points, layout, centres(c), most_layers, patch, fit)
-            call add_weights(rows(p), mesh, layout, patch, &
+            call add_weights(rows(p), layout, patch, &
                share*fit%weights_at(mesh%coordinates(:, points%node(p))))
             ! A midside node has the mean of what holds at the ends of its side.
             do i = 1, size(near)
-               call add_weights(rows(near(i)), mesh, layout, patch, &
+               call add_weights(rows(near(i)), layout, patch, &
                   share/2*fit%weights_at(mesh%coordinates(:, points%node(near(i)))))
             end do
          end do
@@ -94,6 +95,32 @@ contains
       end do
       self%curvature = curvature_sums(mesh, points, layout, self%inside)
    end subroutine prepare
+
+   !> Whether elements with incompatible modes, which follow bending, have no neighbours on two
+   !> opposite sides, so that the centres do not show it.
+   pure function is_row(mesh, points, layout)
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points
+      type(layout_type), intent(in) :: layout
+      logical :: is_row(size(mesh%element_kind))
+      logical :: is_free(4)
+      integer :: e, k, q
+
+      do e = 1, size(is_row)
+         is_row(e) = .false.
+         if (mesh%element_kind(e) /= quad4_enhanced) cycle
+         is_free = .true.
+         do q = 1, 4
+            associate (side => points%element_points([q, modulo(q, 4) + 1], e))
+               do k = layout%start(side(1)), layout%start(side(1) + 1) - 1
+                  if (layout%around(k) /= e .and. any(points%element_points(:, &
+                     layout%around(k)) == side(2))) is_free(q) = .false.
+               end do
+            end associate
+         end do
+         is_row(e) = any(is_free(:2) .and. is_free(3:))
+      end do
+   end function is_row
 
    !> The values of the fits at all points; zero at those outside all elements.
    pure subroutine recover(self, components, samples, values)
@@ -194,7 +221,7 @@ contains
       real(dp), allocatable :: sites(:, :), missing(:), extrapolated(:)
       integer :: i, meeting, q, s
 
-      sites = sites_of(mesh, layout, patch)
+      sites = sites_of(layout, patch)
       fit = make_fit(sites, corners_of(mesh, patch), quadratic_terms)
       missing = fit%weights_at(mesh%coordinates(:, points%node(point)))
       extrapolated = 0*missing
@@ -210,7 +237,7 @@ contains
             end do
          end associate
       end do
-      if (meeting > 0) call add_weights(row, mesh, layout, patch, &
+      if (meeting > 0) call add_weights(row, layout, patch, &
          share*(missing - extrapolated/meeting))
    end subroutine add_curvature
 
