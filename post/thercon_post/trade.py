@@ -176,7 +176,7 @@ def shape(row):
     their sides."""
     if row["contact_level"] != "0":
         return LOCAL
-    return "s" if set(row["elements"].split("+")) & {"Q4", "T3"} else "o"
+    return "s" if set(row["elements"].split("+")) & {"Q4", "Q4I", "T3"} else "o"
 
 
 def percent(text):

@@ -63,7 +63,7 @@ module trade_study
       type(string_type) :: remarks(target_count)
    end type trade_type
 
-   character(3), parameter :: shapes(kind_count) = ['Q8 ', 'Q8R', 'Q4 ', 'T6 ', 'T3 ']
+   character(3), parameter :: shapes(kind_count) = ['Q8 ', 'Q8R', 'Q4 ', 'T6 ', 'T3 ', 'Q4I']
 
    !> Factors on the increments of the deck, each half the one before.
    real(dp), parameter :: factors(5) = [4.0_dp, 2.0_dp, 1.0_dp, 0.5_dp, 0.25_dp]

@@ -1,0 +1,20 @@
+# Writes the manual page PAGE from what PROGRAM says with --help: the parts of that, between empty
+# lines, are the sections of the page.
+
+execute_process(COMMAND "${PROGRAM}" --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE "\\" "\\\\" help "${help}")
+string(REPLACE "-" "\\-" help "${help}")
+string(REGEX REPLACE "^usage: " "       " help "${help}")
+set(page ".TH THERCON 1 \"\" \"thercon ${VERSION}\"\n.SH NAME\nthercon \\- ${DESCRIPTION}\n")
+foreach(section IN ITEMS SYNOPSIS COMMANDS OPTIONS "EXIT STATUS" "SEE ALSO")
+   string(FIND "${help}\n\n" "\n\n" end)
+   string(SUBSTRING "${help}" 0 ${end} part)
+   string(APPEND page ".SH ${section}\n.nf\n${part}\n.fi\n")
+   string(LENGTH "${help}" length)
+   math(EXPR begin "${end} + 2")
+   if(begin GREATER length)
+      break()
+   endif()
+   string(SUBSTRING "${help}" ${begin} -1 help)
+endforeach()
+file(WRITE "${PAGE}" "${page}")

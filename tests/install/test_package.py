@@ -1,0 +1,109 @@
+"""The Debian package, the Python package of post/, the manual page and the completion of bash."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = Path(os.environ["THERCON"])
+CYLINDER = "share/thercon/input/cylinder/cylinder.inp"
+
+
+def run(*command, **options):
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True,
+                          check=False, **options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """The Debian package of the build."""
+    folder = tmp_path_factory.mktemp("package")
+    run("cpack", "--config", PROGRAM.parent / "CPackConfig.cmake", "-B", folder)
+    (found,) = folder.glob("*.deb")
+    return found
+
+
+@pytest.fixture(scope="module")
+def root(package, tmp_path_factory):
+    """An empty root with what the package installs."""
+    folder = tmp_path_factory.mktemp("root")
+    run("dpkg-deb", "--extract", package, folder)
+    return folder / "usr"
+
+
+def test_the_package_declares_what_it_needs(package):
+    depends = run("dpkg-deb", "--field", package, "Depends")
+    names = {re.match(r"[^ (|]+", each.strip())[0] for each in depends.split(",")}
+    assert names >= {"python3", "python3-h5py", "python3-matplotlib", "libopenblas0-serial"}
+    linked = run("readelf", "-d", PROGRAM)
+    for library, name in (("hdf5", "libhdf5"), ("dmumps", "libmumps"), ("metis", "libmetis"),
+                          ("gfortran", "libgfortran")):
+        assert f"lib{library}" not in linked or any(each.startswith(name) for each in names), name
+
+
+def test_the_cylinder_is_solved_and_drawn_from_an_empty_root(root, tmp_path):
+    run(root / "bin/thercon", "run", "--quiet", root / CYLINDER, "--out", tmp_path, cwd=tmp_path)
+    with h5py.File(tmp_path / "cylinder.vtkhdf") as file:
+        assert file["run"].attrs["verify_passed"] == 37 and file["run"].attrs["verify_failed"] == 0
+    environment = {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    result = tmp_path / "cylinder.vtkhdf"
+    run(root / "bin/thercon-plot", "zones", result, "--out", tmp_path, env=environment)
+    run(root / "bin/thercon-report", result, "--out", tmp_path, env=environment)
+    run(root / "bin/thercon-compare", result, result, "--no-picture", "--out", tmp_path, env=environment)
+    assert (tmp_path / "cylinder.zones.png").exists() and (tmp_path / "cylinder.html").exists()
+
+
+def test_the_manual_page_says_what_help_says(root):
+    """As the program prints it, but for signs that the page writes in another way."""
+    page = (root / "share/man/man1/thercon.1").read_text()
+    shown = page.replace("\\-", "-").replace("\\\\", "\\")
+    for line in run(PROGRAM, "--help").removeprefix("usage: ").splitlines():
+        assert line in shown
+    assert re.findall(r"^\.SH (.*)", page, re.M) == \
+        ["NAME", "SYNOPSIS", "COMMANDS", "OPTIONS", "EXIT STATUS", "SEE ALSO"]
+
+
+@pytest.mark.parametrize(("words", "offered"), [
+    (["thercon", ""], {"run", "check", "trade"}),
+    (["thercon", "t"], {"trade"}),
+    (["thercon", "run", "--acc"], {"--accuracy"}),
+    (["thercon", "run", "deck.i"], {"deck.inp"}),
+])
+def test_bash_completes_commands_options_and_files(root, tmp_path, words, offered):
+    (tmp_path / "deck.inp").touch()
+    script = (f"source {root}/share/bash-completion/completions/thercon; COMP_WORDS=({' '.join(words[:-1])}"
+              f" '{words[-1]}'); COMP_CWORD={len(words) - 1}; _thercon thercon '{words[-1]}';"
+              "printf '%s\\n' \"${COMPREPLY[@]}\"")
+    path = f"{root}/bin:{os.environ['PATH']}"
+    said = run("bash", "-c", script, cwd=tmp_path, env=os.environ | {"PATH": path})
+    assert set(said.split()) == offered
+
+
+def test_post_is_an_installable_package_of_the_same_version(root, tmp_path):
+    source = shutil.copytree(root / "share/thercon/post", tmp_path / "post")
+    run(sys.executable, "-m", "pip", "install", "--no-index", "--no-build-isolation", "--no-deps",
+        "--target", tmp_path / "site", source)
+    paths = os.pathsep.join([str(tmp_path / "site"), *filter(None, sys.path)])
+    environment = os.environ | {"PYTHONPATH": paths}
+    assert "usage" in run(tmp_path / "site/bin/thercon-compare", "--help", env=environment)
+    run(PROGRAM, "run", "--quiet", ROOT / "input/examples/two_rods.inp", "--out", tmp_path)
+    run(tmp_path / "site/bin/thercon-report", tmp_path / "two_rods.vtkhdf", "--out", tmp_path,
+        env=environment)
+    assert "color-scheme" in (tmp_path / "two_rods.html").read_text()
+    version = \
+        run(PROGRAM, "--version").split()[1].rstrip(",")
+    assert (tmp_path / f"site/thercon_post-{version}.dist-info").is_dir()
+
+
+def test_help_names_the_programs_of_post_and_the_documents():
+    words = run(PROGRAM, "--help")
+    for name in ("thercon-plot", "thercon-report", "thercon-compare", "deck.md", "running.md"):
+        assert name in words
