@@ -196,11 +196,11 @@ def cases():
             held at one end under a force of 1 across it at the other. Sides between elements are
             upright, or at 45 degrees: parallelograms and trapezia.""",
             """R. H. MacNeal, R. L. Harder, Finite Elem. Anal. Des. 1 (1985) 3-20: theory 0.1081.
-            The references are this times what is published for the hybrid element of T. H. H. Pian
-            and K. Sumihara, Int. J. Num. Meth. Eng. 20 (1984) 1685: 0.993, 0.632 and 0.052. CPS4
-            has 0.093, 0.034 and 0.027.""",
-            """Half of the last digit published, and 1e-4, by which hybrid stresses and enhanced
-            strains differ in these parallelograms.""",
+            The references are this times what the hybrid element of T. H. H. Pian and K. Sumihara,
+            Int. J. Num. Meth. Eng. 20 (1984) 1685, has on these meshes, formed from its equations:
+            0.993, 0.632 and 0.052. CPS4 has 0.093, 0.034 and 0.027.""",
+            """Half of the last digit, and 1e-4, by which hybrid stresses and enhanced strains differ
+            in these parallelograms.""",
             list(SLANTS), beam, kind="EXTERNAL", cite="MacNeal and Harder", named="elements",
             short=3),
         Case(
@@ -208,9 +208,9 @@ def cases():
             """A panel 48 wide, 44 high on the left, where it is held, and 16 on the right, where a
             uniform shear of 1 in all pulls it up; plane stress, E = 1, nu = 1/3. n x n CPS4I.""",
             """R. D. Cook, J. Struct. Div. ASCE 100 (1974) 1851-1863; converged 23.96 at C, the
-            middle of the right side. Published for incompatible modes (QM6): 21.05 and 23.02 with n
-            = 2 and 4. CPS4 has 11.8 and 18.3.""",
-            "13 % with 2 x 2 elements, 12 % of which are published, halved on each finer mesh.",
+            middle of the right side. The element of Pian and Sumihara has 21.13 and 23.02 with n =
+            2 and 4, CPS4 11.8 and 18.3.""",
+            "13 % with 2 x 2 elements, where that element has 12 %, halved on each finer mesh.",
             [2, 4, 8, 16], cook, lambda n: f"n = {n}", kind="EXTERNAL", cite="Cook 1974", short=2),
     ]
 
