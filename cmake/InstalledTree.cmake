@@ -1,5 +1,5 @@
-# What `cmake --install` copies. Decks, scripts and documents keep their relative places, so that
-# links in the documents hold.
+# What `cmake --install` copies, and the Debian package of `cpack`. Decks, scripts and documents keep
+# their relative places, so that links in the documents hold.
 
 include(GNUInstallDirs)
 # The libraries of the build, wherever they are: see FindSerialLAPACK.cmake. The program of the build
@@ -12,3 +12,28 @@ install(TARGETS thercon RUNTIME)
 install(DIRECTORY docs input post DESTINATION "${installed_folder}" USE_SOURCE_PERMISSIONS
    PATTERN "__pycache__" EXCLUDE)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${installed_folder}")
+file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/links")
+foreach(name IN ITEMS plot report compare)
+   file(CREATE_LINK "../${installed_folder}/post/${name}"
+      "${PROJECT_BINARY_DIR}/links/thercon-${name}" SYMBOLIC)
+   install(FILES "${PROJECT_BINARY_DIR}/links/thercon-${name}" TYPE BIN)
+endforeach()
+
+add_custom_command(TARGET thercon POST_BUILD
+   COMMAND "${CMAKE_COMMAND}" -DPROGRAM=$<TARGET_FILE:thercon> -DVERSION=${PROJECT_VERSION}
+      "-DDESCRIPTION=${PROJECT_DESCRIPTION}" "-DPAGE=${PROJECT_BINARY_DIR}/thercon.1"
+      -P "${PROJECT_SOURCE_DIR}/cmake/ManualPage.cmake")
+install(FILES "${PROJECT_BINARY_DIR}/thercon.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+install(FILES cmake/completion.bash RENAME thercon
+   DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "thercon developers")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+# dpkg-shlibdeps finds the libraries; of BLAS it names any, and the run path the serial one alone.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libopenblas0-serial, python3, python3-h5py, python3-matplotlib")
+include(CPack)

@@ -32,7 +32,7 @@ module command_line
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(33) = [character(88) :: &
+   character(*), parameter :: usage(38) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
       '                           [--quiet] [--accuracy P%] [--resume]', &
       '                           [--restart RESULT[@TIME]]', &
@@ -65,7 +65,12 @@ module command_line
       '', &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,', &
       '             4 a *VERIFY check failed or a requested accuracy was not reached,', &
-      '             5 ended by SIGINT or SIGTERM; of several decks the largest']
+      '             5 ended by SIGINT or SIGTERM; of several decks the largest', &
+      '', &
+      'pictures:    thercon-plot, thercon-report (one HTML page) and thercon-compare; in the', &
+      '             source tree post/plot, post/report and post/compare', &
+      'documents:   share/thercon/docs of the installation, docs of the source tree; deck.md', &
+      '             describes every keyword, running.md every option and file']
 
 contains
 
