@@ -254,6 +254,7 @@ contains
          [-self%width - self%law%table_pressure(size(self%law%table_pressure):1:-1)/self%modulus, &
          coordinate]
       if (self%law%open_kind == law_clearance) coordinate = [coordinate, self%law%table_gap]
+      if (allocated(self%law%view_gap)) coordinate = [coordinate, self%law%view_gap]
    end function kinks
 
 end module conductance_graph

@@ -7,7 +7,7 @@ module conductance_laws
    public :: conductance_law_type, law_by_temperature_type, law_none, law_gas, law_power, &
       law_clearance, law_pressure, conductance, conductance_derivative, conductance_inverse, &
       law_jump, table_jump, is_constant, varies_with_temperature, line_value, line_slope, &
-      line_abscissa
+      line_abscissa, view_at
 
    integer, parameter :: law_none = 0        !! this side of the law was not given
    integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma) + radiation
@@ -38,7 +38,7 @@ module conductance_laws
       real(dp) :: gas_a = 0.0_dp           !! A [power/(length temperature)]
       real(dp) :: gas_b = 1.0_dp           !! B [length]
       real(dp) :: added_length = 0.0_dp    !! JUMP= and ROUGHNESS=, added to B [length]
-      real(dp) :: radiation = 0.0_dp       !! open: added to A/(B + gamma) [omega]
+      real(dp) :: radiation = 0.0_dp       !! open: added, times the view factor [omega]
       real(dp) :: power_c0 = 0.0_dp        !! C0 [power/(length^2 temperature)]
       real(dp) :: power_c1 = 0.0_dp        !! C1 [C0/stress^n]
       real(dp) :: power_n = 1.0_dp         !! n [-]
@@ -46,6 +46,8 @@ module conductance_laws
       real(dp), allocatable :: table_gap(:)        !! (rows) ascending gamma >= 0 [length]
       real(dp), allocatable :: open_omega(:)       !! (rows) omega there
       logical :: open_ends = .false.               !! omega is 0 beyond the last of these gaps
+      !> (rows) ascending gamma >= 0, and view factors there; unallocated where it is 1
+      real(dp), allocatable :: view_gap(:), view_factor(:)
       real(dp), allocatable :: table_pressure(:)   !! (rows) ascending p >= 0 [stress]
       real(dp), allocatable :: closed_omega(:)     !! (rows) omega there
       !> what varies with the temperatures of the faces; unallocated where nothing does
@@ -104,11 +106,14 @@ contains
          else if (law%open_kind == law_clearance) then
             derivative = line_slope(law%table_gap, law%open_omega, gap)
          end if
+         if (allocated(law%view_gap)) derivative = derivative + &
+            law%radiation*line_slope(law%view_gap, law%view_factor, gap)
       end if
    end function conductance_derivative
 
    !> Gap of an open contact point, or pressure of a closed one, that has a given omega; negative
-   !> where there is none, or where the law is constant.
+   !> where there is none, or where the law is constant; of radiation whose view factor varies none
+   !> is sought.
    pure function conductance_inverse(law, closed, omega) result(at)
       type(conductance_law_type), intent(in) :: law
       logical, intent(in) :: closed                 !! whether the contact point is closed
@@ -125,11 +130,13 @@ contains
          else if (law%closed_kind == law_pressure) then
             at = line_abscissa(law%table_pressure, law%closed_omega, omega)
          end if
+      else if (allocated(law%view_gap)) then
+         at = -1.0_dp
       else if (law%open_kind == law_gas) then
          if (omega > law%radiation) at = law%gas_a/(omega - law%radiation) - &
             (law%gas_b + law%added_length)
       else if (law%open_kind == law_clearance) then
-         at = line_abscissa(law%table_gap, law%open_omega, omega)
+         at = line_abscissa(law%table_gap, law%open_omega, omega - law%radiation)
       end if
    end function conductance_inverse
 
@@ -205,12 +212,22 @@ contains
 
       omega = 0.0_dp
       if (law%open_kind == law_gas) then
-         omega = law%gas_a/(law%gas_b + law%added_length + gap) + law%radiation
+         omega = law%gas_a/(law%gas_b + law%added_length + gap)
       else if (law%open_kind == law_clearance) then
          omega = line_value(law%table_gap, law%open_omega, gap)
          if (law%open_ends .and. gap > law%table_gap(size(law%table_gap))) omega = 0.0_dp
       end if
+      if (law%radiation > 0.0_dp) omega = omega + law%radiation*view_at(law, gap)
    end function open_law
+
+   !> View factor of radiation at a gap.
+   pure real(dp) function view_at(law, gap)
+      type(conductance_law_type), intent(in) :: law
+      real(dp), intent(in) :: gap                   !! gamma >= 0 [length]
+
+      view_at = 1.0_dp
+      if (allocated(law%view_gap)) view_at = line_value(law%view_gap, law%view_factor, gap)
+   end function view_at
 
    !> Ordinate of a curve.
    pure function line_value(abscissas, ordinates, at) result(value)

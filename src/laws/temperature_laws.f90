@@ -8,7 +8,8 @@
 !> with the mean and the jump of the faces nothing of it is lost.
 module temperature_laws
    use conductance_laws, only: conductance, conductance_law_type, law_by_temperature_type, &
-      law_jump, law_none, law_pressure, line_slope, line_value, varies_with_temperature
+      law_jump, law_none, law_pressure, line_slope, line_value, varies_with_temperature, &
+      view_at
    use kinds, only: dp
    implicit none
    private
@@ -77,7 +78,7 @@ contains
       real(dp), intent(in) :: gap
       real(dp) :: derivatives(2)
       type(conductance_law_type) :: there
-      real(dp) :: length
+      real(dp) :: length, radiation, seen
 
       derivatives = 0.0_dp
       there = law_at(law, faces)
@@ -87,13 +88,17 @@ contains
             there%gas_a/length*line_slope(rows%gas_temperature, rows%gas_b, faces%mean)/length
       end if
       if (allocated(rows%open_temperature)) then
+         radiation = there%radiation
+         there%radiation = 0.0_dp
          there%open_omega = column_slope(rows%open_temperature, rows%open_columns, faces%mean)
          derivatives(1) = conductance(there, .false., gap, 0.0_dp)
+         there%radiation = radiation
       end if
       if (there%radiation > 0.0_dp) then
-         derivatives(1) = derivatives(1) + rows%radiance* &
+         seen = rows%radiance*view_at(law, gap)
+         derivatives(1) = derivatives(1) + seen* &
             (12*(faces%mean - rows%absolute_zero)**2 + faces%jump**2)
-         derivatives(2) = 2*rows%radiance*(faces%mean - rows%absolute_zero)*faces%jump
+         derivatives(2) = 2*seen*(faces%mean - rows%absolute_zero)*faces%jump
       end if
    end function open_derivatives
 

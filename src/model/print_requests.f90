@@ -1,5 +1,6 @@
 !> Tables of nodes and of integration points that the deck asks for (*NODE PRINT, *EL PRINT).
 module print_requests
+   use mesh, only: set_type
    use time_points, only: time_points_type
    implicit none
    private
@@ -18,7 +19,7 @@ module print_requests
 
    !> One card: a table of the nodes, or of the integration points of the elements, of a set.
    type :: print_request_type
-      integer :: set = 0                     !! index into the node or element sets of the mesh
+      integer :: set = 0                     !! index into the node or element sets; 0: all
       integer :: frequency = 1               !! every n-th increment and the last; 0 never
       type(time_points_type) :: points       !! and at these instants
       integer, allocatable :: quantities(:)  !! constants above, each once, as on the card
@@ -27,6 +28,36 @@ module print_requests
       !> Stress and flux along the axes of the section's orientation, vectors along those of the
       !> nodes, else along x and y.
       logical :: local_axes = .false.
+   contains
+      procedure :: members
+      procedure :: name_of_set
    end type print_request_type
+
+contains
+
+   !> The nodes or elements of a table.
+   pure function members(self, sets, count)
+      class(print_request_type), intent(in) :: self
+      type(set_type), intent(in) :: sets(:)     !! node or element sets of the mesh
+      integer, intent(in) :: count              !! its nodes or elements
+      integer, allocatable :: members(:)        !! indexes of nodes or elements
+      integer :: i
+
+      if (self%set > 0) then
+         members = sets(self%set)%members
+      else
+         members = [(i, i=1, count)]
+      end if
+   end function members
+
+   !> The name of its set; that of all nodes or elements is ALL.
+   pure function name_of_set(self, sets) result(name)
+      class(print_request_type), intent(in) :: self
+      type(set_type), intent(in) :: sets(:)     !! node or element sets of the mesh
+      character(:), allocatable :: name
+
+      name = 'ALL'
+      if (self%set > 0) name = sets(self%set)%name
+   end function name_of_set
 
 end module print_requests

@@ -163,42 +163,43 @@ contains
       type(field_record_type), intent(in) :: fields
       real(dp), allocatable :: columns(:, :), sums(:, :), values(:, :)
       character(head_length), allocatable :: heads(:), sum_heads(:)
+      character(:), allocatable :: set_name
       integer, allocatable :: nodes(:)
       integer :: i, k
       logical :: is_summed
 
-      associate (set => model%mesh%node_sets(request%set))
-         nodes = pack(set%members, model%mesh%node_body(set%members) > 0)
-         allocate (columns(0, size(nodes)), sums(0, size(nodes)), heads(0), sum_heads(0))
-         do i = 1, size(request%quantities)
-            associate (quantity => request%quantities(i))
-               values = nodal_values(quantity, fields, nodes)
-               if (size(values, 1) == 0) then
-                  call print_absence(unit, '   NODES OF '//set%name, quantity)
-                  cycle
-               end if
-               is_summed = quantity == print_force .or. quantity == print_heat
-               if (is_summed .and. request%totals) call add(quantity, values, sums, sum_heads)
-               if (is_summed .and. .not. request%each_node) cycle
-               if (request%local_axes .and. size(values, 1) == 2) call turn(model, nodes, values)
-               call add(quantity, values, columns, heads)
-            end associate
+      set_name = request%name_of_set(model%mesh%node_sets)
+      nodes = request%members(model%mesh%node_sets, size(model%mesh%node_body))
+      nodes = pack(nodes, model%mesh%node_body(nodes) > 0)
+      allocate (columns(0, size(nodes)), sums(0, size(nodes)), heads(0), sum_heads(0))
+      do i = 1, size(request%quantities)
+         associate (quantity => request%quantities(i))
+            values = nodal_values(quantity, fields, nodes)
+            if (size(values, 1) == 0) then
+               call print_absence(unit, '   NODES OF '//set_name, quantity)
+               cycle
+            end if
+            is_summed = quantity == print_force .or. quantity == print_heat
+            if (is_summed .and. request%totals) call add(quantity, values, sums, sum_heads)
+            if (is_summed .and. .not. request%each_node) cycle
+            if (request%local_axes .and. size(values, 1) == 2) call turn(model, nodes, values)
+            call add(quantity, values, columns, heads)
+         end associate
+      end do
+      if (size(heads) > 0) then
+         write (unit, '(/, 2a)') '   NODES OF ', set_name
+         call print_head(unit, '    node', heads)
+         do k = 1, size(nodes)
+            write (unit, '(i8)', advance='no') model%mesh%node_number(nodes(k))
+            write (unit, '(2a)') in_columns(model%mesh%coordinates(:, nodes(k)), 12, 4), &
+               in_columns(columns(:, k), 14, 6)
          end do
-         if (size(heads) > 0) then
-            write (unit, '(/, 2a)') '   NODES OF ', set%name
-            call print_head(unit, '    node', heads)
-            do k = 1, size(nodes)
-               write (unit, '(i8)', advance='no') model%mesh%node_number(nodes(k))
-               write (unit, '(2a)') in_columns(model%mesh%coordinates(:, nodes(k)), 12, 4), &
-                  in_columns(columns(:, k), 14, 6)
-            end do
-         end if
-         if (size(sum_heads) > 0) then
-            write (unit, '(/, 2a)') '   TOTALS OF ', set%name
-            write (unit, '(*(a14))') (trim(sum_heads(i)), i=1, size(sum_heads))
-            write (unit, '(a)') in_columns(sum(sums, dim=2), 14, 6)
-         end if
-      end associate
+      end if
+      if (size(sum_heads) > 0) then
+         write (unit, '(/, 2a)') '   TOTALS OF ', set_name
+         write (unit, '(*(a14))') (trim(sum_heads(i)), i=1, size(sum_heads))
+         write (unit, '(a)') in_columns(sum(sums, dim=2), 14, 6)
+      end if
    end subroutine print_nodes
 
    !> Replaces the components of vectors by those along the axes of their nodes.
@@ -270,7 +271,7 @@ contains
       character(:), allocatable :: title
       integer :: i, k
 
-      title = '   INTEGRATION POINTS OF '//model%mesh%element_sets(request%set)%name
+      title = '   INTEGRATION POINTS OF '//request%name_of_set(model%mesh%element_sets)
       allocate (columns(0, size(points%element)), heads(0))
       do i = 1, size(request%quantities)
          associate (quantity => request%quantities(i))

@@ -224,6 +224,7 @@ contains
          if (allocated(law%by_temperature)) words = words//temperature_words( &
             law%by_temperature%open_temperature, law%by_temperature%open_columns, law%table_gap)
          if (law%open_ends) words = words//', 0 beyond'
+         words = words//radiation_words(law)
       case default
          words = 'not given'
       end select
@@ -266,9 +267,7 @@ contains
          return
       end if
       associate (rows => law%by_temperature)
-         if (rows%radiance > 0.0_dp) words = words//' + '//to_text(rows%radiance)// &
-            ' (T1^2 + T2^2) (T1 + T2), absolute zero '//to_text(rows%absolute_zero)
-         words = words//constants(law%gas_a, law%gas_b)
+         words = words//radiation_words(law)//constants(law%gas_a, law%gas_b)
          if (.not. allocated(rows%gas_temperature)) return
          words = words//' at mean temperature '//to_text(rows%gas_temperature(1))
          do i = 2, size(rows%gas_temperature)
@@ -284,6 +283,22 @@ contains
          words = ', A = '//to_text(a)//', B = '//to_text(b)
       end function constants
    end function gas_words
+
+   !> What radiation adds to the conductance of a gap; empty for none.
+   pure function radiation_words(law) result(words)
+      type(conductance_law_type), intent(in) :: law
+      character(:), allocatable :: words
+
+      words = ''
+      if (.not. allocated(law%by_temperature)) return
+      associate (rows => law%by_temperature)
+         if (rows%radiance <= 0.0_dp) return
+         words = ' + '//to_text(rows%radiance)//' (T1^2 + T2^2) (T1 + T2)'
+         if (allocated(law%view_gap)) words = words//' times the view factor over the gap: '// &
+            table_words(law%view_factor, law%view_gap)
+         words = words//', absolute zero '//to_text(rows%absolute_zero)
+      end associate
+   end function radiation_words
 
    !> The columns of a table behind the first; empty for a table of one temperature.
    pure function temperature_words(temperature, columns, abscissas) result(words)

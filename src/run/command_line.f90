@@ -2,7 +2,8 @@
 module command_line
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
-   use text, only: append, percent, read_integer, read_real, string_type
+   use spelling, only: nearest_known
+   use text, only: append, percent, read_integer, read_real, split_words, string_type
    implicit none
    private
    public :: command_type, read_command, settings_in_words, usage
@@ -13,6 +14,11 @@ module command_line
    integer, parameter :: command_help = 3      !! print the usage
    integer, parameter :: command_version = 4   !! print versions
    integer, parameter :: command_trade = 5     !! measure speed against accuracy
+
+   ! For messages on misspelt words.
+   character(*), parameter :: known_commands = 'run/check/trade/help'
+   character(*), parameter :: known_options = '--out/--jobs/--width/--set/--limit/--accuracy/'// &
+      '--restart/--resume/--quiet/--help/--version'
 
    !> Command, decks and options.
    type :: command_type
@@ -100,7 +106,7 @@ contains
       case ('trade')
          command%action = command_trade
       case default
-         call set_error(error, status_deck, 'unknown command '//word//'; see thercon --help')
+         call set_error(error, status_deck, unknown_command(word))
          return
       end select
       i = 2
@@ -121,6 +127,21 @@ contains
       end if
       if (size(command%decks) > 1) command%is_batch = .true.
    end subroutine read_command
+
+   !> Message on a first argument that is no command.
+   function unknown_command(word) result(message)
+      character(*), intent(in) :: word
+      character(:), allocatable :: message
+      logical :: is_file
+
+      inquire (file=deck_file(word), exist=is_file)
+      if (is_file .or. index(word, '.inp') > 0) then
+         message = word//' is no command; write thercon run '//word//', or thercon check '//word
+      else
+         message = 'unknown command '//word//nearest_known(word, split_words(known_commands))// &
+            '; see thercon --help'
+      end if
+   end function unknown_command
 
    !> Reads the argument at a position, with its value where it has one.
    subroutine read_argument(command, i, error)
@@ -156,7 +177,8 @@ contains
             call set_error(error, status_deck, 'unknown option '//word//': an option and its '// &
                'value are separate words; see thercon --help')
          else if (index(word, '-') == 1) then
-            call set_error(error, status_deck, 'unknown option '//word//'; see thercon --help')
+            call set_error(error, status_deck, 'unknown option '//word// &
+               nearest_known(word, split_words(known_options))//'; see thercon --help')
          else
             call append(command%decks, deck_file(word))
          end if

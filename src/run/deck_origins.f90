@@ -18,8 +18,8 @@ module deck_origins
    public :: find_origin, reads_restart
 
    !> Cards that a deck with *RESTART, READ may have before its first step.
-   character(*), parameter :: before_steps(*) = [character(12) :: 'RESTART', 'AMPLITUDE', 'NSET', &
-      'ELSET', 'SURFACE', 'TIME POINTS', 'VERIFY', 'STEP']
+   character(*), parameter :: before_steps(*) = [character(12) :: 'HEADING', 'RESTART', &
+      'AMPLITUDE', 'NSET', 'ELSET', 'SURFACE', 'TIME POINTS', 'VERIFY', 'STEP']
 
 contains
 
@@ -42,7 +42,7 @@ contains
       logical :: is_there, reads
 
       reads = reads_restart(cards)
-      if (reads) place = cards%keywords(1)%place
+      if (reads) place = cards%keywords(first_card(cards))%place
       errors = report%error_count()
       call check_read_cards(cards, reads, report)
       source = command%restart
@@ -80,15 +80,27 @@ contains
       end if
    end subroutine find_origin
 
-   !> Whether the first card goes on from a result.
+   !> Whether a deck goes on from a result: its first card does, but for a title.
    pure logical function reads_restart(cards)
       type(cards_type), intent(in) :: cards
 
-      reads_restart = .false.
-      if (size(cards%keywords) == 0) return
-      reads_restart = cards%keywords(1)%name == 'RESTART' .and. has_parameter(cards%keywords(1), &
-         'READ')
+      reads_restart = first_card(cards) > 0
+      if (reads_restart) reads_restart = cards%keywords(first_card(cards))%name == 'RESTART' .and. &
+         has_parameter(cards%keywords(first_card(cards)), 'READ')
    end function reads_restart
+
+   !> The first card that is no *HEADING; 0 for none.
+   pure integer function first_card(cards)
+      type(cards_type), intent(in) :: cards
+      integer :: k
+
+      first_card = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name == 'HEADING') cycle
+         first_card = k
+         return
+      end do
+   end function first_card
 
    !> Reports READ elsewhere, and cards of a model where that is the one of the result.
    subroutine check_read_cards(cards, reads, report)
@@ -99,9 +111,10 @@ contains
 
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
-            if (card%name == 'RESTART' .and. k > 1 .and. has_parameter(card, 'READ')) call &
+            if (card%name == 'RESTART' .and. k > first_card(cards) .and. has_parameter(card, &
+               'READ')) call &
                report%error(parameter_place(card, 'READ'), 'READ belongs on the first card of '// &
-               'a deck, which then has steps alone')
+               'a deck behind *HEADING; the deck then has steps alone')
          end associate
       end do
       do k = 1, size(cards%keywords)

@@ -32,11 +32,14 @@ module deck_preparation
    use variations, only: variation_type, vary
    implicit none
    private
-   public :: prepare_deck, read_deck_type
+   public :: prepare_deck, read_deck_type, reason_to_skip
 
    !> Why a file is skipped.
-   character(*), parameter, public :: not_a_deck = 'it has no *STEP; it is taken as a file '// &
+   character(*), parameter :: not_a_deck = 'it has no *STEP; it is taken as a file '// &
       'that decks include'
+
+   !> Why a deck is not solved.
+   character(*), parameter :: no_analysis = 'it has *NO ANALYSIS; it was read without errors'
 
    !> A deck that was read, from which any number of variations can be made.
    type :: read_deck_type
@@ -53,7 +56,7 @@ contains
    !> Reads a deck, unless that is done, and prepares the run of it or of a variation. Warnings and
    !> errors are printed on stderr; warnings of a variation are those of the deck, and are not.
    !> Of several decks, a file without errors and without *STEP is none: its model stays empty, as
-   !> that of a deck does whose result is finished.
+   !> that of a deck does whose result is finished, or that has *NO ANALYSIS.
    !> Errors: status_deck, with the first of the deck's errors; as vary and simulation_type's start.
    subroutine prepare_deck(path, command, deck, model, simulation, error, variation)
       character(*), intent(in) :: path                    !! the deck as given
@@ -72,11 +75,13 @@ contains
       report = deck%report
       if (is_skipped(command, deck)) then
          call progress%clear()
-         if (allocated(deck%finished)) then
-            call print_line(error_unit, path//': note: skipped: its result is finished')
-         else
-            call print_line(error_unit, path//': note: skipped: '//not_a_deck)
-         end if
+         call print_line(error_unit, path//': note: skipped: '//reason_to_skip(deck))
+         return
+      end if
+      if (.not. report%has_errors() .and. asks_for_none(deck%cards)) then
+         call progress%clear()
+         call report%print(error_unit)
+         call print_line(error_unit, path//': note: not solved: '//no_analysis)
          return
       end if
       if (.not. report%has_errors()) then
@@ -141,6 +146,24 @@ contains
       is_skipped = allocated(deck%finished) .or. size(command%decks) > 1 .and. .not. &
          (deck%report%has_errors() .or. size(step_cards(deck%cards)) > 0)
    end function is_skipped
+
+   !> Why a deck without errors has no model to solve.
+   pure function reason_to_skip(deck) result(reason)
+      type(read_deck_type), intent(in) :: deck            !! read
+      character(:), allocatable :: reason
+
+      reason = not_a_deck
+      if (asks_for_none(deck%cards)) reason = no_analysis
+      if (allocated(deck%finished)) reason = 'its result is finished'
+   end function reason_to_skip
+
+   !> Whether a deck is to be read only.
+   pure logical function asks_for_none(cards)
+      type(cards_type), intent(in) :: cards
+      integer :: k
+
+      asks_for_none = any([(cards%keywords(k)%name == 'NO ANALYSIS', k=1, size(cards%keywords))])
+   end function asks_for_none
 
    !> Reports an error at the card that it names.
    subroutine report_at_card(error, report)

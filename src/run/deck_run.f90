@@ -8,7 +8,7 @@ module deck_run
    use contact_points, only: contact_points_type
    use deck_files, only: input_files_type, outputs_of, results_of
    use deck_outcomes, only: deck_outcome_type
-   use deck_preparation, only: not_a_deck, prepare_deck, read_deck_type
+   use deck_preparation, only: prepare_deck, read_deck_type, reason_to_skip
    use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
@@ -173,9 +173,8 @@ contains
       type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable :: error
 
-      self%outcome%reason = not_a_deck
+      self%outcome%reason = reason_to_skip(self%deck)
       if (.not. allocated(self%deck%finished)) return
-      self%outcome%reason = 'its result is finished'
       associate (failed => self%deck%finished%failed_checks)
          if (failed == 0) return
          self%outcome%verify_failed = failed

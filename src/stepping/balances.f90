@@ -32,7 +32,7 @@ module balances
 
    !> Part of the heat that bodies hold, over an increment, below which a rate is no scale; with
    !> heat of strains from absolute zero.
-   real(dp), parameter :: content_noise = 1.0e-9_dp
+   real(dp), parameter :: content_noise = 1.0e-7_dp
 
    !> Displacement, in the extent of the model, below which it is no scale.
    real(dp), parameter :: least_strain = 1.0e-12_dp

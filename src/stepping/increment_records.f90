@@ -220,7 +220,8 @@ contains
 
       call fields%prepare(model%mesh, model%sections, model%materials, model%orientations, &
          integration_rules())
-      associate (mesh => model%mesh, members => model%mesh%element_sets(request%set)%members)
+      associate (mesh => model%mesh, members => request%members(model%mesh%element_sets, &
+         size(model%mesh%element_kind)))
          n = sum(point_count(mesh%element_kind(members)))
          allocate (record%element(n), record%point(n), record%position(2, n))
          if (state%has_mechanics) allocate (record%stress(4, n))

@@ -1,7 +1,7 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choose, has_parameter, need_choice, &
+   use card_parameters, only: choose, has_parameter, lacks_parameter, need_choice, &
       parameter_place, parameter_text, take_from, take_parameter, take_positive
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
@@ -251,7 +251,7 @@ contains
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: is_first                     !! first of its keyword in its step
-      type(deck_context_type), intent(in) :: context      !! whether the sets are sound
+      type(deck_context_type), intent(inout) :: context   !! whether the sets are sound; notes
       type(mesh_type), intent(in) :: mesh                 !! has the sets
       type(deck_report_type), intent(inout) :: report     !! receives errors
       type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
@@ -259,21 +259,25 @@ contains
       character(:), allocatable :: choice
       type(print_key_type), allocatable :: keys(:)
       integer :: i, j
+      logical :: is_known     ! whether the set is
 
       if (is_first .and. allocated(requests)) deallocate(requests)
       choice = 'NO'
       keys = element_keys
       if (card%name == 'NODE PRINT') then
          keys = node_keys
-         if (names_set(card, 'NSET', mesh%node_sets, context)) call need_named(card, 'NSET', &
+         if (names_set(card, 'NSET', mesh%node_sets, context)) call take_named(card, 'NSET', &
             'node set', mesh%node_sets, report, request%set)
-         call check_dropped(card, context, mesh, report, request%set)
+         is_known = request%set > 0 .or. lacks_parameter(card, 'NSET')
+         if (is_dropped(card, context, mesh, report, request%set)) is_known = .false.
          call choose(card, 'TOTALS', 'YES/NO/ONLY', report, choice)
          request%each_node = choice /= 'ONLY'
          request%totals = choice /= 'NO'
          choice = 'NO'
-      else if (names_set(card, 'ELSET', mesh%element_sets, context)) then
-         call need_element_set(card, mesh%element_sets, report, request%set)
+      else
+         if (names_set(card, 'ELSET', mesh%element_sets, context) .and. has_parameter(card, &
+            'ELSET')) call need_element_set(card, mesh%element_sets, report, request%set)
+         is_known = request%set > 0 .or. lacks_parameter(card, 'ELSET')
       end if
       call choose(card, 'GLOBAL', 'YES/NO', report, choice)
       request%local_axes = choice == 'NO'
@@ -285,7 +289,9 @@ contains
                report, request%quantities)
          end do
       end do
-      if (request%set == 0 .or. size(request%quantities) == 0) return
+      if (card%last_data < card%first_data) call context%note('*'//card%name// &
+         ' without data prints nothing')
+      if (.not. is_known .or. size(request%quantities) == 0) return
       if (.not. allocated(requests)) allocate (requests(0))
       requests = [requests, request]
    end subroutine build_print
@@ -300,25 +306,25 @@ contains
       names_set = context%sets_sound .or. find_named(sets, parameter_text(card, parameter)) > 0
    end function names_set
 
-   !> Warns of a node set of which ORDER=1 leaves no node: there is nothing to print.
-   subroutine check_dropped(card, context, mesh, report, set)
+   !> Whether ORDER=1 leaves no node of a set, which is warned of: there is nothing to print.
+   logical function is_dropped(card, context, mesh, report, set)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: set   ! becomes 0 then
+      integer, intent(in) :: set      ! 0 for all nodes
 
+      is_dropped = .false.
       if (set == 0) return
       associate (members => mesh%node_sets(set)%members)
-         if (size(members) == 0) return
-         if (.not. all(context%dropped(members))) return
+         is_dropped = size(members) > 0
+         if (is_dropped) is_dropped = all(context%dropped(members))
       end associate
-      call report%warning(parameter_place(card, 'NSET'), 'ORDER=1 leaves no node of '// &
+      if (is_dropped) call report%warning(parameter_place(card, 'NSET'), 'ORDER=1 leaves no node of '// &
          mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
-      set = 0
-   end subroutine check_dropped
+   end function is_dropped
 
-   !> One key: what is not computed is ignored with a warning, what nobody knows is an error.
+   !> One key: what is not computed, or what nobody knows, is ignored with a warning.
    subroutine take_quantity(card, data, position, keys, report, quantities)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
@@ -343,8 +349,8 @@ contains
          end if
          return
       end do
-      call report%error(field_place(data, position), 'unknown quantity '//key//' of *'// &
-         card%name//known_choices(key, known))
+      call report%warning(field_place(data, position), 'unknown quantity '//key//' of *'// &
+         card%name//' is not printed'//known_choices(key, known))
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.

@@ -4,16 +4,17 @@ module deck_builder_gap_conductance
    use card_parameters, only: has_parameter, parameter_place
    use card_values, only: check_extra, check_unneeded_temperature, decimal_comma, need_field, &
       report_decimal_comma, take_field
-   use cards, only: cards_type, field_place, has_field, keyword_card_type
+   use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
+      keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
       line_value
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use text, only: to_text
+   use text, only: read_real, to_text
    implicit none
    private
-   public :: build_gap_conductance, join_gap_conductance
+   public :: build_gap_conductance, join_gap_conductance, is_of_clearance
    public :: gap_table_type, read_table, note_ends
 
    !> A table of conductance over the gap or the pressure. That of several temperatures has all
@@ -30,10 +31,11 @@ contains
    !> Reads one *GAP CONDUCTANCE. With CLEARANCE it has the meaning that it has in Abaqus: beyond
    !> the last row no heat crosses. Without, the law is one of its own: whether it acts is seen when
    !> all laws of the interaction are known.
-   subroutine build_gap_conductance(cards, card, name, context, report, law)
+   subroutine build_gap_conductance(cards, card, name, is_open, context, report, law)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
+      logical, intent(in) :: is_open                       !! whether it is over the clearance
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(conductance_law_type), intent(inout) :: law     !! receives the open or the closed side
@@ -41,10 +43,8 @@ contains
       character(:), allocatable :: title
       real(dp), allocatable :: temperature(:)
       integer :: errors
-      logical :: is_open
 
       errors = report%error_count()
-      is_open = has_parameter(card, 'CLEARANCE')
       title = '*GAP CONDUCTANCE'
       if (is_open) then
          title = '*GAP CONDUCTANCE, CLEARANCE'
@@ -58,7 +58,8 @@ contains
       call read_temperatures(cards, card, context, report, temperature)
       call read_table(cards, card, trim(merge('gap     ', 'pressure', is_open)), temperature, &
          report, table)
-      if (report%error_count() == errors) call check_columns(card, name, table%columns, report)
+      if (report%error_count() == errors) call check_columns(card, name, is_open, &
+         table%columns, report)
       if (allocated(table%temperature)) then
          if (is_open .and. report%error_count() == errors) call check_last_gaps(cards, card, &
             temperature, report)
@@ -88,25 +89,57 @@ contains
       end if
    end subroutine build_gap_conductance
 
-   !> Warns of a table that conducts nothing, and of a conductance that falls along a table of which
-   !> the deck does not say that it is one of pressure: it may be one of Abaqus, where it is one of
+   !> Whether a table is over the clearance: it says so, or it is one of Abaqus, which has no
+   !> parameter there. Without one it is over the pressure in CalculiX, but that of Abaqus if the
+   !> interaction has another one that says PRESSURE, or if the conductance falls along it.
+   logical function is_of_clearance(cards, card, has_pressure)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      logical, intent(in) :: has_pressure    !! whether another card of the interaction says PRESSURE
+
+      is_of_clearance = has_parameter(card, 'CLEARANCE')
+      if (is_of_clearance .or. has_parameter(card, 'PRESSURE')) return
+      is_of_clearance = has_pressure .or. falls(cards%data(card%first_data:card%last_data))
+   end function is_of_clearance
+
+   !> Whether the conductance falls along rows, and rises nowhere, at each temperature.
+   pure logical function falls(rows)
+      type(data_card_type), intent(in) :: rows(:)
+      real(dp) :: conductance(size(rows))
+      integer :: i
+      logical :: valid
+
+      falls = .false.
+      do i = 1, size(rows)
+         call read_real(field_text(rows(i), 1), conductance(i), valid)
+         if (.not. valid) return
+      end do
+      do i = 2, size(rows)
+         if (field_text(rows(i), 3) /= field_text(rows(i - 1), 3)) cycle
+         if (conductance(i) > conductance(i - 1)) then
+            falls = .false.
+            return
+         end if
+         falls = falls .or. conductance(i) < conductance(i - 1)
+      end do
+   end function falls
+
+   !> Warns of a table that conducts nothing, and of one without a parameter that is taken as one of
    !> clearance.
-   subroutine check_columns(card, name, columns, report)
+   subroutine check_columns(card, name, is_open, columns, report)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
+      logical, intent(in) :: is_open
       real(dp), intent(in) :: columns(:, :)
       type(deck_report_type), intent(inout) :: report
-      integer :: n
 
       if (all(columns <= 0.0_dp)) call report%warning(card%place, 'all conductances of this '// &
          'table of '//name//' are 0: it conducts no heat; the first column of *GAP CONDUCTANCE '// &
          'is the conductance')
-      if (has_parameter(card, 'CLEARANCE') .or. has_parameter(card, 'PRESSURE')) return
-      n = size(columns, 1)
-      if (any(columns(2:, :) < columns(:n - 1, :))) call report%warning(card%place, &
-         'the conductance of '//name//' falls along the table, '// &
-         'whose second column is the pressure, as in CalculiX; in Abaqus it is the clearance: '// &
-         'write *GAP CONDUCTANCE, CLEARANCE if that is meant, else PRESSURE')
+      if (is_open .and. .not. has_parameter(card, 'CLEARANCE')) call report%warning(card%place, &
+         'the second column of this table of '//name//' is taken as the clearance, as in '// &
+         'Abaqus; in CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or '// &
+         'PRESSURE if that is meant')
    end subroutine check_columns
 
    !> Refuses a table that ends at other gaps at other temperatures: between them it would end at

@@ -4,7 +4,7 @@ module deck_builder_gap_heat
    use card_parameters, only: has_parameter, parameter_place, take_positive
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
-   use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none
+   use conductance_laws, only: conductance_law_type, law_gas, law_none
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_kinds, only: axisymmetric
@@ -124,71 +124,83 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives a note
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(conductance_law_type), intent(inout) :: law     !! receives radiation in the open gap
-      real(dp) :: emissivity(2), view_factor
-      integer :: i, n
+      real(dp) :: emissivity(2)
+      real(dp), allocatable :: gap(:), view_factor(:)
+      integer :: i
 
-      n = card%last_data - card%first_data + 1
       associate (data => cards%data(card%first_data))
          do i = 1, 2
-            emissivity(i) = part_above_0(data, i, 'emissivity')
+            emissivity(i) = part_of(data, i, 'emissivity', report)
+            if (emissivity(i) <= 0.0_dp) then
+               call report%error(field_place(data, i), 'the emissivity must not be 0')
+               emissivity(i) = 1.0_dp
+            end if
          end do
          call check_extra(data, 2, 'two emissivities', report)
       end associate
-      view_factor = 1.0_dp
-      do i = 2, n
-         call read_view_factor(i)
-      end do
-      if (n > 1) call context%note('*GAP RADIATION: faces radiate at all clearances, also '// &
-         'beyond that of the last view factor')
+      call read_view_factors(cards%data(card%first_data + 1:card%last_data), report, gap, &
+         view_factor)
+      if (card%last_data > card%first_data .and. view_factor(size(view_factor)) > 0.0_dp) call &
+         context%note('*GAP RADIATION: faces radiate at all clearances, also beyond that of the '// &
+         'last view factor')
       if (.not. constants%has_radiation) call report%error(card%place, '*GAP RADIATION needs '// &
          '*PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
-      if (law%open_kind == law_clearance) call report%error(card%place, '*GAP RADIATION beside '// &
-         'a table of conductance over the clearance is refused; give the gas by *GAP LAW, TYPE=GAS')
       if (law%open_kind == law_none) law%open_kind = law_gas
       if (allocated(law%by_temperature)) then
          if (law%by_temperature%radiance > 0.0_dp) call report%error(card%place, &
             '*GAP RADIATION beside EMISSIVITY= of *GAP LAW: leave one of them out')
       end if
       if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%radiance = constants%stefan_boltzmann*view_factor/ &
+      law%by_temperature%radiance = constants%stefan_boltzmann*maxval(view_factor)/ &
          (1.0_dp/emissivity(1) + 1.0_dp/emissivity(2) - 1.0_dp)
       law%by_temperature%absolute_zero = constants%absolute_zero
-   contains
-      !> A field above 0 and at most 1; 1 after an error.
-      real(dp) function part_above_0(data, i, what) result(part)
-         type(data_card_type), intent(in) :: data
-         integer, intent(in) :: i
-         character(*), intent(in) :: what
-         logical :: valid
-
-         valid = .true.
-         part = 1.0_dp
-         call need_field(data, i, what, report, part, valid)
-         if (part > 0.0_dp .and. part <= 1.0_dp) return
-         call report%error(field_place(data, i), 'the '//what//' must be above 0 and at most 1')
-         part = 1.0_dp
-      end function part_above_0
-
-      !> A row of the table, in which one view factor is for all clearances.
-      subroutine read_view_factor(i)
-         integer, intent(in) :: i
-         real(dp) :: clearance, factor
-         logical :: valid
-
-         associate (data => cards%data(card%first_data + i - 1))
-            factor = part_above_0(data, 1, 'view factor')
-            valid = .true.
-            clearance = 0.0_dp
-            call take_field(data, 2, 'clearance', report, clearance, valid)
-            call check_extra(data, 2, 'view factor, clearance', report)
-            if (clearance < 0.0_dp) call report%error(field_place(data, 2), &
-               'the clearance must not be negative')
-            if (i == 2) view_factor = factor
-            if (abs(factor - view_factor) > 0.0_dp) call report%error(field_place(data, 1), &
-               'a view factor that varies with the clearance is refused: two faces that lie '// &
-               'close together see nothing but each other; give one view factor')
-         end associate
-      end subroutine read_view_factor
+      if (minval(view_factor) >= maxval(view_factor)) return
+      law%view_gap = gap
+      law%view_factor = view_factor/maxval(view_factor)
    end subroutine build_gap_radiation
+
+   !> Rows of view factor and clearance; 1 at all clearances where there are none.
+   subroutine read_view_factors(rows, report, gap, view_factor)
+      type(data_card_type), intent(in) :: rows(:)
+      type(deck_report_type), intent(inout) :: report
+      real(dp), allocatable, intent(out) :: gap(:), view_factor(:)   ! (rows)
+      integer :: i
+      logical :: valid
+
+      allocate (gap(max(size(rows), 1)), source=0.0_dp)
+      allocate (view_factor(size(gap)), source=1.0_dp)
+      do i = 1, size(rows)
+         view_factor(i) = part_of(rows(i), 1, 'view factor', report)
+         valid = .true.
+         call take_field(rows(i), 2, 'clearance', report, gap(i), valid)
+         call check_extra(rows(i), 2, 'view factor, clearance', report)
+         if (gap(i) < 0.0_dp) then
+            call report%error(field_place(rows(i), 2), 'the clearance must not be negative')
+         else if (i > 1 .and. valid) then
+            if (gap(i) <= gap(i - 1)) call report%error(field_place(rows(i), 2), &
+               'clearances must ascend')
+         end if
+      end do
+      if (maxval(view_factor) > 0.0_dp) return
+      call report%error(field_place(rows(1), 1), 'all view factors are 0: the faces do not '// &
+         'radiate; leave *GAP RADIATION out')
+      view_factor = 1.0_dp
+   end subroutine read_view_factors
+
+   !> A field of 0 to 1; 1 after an error.
+   real(dp) function part_of(data, i, what, report) result(part)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      character(*), intent(in) :: what
+      type(deck_report_type), intent(inout) :: report
+      logical :: valid
+
+      valid = .true.
+      part = 1.0_dp
+      call need_field(data, i, what, report, part, valid)
+      if (part >= 0.0_dp .and. part <= 1.0_dp) return
+      call report%error(field_place(data, i), 'the '//what//' must be between 0 and 1')
+      part = 1.0_dp
+   end function part_of
 
 end module deck_builder_gap_heat

@@ -6,7 +6,8 @@ module deck_builder_interactions
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
-   use deck_builder_gap_conductance, only: build_gap_conductance, join_gap_conductance
+   use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance, &
+      join_gap_conductance
    use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
    use deck_builder_gap_laws, only: build_gap_law
    use deck_context, only: deck_context_type, name_last
@@ -131,11 +132,12 @@ contains
                call build_gap_law(cards, card, interaction%name, model%constants, context, report, &
                   interaction%law)
             case ('GAP CONDUCTANCE')
-               if (has_parameter(card, 'CLEARANCE')) then
-                  call build_gap_conductance(cards, card, interaction%name, context, report, &
-                     interaction%law)
+               if (is_of_clearance(cards, card, has_pressure(cards, place))) then
+                  call build_gap_conductance(cards, card, interaction%name, .true., context, &
+                     report, interaction%law)
                else
-                  call build_gap_conductance(cards, card, interaction%name, context, report, table)
+                  call build_gap_conductance(cards, card, interaction%name, .false., context, &
+                     report, table)
                end if
             case default
                cycle
@@ -146,6 +148,19 @@ contains
       if (radiation > 0) call build_gap_radiation(cards, cards%keywords(radiation), &
          model%constants, context, report, interaction%law)
    end subroutine build_laws
+
+   !> Whether the laws behind a *SURFACE INTERACTION have a *GAP CONDUCTANCE, PRESSURE.
+   pure logical function has_pressure(cards, place)
+      type(cards_type), intent(in) :: cards
+      integer, intent(in) :: place
+      integer :: k
+
+      has_pressure = .false.
+      do k = place + 1, size(cards%keywords)
+         if (any(cards%keywords(k)%name == ['SURFACE INTERACTION', 'STEP               '])) return
+         has_pressure = has_pressure .or. has_parameter(cards%keywords(k), 'PRESSURE')
+      end do
+   end function has_pressure
 
    !> Takes the keyword card of a law that a surface interaction has once.
    subroutine count_once(cards, k, taken, report)
@@ -162,8 +177,8 @@ contains
       taken = k
    end subroutine count_once
 
-   !> Ignores parameters of a penalty; laws of pressure and overclosure that are no penalty are
-   !> refused.
+   !> Ignores parameters of a penalty, with a warning one whose faces press from afar; laws of
+   !> pressure and overclosure that are no penalty are refused.
    subroutine check_behavior(card, context, report)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
@@ -172,7 +187,11 @@ contains
 
       kind = to_upper(parameter_text(card, 'PRESSURE-OVERCLOSURE'))
       select case (kind)
-      case ('EXPONENTIAL', 'TABULAR')
+      case ('EXPONENTIAL')
+         call report%warning(parameter_place(card, 'PRESSURE-OVERCLOSURE'), 'faces of '// &
+            'PRESSURE-OVERCLOSURE=EXPONENTIAL would press before they touch, and more as they '// &
+            'come closer; contact is exact here: they press where they touch')
+      case ('TABULAR')
          call report%error(parameter_place(card, 'PRESSURE-OVERCLOSURE'), &
             'PRESSURE-OVERCLOSURE='//kind//' is refused: closed faces do not overlap')
       case ('TIED')

@@ -496,7 +496,11 @@ contains
             if (card%last_data >= card%first_data) then
                associate (data => cards%data(card%first_data))
                   call take_field(data, 1, 'thickness', report, section%thickness, valid)
-                  call check_extra(data, 1, 'thickness', report)
+                  if (size(data%fields) > 1) then
+                     call check_extra(data, 2, 'thickness, points', report)
+                     call check_unneeded(data, 2, 'a number of points', report)
+                     call context%note('*SOLID SECTION: what is behind the thickness is ignored')
+                  end if
                   if (section%thickness <= 0.0_dp) call report%error(field_place(data, 1), &
                      'the thickness must be positive')
                end associate

@@ -5,10 +5,12 @@ module deck_builder_mesh
    use cards, only: cards_type, data_card_type, field_place, has_field, is_undefined
    use deck_builder_lines, only: element_cards, is_line_card, read_node
    use deck_context, only: deck_context_type, plane_by_element
+   use deck_reader, only: keyword_of
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: data_cards_of
-   use element_kinds, only: element_corner_count, element_node_count, plane_strain, quad8
+   use element_kinds, only: element_corner_count, element_node_count, plane_strain, plane_stress, &
+      quad8
    use element_types, only: take_element_type
    use kinds, only: dp
    use mesh, only: add_node, extent_of, mesh_type, nodes_per_element
@@ -17,6 +19,8 @@ module deck_builder_mesh
    implicit none
    private
    public :: build_nodes, build_elements
+
+   character(*), parameter :: gmsh_comment = '******* E L E M E N T S'   !! before the first element
 
    real(dp), parameter :: height_rounding = 1.0e-9_dp   !! of z, by the extent of the model
 
@@ -41,7 +45,8 @@ contains
          call build_node(cards%data(card(j)), context, report, mesh%node_number(j), &
             mesh%coordinates(:, j), heights(j), context%node_valid(j))
       end do
-      call check_heights(cards, card, heights, mesh%coordinates, report)
+      call move_alloc(heights, context%node_height)
+      call warn_of_decimals(cards, card, report)
       call check_repeated('node', cards, card, mesh%node_number, report, places)
       do j = 1, size(places)
          context%node_valid = context%node_valid .and. mesh%node_number /= &
@@ -94,36 +99,53 @@ contains
       end do
       call take_field(data, 4, 'z', report, z, valid)
       if (has_field(data, 4)) then
-         call context%note('*NODE: third coordinates of 0 are ignored')
+         call context%note('*NODE: third coordinates are ignored')
       end if
       call check_extra(data, 7, 'number, x, y', report)
       if (size(data%fields) > 4) call context%note('*NODE: numbers after the third '// &
          'coordinate are ignored')
    end subroutine build_node
 
-   !> All nodes lie in the plane z = 0, but for rounding. Warns of the first one whose coordinates
-   !> may be torn by decimal commas, so that the last of their parts means nothing.
-   subroutine check_heights(cards, card, heights, coordinates, report)
+   !> The nodes of elements lie in the plane z = 0, but for rounding. Others may be those of a drawing
+   !> or of a rigid body.
+   subroutine check_heights(cards, context, mesh, report)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(in) :: context       ! whether the elements are sound
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: card(:)
+      logical :: has_element(0:size(mesh%node_number))
+      real(dp) :: rounding
+      integer :: e, i
+
+      if (size(mesh%node_number) == 0) return
+      rounding = height_rounding*extent_of(mesh%coordinates)
+      has_element = .false.
+      do e = 1, size(mesh%element_number)
+         if (context%element_valid(e)) has_element(mesh%element_nodes(:, e)) = .true.
+      end do
+      card = data_cards_of(cards, 'NODE')
+      do i = 1, size(card)
+         if (.not. has_element(i) .or. abs(context%node_height(i)) <= rounding) cycle
+         call report%error(field_place(cards%data(card(i)), 4), &
+            'models are two-dimensional: z must be 0', 'z')
+      end do
+   end subroutine check_heights
+
+   !> Warns of the first node whose coordinates may be torn by decimal commas, so that the last of
+   !> their parts means nothing.
+   subroutine warn_of_decimals(cards, card, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: card(:)
-      real(dp), intent(in) :: heights(:), coordinates(:, :)
       type(deck_report_type), intent(inout) :: report
-      real(dp) :: rounding
       integer :: i
 
-      if (size(heights) == 0) return
-      rounding = height_rounding*extent_of(coordinates)
-      do i = 1, size(heights)
-         if (abs(heights(i)) <= rounding) cycle
-         call report%error(field_place(cards%data(card(i)), 4), &
-            'models are two-dimensional: z must be 0')
-      end do
       do i = 1, size(card)
          if (.not. may_be_decimals(cards%data(card(i)), 5)) cycle
          call check_unneeded(cards%data(card(i)), 5, 'a direction', report)
          return
       end do
-   end subroutine check_heights
+   end subroutine warn_of_decimals
 
    !> The number of a node or element, from 1; 0 after an error.
    subroutine read_number(data, noun, report, number)
@@ -191,6 +213,8 @@ contains
             call take_element_type(name, kind, plane, message, note)
             if (len(note) > 0) call context%note(note)
          end if
+         if (plane == plane_stress .and. context%plane == plane_by_element) call warn_of_gmsh( &
+            parameter_place(cards%keywords(k), 'TYPE'), report)
          if (context%plane /= plane_by_element) plane = context%plane
          if (len(message) > 0) call report%error(parameter_place(cards%keywords(k), 'TYPE'), &
             message)
@@ -206,12 +230,29 @@ contains
             call check_layout(cards%data(j), kind, cards%keywords(k)%place, report)
          end do
       end do
+      call check_heights(cards, context, mesh, report)
       call context%element_index%build(mesh%element_number)
       ! Elements and lines have different numbers.
       call check_repeated('element', cards, [card, element_cards(cards, of_lines=.true.)], &
          [mesh%element_number, context%line_number], report, places)
       call context%member_index%build([mesh%element_number, context%line_number])
    end subroutine build_elements
+
+   !> Warns of plane stress that gmsh wrote, which calls all elements so; once.
+   subroutine warn_of_gmsh(place, report)
+      type(place_type), intent(in) :: place              ! where the type of an element is
+      type(deck_report_type), intent(inout) :: report
+      integer :: i
+
+      do i = place%image - 1, 1, -1
+         associate (line => report%source%images(i)%value)
+            if (index(line, gmsh_comment) == 1) exit
+            if (keyword_of(line) == 'NODE') return
+         end associate
+      end do
+      if (i > 0) call report%warning(place, 'gmsh calls all elements CPS, plane stress; say what '// &
+         'is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')
+   end subroutine warn_of_gmsh
 
    subroutine read_element_nodes(data, context, report, nodes, valid)
       type(data_card_type), intent(in) :: data

@@ -85,8 +85,8 @@ contains
             case ('CHANGE FRICTION', 'FRICTION', 'MODEL CHANGE', 'CONTACT INTERFERENCE')
                call build_contact_change(cards, k, n, model, context, report)
             case default
-               if (card%meant == 'STATIC') then
-                  ! An analysis that is refused is reported already.
+               if (card%meant == 'STATIC' .or. card%name == 'NO ANALYSIS') then
+                  ! One that is refused is reported already.
                   counts%analyses = counts%analyses + 1
                   context%analyses_sound = .false.
                else if (n > 0) then

@@ -38,6 +38,8 @@ module mesh_checks
    real(dp), parameter :: hopeless = 1.0e-7_dp   !! shortest side over the longest, to be refused
    real(dp), parameter :: doubtful = 1.0e-5_dp   !! the same, to be warned of
 
+   character(*), parameter :: everywhere = 'any integration point'
+
 contains
 
    !> Elements are all axisymmetric or none is; the radius is not negative.
@@ -208,7 +210,9 @@ contains
             i = findloc(inside, .true., dim=1)
             if (i > 0) call report%error(context%face_places(s)%items(i), 'face S'// &
                to_text(faces(2, i))//' of element '//to_text(mesh%element_number(faces(1, i)))// &
-               ' in surface '//mesh%surfaces(s)%name//' lies inside a body'// &
+               ' in surface '//mesh%surfaces(s)%name//' lies inside a body: another element '// &
+               'has its nodes; bodies that touch need nodes of their own there, in gmsh without '// &
+               'BooleanFragments and Coherence'// &
                others(count(inside), '; faces of the surface that do: '))
             deallocate(inside)
          end associate
@@ -245,7 +249,7 @@ contains
       end do
       e = findloc(clockwise, .true., dim=1)
       if (e > 0) call report%error(context%element_place(e), inversion(mesh, e, &
-         'any integration point')//others(count(clockwise), '; such elements: '))
+         everywhere)//others(count(clockwise), '; such elements: '))
    end subroutine check_jacobians
 
    !> Message on an element that is inverted somewhere.
@@ -260,6 +264,7 @@ contains
       if (side_node_count(mesh%element_kind(e)) == 3) message = message// &
          ', then its midside nodes, each near the middle of its side'
       message = message//', or correct their coordinates'
+      if (where == everywhere) message = message//'; in gmsh by ReverseMesh Surface'
    end function inversion
 
    !> Jacobians of an element at its integration points.

@@ -3,8 +3,8 @@ module card_lines
    use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
    use card_parameters, only: parameter_text
-   use card_slips, only: cut_at_blanks, lacks_star, mend_commas
-   use cards, only: add_data, add_keyword, cards_type, extend_data, field_type, keyword_card_type
+   use card_slips, only: cut_at_blanks, is_number, lacks_star, mend_commas
+   use cards, only: add_data, add_keyword, add_note, cards_type, extend_data, field_type, keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -18,7 +18,8 @@ module card_lines
    private
    public :: card_lines_type, default_width
 
-   integer, parameter :: default_width = 80   !! columns of a card
+   integer, parameter :: default_width = 256   !! columns of a card
+   integer, parameter :: least_width = 80      !! that a deck may give
    integer, parameter :: most_fields = 9   !! of an *ELEMENT data card, that of eight nodes
 
    !> State of the reader between two lines.
@@ -49,18 +50,22 @@ contains
       type(cards_type), intent(inout) :: cards             !! receives the card that it completes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
-      logical :: continues, title
+      logical :: continues, is_text, title
 
       if (is_blank(line)) return
       if (is_comment(line)) return
       title = .false.
-      if (allocated(self%keyword)) title = self%keyword == 'HEADING'
-      if (.not. title .and. line(first_text(line):first_text(line)) == '#') then
+      is_text = .false.
+      if (allocated(self%keyword)) then
+         title = self%keyword == 'HEADING'
+         is_text = title .or. self%keyword == 'STEP'
+      end if
+      if (.not. is_text .and. line(first_text(line):first_text(line)) == '#') then
          call report%error(place_type(image, first_text(line)), 'a comment begins with **', &
             'comments of other programs')
          return
       end if
-      if (is_keyword(line) .or. .not. (title .or. self%skips_data)) call suspect_look_alike(line, &
+      if (is_keyword(line) .or. .not. (is_text .or. self%skips_data)) call suspect_look_alike(line, &
          image, report)
       if (is_keyword(line) .or. lacks_star(line, title, cards)) then
          call self%finish(cards, report)
@@ -236,12 +241,12 @@ contains
       do i = 1, size(card%parameters)
          if (card%parameters(i)%name /= 'WIDTH') cycle
          call read_integer(card%parameters(i)%text, width, valid)
-         if (valid) valid = width >= default_width
+         if (valid) valid = width >= least_width
          if (valid) then
             self%width = max(self%width, width)
          else
             call report%error(card%parameters(i)%value_place, &
-               'WIDTH= needs a whole number of at least '//to_text(default_width))
+               'WIDTH= needs a whole number of at least '//to_text(least_width))
          end if
       end do
    end subroutine take_width
@@ -266,6 +271,11 @@ contains
          deallocate(self%refusal_of_data)
       end if
       if (self%skips_data) return
+      if (self%keyword == 'STEP' .and. .not. is_number(line(first_text(line): &
+         first_text(line) + scan(line(first_text(line):)//',', ', ') - 2))) then
+         call add_note(cards%notes, '*STEP: its title is ignored')
+         return
+      end if
       if (self%keyword == 'HEADING') then
          allocate(fields(1))
          fields(1)%text = line(first_text(line):last_text(line))

@@ -8,6 +8,7 @@ module deck_context
    use deck_source, only: place_type
    use deck_structure, only: report_twice
    use keywords, only: known_keywords
+   use kinds, only: dp
    use load_requests, only: request_list_type
    use mesh, only: set_type
    use named_items, only: find_named, named_type
@@ -45,6 +46,7 @@ module deck_context
       logical, allocatable :: element_valid(:)            !! (elements) whether its nodes are known
       type(place_type), allocatable :: node_place(:)      !! (nodes) where the node is
       logical, allocatable :: node_valid(:)               !! (nodes) whether its place is known
+      real(dp), allocatable :: node_height(:)             !! (nodes of cards) third coordinates
       type(place_list_type), allocatable :: face_places(:)   !! (surfaces) where each face is named
       type(place_type), allocatable :: material_place(:)  !! (materials) where the material is
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step is

@@ -1,7 +1,7 @@
 !> Files -> cards: the deck, the files that it includes, and the width of a card.
 module deck_reader
    use assembly_cards, only: flatten_cards
-   use card_fields, only: is_comment, last_text
+   use card_fields, only: is_comment, is_keyword, last_text
    use card_lines, only: card_lines_type, default_width
    use cards, only: cards_type, trim_cards
    use deck_report, only: deck_report_type
@@ -251,16 +251,23 @@ contains
       if (there) found = path(:index(path, '/', back=.true.))//included
    end function beside
 
-   !> Reports cards that are wider than they may be; comments have any width.
+   !> Reports cards that are wider than they may be; comments and titles have any width.
    subroutine check_width(width, report)
       integer, intent(in) :: width
       type(deck_report_type), intent(inout) :: report
       integer :: image, column
+      logical :: is_title
 
+      is_title = .false.
       do image = 1, report%source%count
          associate (line => report%source%images(image)%value)
-            if (last_text(line) <= width) cycle
             if (is_comment(line)) cycle
+            if (is_keyword(line)) then
+               is_title = any(keyword_of(line) == ['HEADING', 'STEP   '])
+            else if (is_title) then
+               cycle
+            end if
+            if (last_text(line) <= width) cycle
             column = first_byte(line, width + 1)
             if (column > last_text(line)) cycle
             call report%error(place_type(image, column), 'text past column '//to_text(width)// &

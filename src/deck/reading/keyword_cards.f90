@@ -6,9 +6,9 @@ module keyword_cards
    use card_values, only: decimal_comma_words
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use keywords, only: advice_type, built, find_advice, find_keyword, find_parameter, is_word, &
-      known_keywords, known_names, known_parameter_type, not_needed, not_printed, &
-      parameter_names, passed_over, refused, refused_with_data, word_advice
+   use keywords, only: advice_type, built, find_abbreviated, find_advice, find_keyword, &
+      find_parameter, is_output, is_word, known_keywords, known_names, known_parameter_type, &
+      not_needed, not_printed, parameter_names, passed_over, refused, refused_with_data, word_advice
    use spelling, only: edit_distance, is_slip, nearest_name
    use text, only: is_whole, string_type, to_upper
    implicit none
@@ -210,8 +210,9 @@ contains
       equals = index(field%text, '=')
       if (equals == 0) equals = len(field%text) + 1
       known = find_parameter(card%known, field%text(:equals - 1))
+      if (len(known%name) == 0) known = find_abbreviated(card%known, field%text(:equals - 1))
       if (len(known%name) == 0 .and. len(field%text) > 0) call report_unknown_parameter( &
-         field%text(:equals - 1), field%place, report, card, known)
+         field%text(:equals - 1), field%place, report, cards, card, known)
       parameter%name = known%name
       parameter%place = field%place
       parameter%value_place = field%place
@@ -223,6 +224,8 @@ contains
          call report%error(field%place, 'an empty parameter')
       else if (len(known%name) == 0) then
          continue
+      else if (known%name == 'DEPENDENCIES' .and. parameter%text == '0') then
+         known%status = not_needed
       else if (known%status == refused) then
          advice = find_advice(known%name, card%name)
          call report%error(field%place, known%name//' is refused on *'//card%name//': '// &
@@ -243,11 +246,12 @@ contains
    end subroutine take_parameter
 
    !> Reports a parameter that the keyword does not have, and finds the one that it likely is. On
-   !> all cards of the keyword it is one mistake.
-   subroutine report_unknown_parameter(name, place, report, card, known)
+   !> all cards of the keyword it is one mistake; on cards of output it is none.
+   subroutine report_unknown_parameter(name, place, report, cards, card, known)
       character(*), intent(in) :: name
       type(place_type), intent(in) :: place
       type(deck_report_type), intent(inout) :: report
+      type(cards_type), intent(inout) :: cards
       type(keyword_card_type), intent(in) :: card
       type(known_parameter_type), intent(inout) :: known
       type(string_type), allocatable :: names(:)
@@ -263,6 +267,14 @@ contains
          if (len(known%name) > 0 .or. is_near(name, names(i)%value)) then
             hint = 'the nearest known is '//names(i)%value
          end if
+      end if
+      if (is_output(card%name)) then
+         if (len(known%name) > 0) then
+            call report%warning(place, 'unknown '//group//'; '//known%name//' is taken', group)
+         else
+            call add_note(cards%notes, '*'//card%name//': '//to_upper(trim(name))//' is ignored')
+         end if
+         return
       end if
       if (len(hint) == 0) hint = listed(card%known, names)
       if (len(hint) > 0) then

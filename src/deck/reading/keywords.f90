@@ -7,7 +7,7 @@ module keywords
    public :: keyword_type, known_keywords, find_keyword, known_names
    public :: built, not_needed, refused
    public :: in_model, in_step, in_both
-   public :: known_parameter_type, find_parameter, parameter_names
+   public :: known_parameter_type, find_parameter, find_abbreviated, parameter_names, is_output
    public :: advice_type, find_advice, word_advice, is_word
    public :: no_advice, passed_over, not_printed, refused_with_data
 
@@ -37,7 +37,7 @@ module keywords
       integer :: section             !! in_model, in_step or in_both
       integer :: least_data          !! fewest data cards
       integer :: most_data           !! most data cards
-      character(160) :: parameters   !! its parameters
+      character(200) :: parameters   !! its parameters
    end type keyword_type
 
    !> One parameter of a keyword.
@@ -53,17 +53,20 @@ module keywords
    type :: advice_type
       integer :: kind = no_advice       !! refused, passed_over ...
       character(16) :: keyword = ''     !! for which one stands, or that has a parameter
-      character(200) :: names = ''      !! what it is about: names separated by slashes
+      character(256) :: names = ''      !! what it is about: names separated by slashes
       character(96) :: words = ''       !! why it is passed over or refused, what to write
    end type advice_type
 
    !> Parameters of the damping by which Abaqus stabilizes a step.
    character(*), parameter :: stabilization = '~STABILIZE?/~FACTOR=/~ALLSDTOL=/~CONTINUE=/'
 
-   !> Parameters of the cards that write fields.
-   character(*), parameter :: file_parameters = 'FREQUENCY=/TIME POINTS=/~FREQUENCYF=/'// &
-      '~NSET=/~GLOBAL=/~OUTPUT=/~LAST ITERATIONS/~CONTACT ELEMENTS/~SECTION FORCES/'// &
-      '~DIRECTIONS=/~VARIABLE='
+   !> Parameters of the cards that write fields; others of an output card are noted.
+   character(*), parameter :: file_parameters = 'FREQUENCY=/TIME POINTS=/~FREQUENCYF='
+
+   !> How the keywords end that ask for output.
+   character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
+
+   integer, parameter :: shortest = 3   !! letters of an abbreviation
 
    type(keyword_type), parameter :: known_keywords(80) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
@@ -94,7 +97,7 @@ module keywords
       keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
       keyword_type('SURFACE INTERACTION', built, in_model, 0, 1, 'NAME='), &
       keyword_type('FRICTION', built, in_both, 1, 1, &
-         'ROUGH/TAUMAX=/~SLIP TOLERANCE=/~ELASTIC SLIP='), &
+         'ROUGH/TAUMAX=/~SLIP TOLERANCE=/~ELASTIC SLIP=/~LAGRANGE'), &
       keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, 'PRESSURE/CLEARANCE'), &
       keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
       keyword_type('GAP HEAT GENERATION', built, in_model, 0, 1, 'ANGULAR VELOCITY='), &
@@ -102,7 +105,9 @@ module keywords
       keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
          'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT'), &
       keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
-         'INTERACTION=/NAME=/PAIRING=/ADJUST=/~TYPE=/~SMALL SLIDING'), &
+         'INTERACTION=/NAME=/PAIRING=/ADJUST=/~TYPE=/~SMALL SLIDING/~NO THICKNESS/~CPSET=/'// &
+         '~GEOMETRIC CORRECTION=/~HCRIT=/~MECHANICAL CONSTRAINT=/~EXTENSION ZONE=/~SMOOTH=/'// &
+         '~TRACKING=/~SUPPLEMENTARY CONSTRAINTS='), &
       keyword_type('TIE', built, in_model, 1, many, &
          'NAME=/POSITION TOLERANCE=/ADJUST=/~TYPE=/~NO ROTATION/~NO THICKNESS'), &
       keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
@@ -120,13 +125,13 @@ module keywords
       keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS=/SURFACE=/ELSET=/DISTANCE='), &
       keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
       keyword_type('ACCURACY', built, in_model, 1, many, 'ROUNDS='), &
-      keyword_type('CONTROLS', not_needed, in_both, 0, many, 'PARAMETERS=/FIELD=/RESET'), &
       keyword_type('EQUATION', built, in_model, 1, many, ''), &
       keyword_type('COUPLING', built, in_model, 0, 0, 'REF NODE=/SURFACE=/CONSTRAINT NAME='), &
       keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
       keyword_type('STEP', built, in_both, 0, 0, &
-         'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM=/~EXTRAPOLATION='), &
+         'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM?/~EXTRAPOLATION=/~CONVERT SDI='), &
       keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
+      keyword_type('NO ANALYSIS', built, in_step, 0, 0, ''), &
       keyword_type('TIME POINTS', built, in_model, 1, many, 'NAME=/TIME=/GENERATE'), &
       keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
          'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/~END='), &
@@ -156,12 +161,12 @@ module keywords
       keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
       keyword_type('RESTART', built, in_both, 0, 0, &
          'READ/STEP=/INC=/WRITE/FREQUENCY=/OVERLAY'), &
-      keyword_type('NODE PRINT', built, in_step, 1, many, &
+      keyword_type('NODE PRINT', built, in_step, 0, many, &
          'NSET=/FREQUENCY=/TIME POINTS=/TOTALS=/GLOBAL=/~FREQUENCYF='), &
-      keyword_type('EL PRINT', built, in_step, 1, many, &
-         'ELSET=/FREQUENCY=/TIME POINTS=/GLOBAL=/~TOTALS=/~FREQUENCYF='), &
+      keyword_type('EL PRINT', built, in_step, 0, many, &
+         'ELSET=/FREQUENCY=/TIME POINTS=/GLOBAL=/~FREQUENCYF='), &
       keyword_type('CONTACT PRINT', built, in_step, 0, many, &
-         'FREQUENCY=/TIME POINTS=/~SLAVE=/~MASTER=/~NSET=/~SET=/~GLOBAL=/~TOTALS='), &
+         'FREQUENCY=/TIME POINTS=/~FREQUENCYF='), &
       keyword_type('END STEP', built, in_step, 0, 0, ''), &
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
@@ -170,10 +175,18 @@ module keywords
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
+      advice_type(passed_over, '', 'CONTROLS', &
+         'tolerance and iterations are parameters of *FIXED POINT'), &
       advice_type(passed_over, '', 'CONTACT CONTROLS', 'contact is exact'), &
       advice_type(passed_over, '', 'SECTION CONTROLS/HOURGLASS STIFFNESS', &
          'hourglass control is that of incompatible modes'), &
-      advice_type(passed_over, '', 'OUTPUT', 'fields are written at every increment'), &
+      advice_type(passed_over, '', 'OUTPUT/ENERGY OUTPUT/INCREMENTATION OUTPUT/INTEGRATED OUTPUT/'// &
+         'INTEGRATED OUTPUT SECTION/MODAL OUTPUT/RADIATION OUTPUT/SURFACE OUTPUT/ENERGY FILE/'// &
+         'MODAL FILE/RADIATION FILE/FILE FORMAT/FILE OUTPUT', &
+         'fields are written at every increment'), &
+      advice_type(passed_over, '', 'ENERGY PRINT/MODAL PRINT/RADIATION PRINT', &
+         'the listing has no such table'), &
+      advice_type(passed_over, '', 'FILTER', 'results are not filtered'), &
       advice_type(passed_over, '', 'DAMPING/CONTACT DAMPING', 'loads are slow'), &
       advice_type(passed_over, '', 'NORMAL', 'the normal of the plane is z'), &
       advice_type(passed_over, '', 'DEPVAR', 'materials have no state'), &
@@ -212,8 +225,6 @@ module keywords
       advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/MODAL DYNAMIC/'// &
          'STEADY STATE DYNAMICS/VISCO/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD', &
          'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
-      advice_type(refused, 'STATIC', 'NO ANALYSIS', &
-         'thercon check DECK reads a deck without solving it'), &
       advice_type(of_parameter, 'EQUATION', 'REMOVE', 'equations hold in all steps'), &
       advice_type(of_parameter, 'EQUATION', 'INPUT', 'take *INCLUDE behind the keyword'), &
       advice_type(of_parameter, 'INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &
@@ -223,15 +234,11 @@ module keywords
          'nodes are generated on straight lines; give those of a curve'), &
       advice_type(of_parameter, 'GAP CONDUCTANCE', 'USER', &
          'no routine of the user is called; give the table'), &
-      advice_type(of_parameter, 'GAP CONDUCTANCE', 'DEPENDENCIES', &
-         'conductance depends on one quantity only'), &
       advice_type(of_parameter, 'MODEL CHANGE', 'MECHSTRAINTORESIDUAL', &
          'strains and stresses go on from step to step'), &
       advice_type(of_parameter, 'SURFACE BEHAVIOR', 'NO SEPARATION', &
          'faces that do not come apart are those of *TIE'), &
       advice_type(of_parameter, 'CONTACT PAIR', 'TIED', 'tied faces do not open; take *TIE'), &
-      advice_type(of_parameter, 'CONTACT PAIR', 'HCRIT/MECHANICAL CONSTRAINT/EXTENSION ZONE', &
-         'contact is exact; leave it out'), &
       advice_type(of_parameter, 'TIE', 'CYCLIC SYMMETRY/MULTISTAGE', &
          'only faces that lie opposite each other are tied'), &
       advice_type(of_parameter, 'TIE', 'TIED NSET', &
@@ -248,8 +255,6 @@ module keywords
          'FREQUENCY=n writes at every n-th increment of a step'), &
       advice_type(of_parameter, 'STEP', 'PERTURBATION', &
          'steps go on from the one before; leave it out'), &
-      advice_type(of_parameter, 'FRICTION', 'LAGRANGE', &
-         'friction is Coulomb''s with one coefficient; leave it out'), &
       advice_type(of_parameter, '', 'TIME DELAY/FILM TIME DELAY', &
          'shift the times of the *AMPLITUDE'), &
       advice_type(of_parameter, '', 'USER', 'no routine of the user is called; give the values'), &
@@ -259,8 +264,9 @@ module keywords
          'loads and temperatures follow the time; leave it out'), &
       advice_type(of_parameter, '', 'MXDEM', 'heat capacity is not modelled; leave it out'), &
       advice_type(of_parameter, '', 'CREEP', 'materials are linear; leave it out'), &
-      advice_type(of_parameter, '', 'DEPENDENCIES/TEMPERATURE', &
-         'properties are constant; leave it out'), &
+      advice_type(of_parameter, '', 'DEPENDENCIES', &
+         'values depend on no field; give the rows of one value of it, and 0'), &
+      advice_type(of_parameter, '', 'TEMPERATURE', 'the temperature is that of the analysis'), &
       advice_type(of_parameter, '', 'INPUT', 'data in a file of their own are *INCLUDE, INPUT='), &
       advice_type(of_parameter, '', 'INSTANCE', 'write the name as INSTANCE.NAME'), &
       advice_type(of_word, '', 'RADIA', &
@@ -366,6 +372,43 @@ contains
       parameter = known_parameter_type(status=refused)
       parameter%name = trim(found%names)
    end function find_parameter
+
+   !> The parameter of a keyword that is abbreviated to its first letters, as in Abaqus; its name is
+   !> empty where none begins so, or several do.
+   pure function find_abbreviated(known, name) result(parameter)
+      integer, intent(in) :: known              !! index into known_keywords
+      character(*), intent(in) :: name          !! name as written
+      type(known_parameter_type) :: parameter   !! what the table says of it
+      type(string_type), allocatable :: names(:)
+      character(:), allocatable :: found, full, short
+      integer :: i
+
+      short = to_upper(without_blanks(name))
+      parameter%name = ''
+      if (len(short) < shortest) return
+      found = ''
+      names = parameter_names(known)
+      do i = 1, size(names)
+         full = without_blanks(names(i)%value)
+         if (index(full, short) /= 1) cycle
+         ! FREQ is FREQUENCY, with which FREQUENCYF begins.
+         if (len(found) > 0 .and. index(full, found//'') /= 1) return
+         if (len(found) == 0) found = full
+      end do
+      if (len(found) > 0) parameter = find_parameter(known, found)
+   end function find_abbreviated
+
+   !> Whether a keyword asks for output, of which nothing stops a run.
+   pure logical function is_output(name)
+      character(*), intent(in) :: name         !! keyword without the star
+      integer :: first, i
+
+      is_output = .false.
+      do i = 1, size(output_words)
+         first = len_trim(name) - len_trim(output_words(i)) + 1
+         if (first > 1) is_output = is_output .or. name(first:) == output_words(i)
+      end do
+   end function is_output
 
    pure function parsed_entry(entry) result(parameter)
       character(*), intent(in) :: entry
