@@ -177,7 +177,7 @@ contains
 
       step = 0
       increment = 0
-      associate (card => cards%keywords(1))
+      associate (card => cards%keywords(first_card(cards)))
          call take_from(1, card, 'STEP', ignored, step)
          call take_from(1, card, 'INC', ignored, increment)
       end associate

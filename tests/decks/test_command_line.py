@@ -110,15 +110,15 @@ def test_equal_base_names_are_an_error_before_anything_runs(good, tmp_path):
 
 
 def test_width_widens_the_card(tmp_path):
-    deck = write(tmp_path / "wide.inp", GOOD, ["*NSET, NSET=WIDE", "1" + ", 1" * 30])
+    deck = write(tmp_path / "wide.inp", GOOD, ["*NSET, NSET=WIDE", "1" + ", 1" * 90])
     lines = deck.read_text().splitlines()
     lines = [*lines[-2:], ""]
     deck = write(tmp_path / "wide.inp", GOOD[: GOOD.index("*STEP")], lines,
                  GOOD[GOOD.index("*STEP"):])
     narrow = run("run", "--quiet", deck, "--out", tmp_path)
     assert narrow.returncode == 1
-    assert ":81: error: " in narrow.stderr
-    wide = run("run", "--quiet", deck, "--out", tmp_path, "--width", 100)
+    assert ":257: error: " in narrow.stderr
+    wide = run("run", "--quiet", deck, "--out", tmp_path, "--width", 280)
     assert (wide.returncode, wide.stderr) == (0, "")
 
 

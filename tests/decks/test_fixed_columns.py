@@ -104,12 +104,12 @@ def test_format_of_elements_says_which_columns_are_nodes(tmp_path):
 
 
 def test_cards_are_as_wide_as_the_deck_says(tmp_path):
-    deck = ['*NODE, FORMAT="(I5,2F40.0)"', *(f"{n:5d}{x:40.1f}{y:40.1f}" for n, x, y in (
+    deck = ['*NODE, FORMAT="(I5,2F140.0)"', *(f"{n:5d}{x:140.1f}{y:140.1f}" for n, x, y in (
         (1, 0, 0), (2, 1, 0), (3, 1, 1), (4, 0, 1))), "*ELEMENT, TYPE=CPS4, ELSET=E",
         "1, 1, 2, 3, 4", *material("E", (YOUNG, POISSON)), *PRESSED]
     path = write(tmp_path / "deck.inp", deck)
-    assert "text past column 80" in run("check", path).stderr
-    assert run("check", path, "--width", "85").returncode == 0
+    assert "text past column 256" in run("check", path).stderr
+    assert run("check", path, "--width", "285").returncode == 0
 
 
 def test_no_shift_is_read_as_other_numbers(tmp_path):

@@ -50,6 +50,21 @@ CHANGES = {
     "axes of output": ("*END STEP", "*ELEMENT OUTPUT, DIRECTIONS=YES\nS\n*END STEP",
                        "DIRECTIONS"),
     "symmetry of the third axis": ("*BOUNDARY", "*BOUNDARY, TYPE=DISPLACEMENT\nUP, ZSYMM", "3 to 6"),
+    "no thickness": (PAIR, PAIR + ", NO THICKNESS, CPSET=WHOLE, GEOMETRIC CORRECTION=ROUND",
+                     "GEOMETRIC CORRECTION"),
+    "penetration": (PAIR, PAIR + ", HCRIT=0.1, EXTENSION ZONE=0.2", "HCRIT"),
+    "multipliers": ("*FRICTION", "*FRICTION, LAGRANGE", "LAGRANGE"),
+    "no dependence": ("*EXPANSION", "*EXPANSION, DEPENDENCIES=0", "DEPENDENCIES"),
+    "title of a step": ("*STEP", "*STEP\n#1 Pressed by 5, " + "and heated " * 60, "title"),
+    "energies": ("*END STEP", "*ENERGY OUTPUT, ELSET=NOTHING, VARIABLE=PRESELECT\nALLSE\n*END STEP",
+                 "*ENERGY OUTPUT"),
+    "controls of increments": ("*STATIC", "*CONTROLS, ANALYSIS=DISCONTINUOUS\n*STATIC", "*CONTROLS"),
+    "averages of output": ("*END STEP", "*EL FILE, POSITION=AVERAGED AT NODES, LAST MODE=2\nS\n"
+                           "*END STEP", "LAST MODE"),
+    "print without data": ("*END STEP", "*EL PRINT, POS=CENTROIDAL, FREQ=2\n*NODE PRINT\n*END STEP",
+                           "without data prints nothing"),
+    "node beside the plane": ("*STEP", "*NODE\n9999, 3., 3., 3.\n*STEP", "third coordinates"),
+    "points of a section": (SECTION, SECTION + "\n1., 5", "behind the thickness"),
     "temperature": ("1e-05", "1e-05, 20.", "temperature"),
 }
 
@@ -84,3 +99,34 @@ def test_creep_none_is_what_happens(tmp_path):
     assert process.returncode == plain.returncode == 0
     assert process.stderr == plain.stderr
     assert process.stdout.removeprefix(str(deck)) == plain.stdout.removeprefix(str(CYLINDER))
+
+
+def test_a_deck_without_analysis_is_checked_only(tmp_path):
+    cards, checks = deck()
+    at = cards.index("*STATIC")
+    path = write(tmp_path / "deck.inp", cards[:at], ["*NO ANALYSIS"], cards[at + 2:])
+    process = run("run", path, "--out", tmp_path)
+    assert (process.returncode, process.stdout) == (0, "")
+    assert "note: not solved: it has *NO ANALYSIS" in process.stderr
+    assert not path.with_suffix(".vtkhdf").exists()
+    path.write_text(path.read_text().replace("*FRICTION", "*FRICTIN"))
+    assert run("check", path).returncode == 1
+
+
+def test_no_card_of_output_stops_a_run(tmp_path):
+    """The misspelt frequency is taken: the only table is that of the end."""
+    cards, checks = deck()
+    output = ["*NODE PRINT, FREQENCY=10", "U, PEEQ", "*EL PRINT, POSITION=NODES", "S, MISES",
+              "*CONTACT PRINT, NSET=WHOLE", "CDIS", "*NODE FILE, NSET=WHOLE, XYZ", "U, WHAT",
+              "*CONTACT OUTPUT, SLAVE=THAT", "CSTRESS"]
+    judge(tmp_path, [*cards[:-1], *output, cards[-1]], checks)
+    listing = (tmp_path / "deck.lst").read_text()
+    said = " ".join(listing.split())
+    for words in ("FREQUENCY is taken", "quantity PEEQ of *NODE PRINT is not printed",
+                  "quantity MISES of *EL PRINT", "*NODE FILE: XYZ is ignored"):
+        assert words in said
+    tables = listing[listing.index("\nINCREMENTS"):]
+    assert tables.count("NODES OF ALL") == tables.count("INTEGRATION POINTS OF ALL") == 1
+    nodes = tables.partition("NODES OF ALL")[2].partition("INTEGRATION")[0]
+    assert sum(line[:8].strip().isdigit() for line in nodes.splitlines()) == sum(
+        card.split(",")[0].isdigit() and card.count(",") == 2 for card in CARDS)

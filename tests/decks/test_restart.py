@@ -213,7 +213,8 @@ def test_a_deck_adds_steps_behind_those_of_a_result(cycling, tmp_path):
         whole = solve(with_steps(cycling[0], tmp_path, 2 if i < 2 else 3,
                                  NEW_STEPS.format(place="").split("\n", 1)[1]), "--out",
                       tmp_path / f"whole{i}")
-        new.write_text(NEW_STEPS.format(place=place))
+        title = "*HEADING\nOnce more\n" if i == 1 else ""
+        new.write_text(title + NEW_STEPS.format(place=place))
         process = run("run", "--quiet", new, "--restart", result, "--out", tmp_path / f"new{i}")
         assert process.returncode == 0, process.stderr
         whole = tmp_path / f"whole{i}" / "in_one.vtkhdf"

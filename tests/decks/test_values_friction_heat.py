@@ -237,6 +237,27 @@ def test_radiation_as_abaqus_has_it(tmp_path, other):
     follows(tmp_path, make, (0.8, 0.6, 1.0), other)
 
 
+def test_the_view_factor_falls_with_the_clearance(tmp_path):
+    """The gap of 5E-5 lies in the middle of a table that falls to 0; beyond it nothing radiates."""
+    whole = SIGMA * (1000.0**4 - 400.0**4) / (1 / 0.8 + 1 / 0.6 - 1)
+    gas = 0.1 / (5e-5 + 1e-6) * 600
+    for end, seen in ((1e-4, 0.5), (2e-4, 0.75), (5e-5, 0.0), (1e-5, 0.0)):
+        flux = gas + seen * whole
+        deck = slabs(["*GAP LAW, TYPE=GAS", "0.1, 1.E-6", "*GAP RADIATION", "0.8, 0.6", "1., 0.",
+                      f"0., {end!r}"], (1000.0, 400.0), flux)
+        verify = next(i for i, card in enumerate(deck) if card.startswith("*VERIFY"))
+        judge(tmp_path, deck[:verify], [("heat_flux", "FACE", "LAST", flux, 1e-9)])
+
+
+def test_radiation_adds_to_a_table_of_clearances(tmp_path):
+    flux = 700.0 * 600 + SIGMA * (1000.0**4 - 400.0**4) / (1 / 0.8 + 1 / 0.6 - 1)
+    for card in ("*GAP CONDUCTANCE, CLEARANCE", "*GAP CONDUCTANCE"):
+        law = [card, "1400., 0.", "0., 1.E-4", "*GAP RADIATION", "0.8, 0.6"]
+        deck = slabs(law, (1000.0, 400.0), flux)
+        verify = next(i for i, card in enumerate(deck) if card.startswith("*VERIFY"))
+        judge(tmp_path, deck[:verify], [("heat_flux", "FACE", "LAST", flux, 1e-9)])
+
+
 def test_radiation_adds_to_a_gas_in_any_order(tmp_path):
     radiation, gas = ["*GAP RADIATION", "0.8, 0.6"], ["*GAP LAW, TYPE=GAS", "0.1, 1.E-6"]
     flux = 0.1 / (5e-5 + 1e-6) * 600 + SIGMA * (1000.0**4 - 400.0**4) / (1 / 0.8 + 1 / 0.6 - 1)

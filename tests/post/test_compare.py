@@ -195,6 +195,17 @@ def test_the_largest_value_is_that_of_the_time_and_of_b(compare, tmp_path):
     assert [row["passed"] for row in blocks_of(tmp_path)] == ["False", "True"]
 
 
+@pytest.mark.parametrize(("theirs", "status"), [(-3e-9, 0), (3e-8, 1)])
+def test_rounding_equals_rounding(compare, tmp_path, theirs, status):
+    """S12 is measured by the largest stress of all times, here 10."""
+    one = {"time": [1.0, 2.0], "node": [1, 1], "S11": [10.0, 1e-9], "S12": [1e-12, 1e-12]}
+    other = one | {"S11": [10.0, -1e-9], "S12": [2e-12, theirs]}
+    files = [write_csv(tmp_path / f"{n}.csv", each) for n, each in (("a", one), ("b", other))]
+    found, said, _ = compare(*files)
+    assert found == status
+    assert f"S12: {2 - status} rows of rounding in both" in said
+
+
 def test_nan_equals_nan_and_nothing_else(compare, tmp_path):
     nodes = {"node": [1, 2]}
     first = write_csv(tmp_path / "case.csv", nodes | {"T": [np.nan, 3.0]})
@@ -380,7 +391,7 @@ def test_files_that_cannot_be_read_are_named(refused, result, tmp_path):
     cases = {
         "no.vtkhdf": (None, "no such file"),
         "text.vtkhdf": ("hello", "HDF5"),
-        "junk.frd": ("hello\n", "no nodes, or no results"),
+        "junk.frd": ("hello\n", "no nodes, as"),
         "empty.dat": ("", "no line fits"),
         "plain.lst": ("hello\n", "needs --template"),
         "head.csv": ("node,T\n", "a heading and no rows"),

@@ -289,6 +289,18 @@ def test_the_sums_of_a_contact_have_the_time_that_stands_above_them():
     assert [frame[name][row] for name in names] == [5.454499, 1358.579, 115.1010]
 
 
+def test_a_frd_with_a_mesh_alone_has_nothing_to_compare(compare, folder):
+    lines = (CALCULIX / "cylinder.frd").read_text().splitlines(keepends=True)
+    end = next(i for i, line in enumerate(lines) if line.startswith("  100C"))
+    mesh = folder / "mesh.frd"
+    mesh.write_text("".join(lines[:end]))
+    others = (CALCULIX / "cylinder.frd", "--only", "U1", "--block", 1)
+    status, said, _ = compare(folder / "both.vtkhdf", mesh, *others)
+    assert status == 0 and "a mesh without values" in said
+    status, said, error = compare(folder / "both.vtkhdf", mesh)
+    assert status == 2 and "none of the files B has a value to compare" in error
+
+
 def test_a_frd_block_has_only_the_nodes_that_stand_in_it():
     source = from_frd.read(CALCULIX / "disc-part.frd")
     found = {series.quantities[0]: series for series in source.series}

@@ -9,7 +9,7 @@ from ..tables import write_table
 from . import from_csv, from_frd, from_result, mapping, picture, print_file, report
 from .blocks import listed
 from .compare import compare
-from .judge import Tolerance, read_tolerances
+from .judge import Tolerance, floors, read_tolerances
 from .options import check, parser
 from .template import read_template
 
@@ -58,13 +58,19 @@ def run(arguments):
             b = open_source(path, template, stack)
             used += mapping.apply(b, mappings)
             announce("B", b)
+            if not b.series:
+                continue
             blocks = compare(a, b, options)
+            below = floors(blocks)
             for block in blocks:
-                block.judge(tolerances.get(block.quantity, usual), options.mismatches)
+                tolerance = tolerances.get(block.quantity, usual)
+                block.judge(tolerance, options.mismatches, below[block.quantity])
             lines = report.table(blocks, options.all_keys)
             lines += report.remarks(blocks, a, b, options.only)
             print("\n".join(lines))
             compared.append((path, blocks))
+        if not compared:
+            raise UserError("none of the files B has a value to compare")
         check_used(options, mappings, used, tolerances, compared)
         write(a, compared, options)
     passed = all(report.passed(blocks, options.all_keys) for _, blocks in compared)

@@ -37,9 +37,10 @@ def read(path):
     except OSError as reason:
         raise UserError(f"{path}: cannot be read ({reason})") from None
     reader = Reader(path, text.splitlines())
-    if not reader.points or not reader.blocks:
-        raise UserError(f"{path}: no nodes, or no results, as a CalculiX .frd file has them")
-    return Source(str(path), "CalculiX .frd", reader.series())
+    if not reader.points:
+        raise UserError(f"{path}: no nodes, as a CalculiX .frd file has them")
+    notes = [] if reader.blocks else ["a mesh without values: *NODE FILE and *EL FILE write them"]
+    return Source(str(path), "CalculiX .frd", reader.series(), notes)
 
 
 class Reader:

@@ -8,6 +8,9 @@ from ..errors import UserError
 
 KINDS = ("abs", "rel", "block")
 
+# Part of the largest value of a quantity below which values are rounding.
+ROUNDING = 1e-9
+
 
 @dataclass
 class Tolerance:
@@ -45,6 +48,25 @@ def read_tolerances(texts):
     return tolerances
 
 
+def floors(blocks):
+    """Return {quantity: value below which it is rounding}, by the largest of all components and
+    times in both files: S12 of a bar is measured by S11."""
+    largest = {}
+    for block in blocks:
+        for values in () if block.state else (block.a, block.b):
+            values = np.ma.compressed(np.ma.asanyarray(values)).astype(float)
+            finite = np.abs(values[np.isfinite(values)])
+            whole = vector(block.quantity)
+            largest[whole] = max(largest.get(whole, 0.0), float(np.max(finite, initial=0.0)))
+    return {each.quantity: ROUNDING * largest.get(vector(each.quantity), 0.0) for each in blocks}
+
+
+def vector(name):
+    """Return the quantity of which a name is a component: S of S12, U of U1."""
+    base, at, contact = name.partition("@")
+    return base.rstrip("0123456789") + at + contact
+
+
 @dataclass
 class Block:
     """One quantity at one time, or one history: rows of A with B's values beside them."""
@@ -64,8 +86,11 @@ class Block:
     examples: dict = field(default_factory=dict)
     curve: tuple | None = None
 
-    def judge(self, tolerance, mismatches):
-        """Fill in `difference`, `limit`, `outside` and `passed`; rows with a missing value go."""
+    def judge(self, tolerance, mismatches, floor=0.0):
+        """Fill in `difference`, `limit`, `outside` and `passed`; rows with a missing value go.
+
+        Where both values are below `floor` they are rounding, and equal.
+        """
         there = ~(np.ma.getmaskarray(self.a) | np.ma.getmaskarray(self.b))
         self.missing += int((~there).sum())
         if not there.all():
@@ -73,7 +98,10 @@ class Block:
         self.a = np.ma.getdata(self.a)[there].astype(float)
         self.b = np.ma.getdata(self.b)[there].astype(float)
         both_nan = np.isnan(self.a) & np.isnan(self.b)
-        same = both_nan | (self.a == self.b)
+        with np.errstate(invalid="ignore"):
+            rounding = (np.abs(self.a) <= floor) & (np.abs(self.b) <= floor) & (self.a != self.b)
+        self.rounding = int(rounding.sum())
+        same = both_nan | rounding | (self.a == self.b)
         with np.errstate(invalid="ignore"):
             apart = np.where(same, 0.0, np.abs(self.a - self.b))
         self.nan_equal = int(both_nan.sum())

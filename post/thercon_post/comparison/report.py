@@ -112,6 +112,7 @@ def remarks(blocks, a, b, only=None):
         words += counted(group, "ambiguous", "rows at places with several points left out")
         words += counted(group, "missing", "rows with a missing value left out")
         words += counted(group, "nan_equal", "rows NaN in both, taken as equal")
+        words += counted(group, "rounding", "rows of rounding in both, taken as equal")
         lines += [f"  {name}: {'; '.join(words)}"] if words else []
     if only:
         return lines

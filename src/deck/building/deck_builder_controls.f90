@@ -320,8 +320,8 @@ contains
          is_dropped = size(members) > 0
          if (is_dropped) is_dropped = all(context%dropped(members))
       end associate
-      if (is_dropped) call report%warning(parameter_place(card, 'NSET'), 'ORDER=1 leaves no node of '// &
-         mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
+      if (is_dropped) call report%warning(parameter_place(card, 'NSET'), 'ORDER=1 leaves no '// &
+         'node of '//mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
    end function is_dropped
 
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.

@@ -95,7 +95,7 @@ contains
    logical function is_of_clearance(cards, card, has_pressure)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
-      logical, intent(in) :: has_pressure    !! whether another card of the interaction says PRESSURE
+      logical, intent(in) :: has_pressure    !! whether a card of the interaction says PRESSURE
 
       is_of_clearance = has_parameter(card, 'CLEARANCE')
       if (is_of_clearance .or. has_parameter(card, 'PRESSURE')) return
@@ -132,6 +132,7 @@ contains
       logical, intent(in) :: is_open
       real(dp), intent(in) :: columns(:, :)
       type(deck_report_type), intent(inout) :: report
+      integer :: n
 
       if (all(columns <= 0.0_dp)) call report%warning(card%place, 'all conductances of this '// &
          'table of '//name//' are 0: it conducts no heat; the first column of *GAP CONDUCTANCE '// &
@@ -140,6 +141,12 @@ contains
          'the second column of this table of '//name//' is taken as the clearance, as in '// &
          'Abaqus; in CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or '// &
          'PRESSURE if that is meant')
+      if (is_open .or. has_parameter(card, 'PRESSURE')) return
+      n = size(columns, 1)
+      if (any(columns(2:, :) < columns(:n - 1, :))) call report%warning(card%place, &
+         'the conductance of '//name//' falls along the table at some temperature and rises at '// &
+         'others; its second column is taken as the pressure, as in CalculiX; in Abaqus it is '// &
+         'the clearance: write *GAP CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
    end subroutine check_columns
 
    !> Refuses a table that ends at other gaps at other temperatures: between them it would end at

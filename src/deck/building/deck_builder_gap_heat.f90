@@ -141,8 +141,8 @@ contains
       call read_view_factors(cards%data(card%first_data + 1:card%last_data), report, gap, &
          view_factor)
       if (card%last_data > card%first_data .and. view_factor(size(view_factor)) > 0.0_dp) call &
-         context%note('*GAP RADIATION: faces radiate at all clearances, also beyond that of the '// &
-         'last view factor')
+         context%note('*GAP RADIATION: faces radiate at all clearances, also beyond that of '// &
+         'the last view factor')
       if (.not. constants%has_radiation) call report%error(card%place, '*GAP RADIATION needs '// &
          '*PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
       if (law%open_kind == law_none) law%open_kind = law_gas

@@ -106,8 +106,8 @@ contains
          'coordinate are ignored')
    end subroutine build_node
 
-   !> The nodes of elements lie in the plane z = 0, but for rounding. Others may be those of a drawing
-   !> or of a rigid body.
+   !> The nodes of elements lie in the plane z = 0, but for rounding. Others may be those of a
+   !> drawing or of a rigid body.
    subroutine check_heights(cards, context, mesh, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(in) :: context       ! whether the elements are sound
@@ -250,8 +250,8 @@ contains
             if (keyword_of(line) == 'NODE') return
          end associate
       end do
-      if (i > 0) call report%warning(place, 'gmsh calls all elements CPS, plane stress; say what '// &
-         'is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')
+      if (i > 0) call report%warning(place, 'gmsh calls all elements CPS, plane stress; say '// &
+         'what is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')
    end subroutine warn_of_gmsh
 
    subroutine read_element_nodes(data, context, report, nodes, valid)

@@ -210,9 +210,9 @@ contains
             i = findloc(inside, .true., dim=1)
             if (i > 0) call report%error(context%face_places(s)%items(i), 'face S'// &
                to_text(faces(2, i))//' of element '//to_text(mesh%element_number(faces(1, i)))// &
-               ' in surface '//mesh%surfaces(s)%name//' lies inside a body: another element '// &
-               'has its nodes; bodies that touch need nodes of their own there, in gmsh without '// &
-               'BooleanFragments and Coherence'// &
+               ' in surface '//mesh%surfaces(s)%name//' lies inside a body: another '// &
+               'element has its nodes; bodies that touch need nodes of their own there, in '// &
+               'gmsh without BooleanFragments and Coherence'// &
                others(count(inside), '; faces of the surface that do: '))
             deallocate(inside)
          end associate

@@ -4,7 +4,8 @@ module card_lines
       is_keyword, last_text, split_fields, without_quotes
    use card_parameters, only: parameter_text
    use card_slips, only: cut_at_blanks, is_number, lacks_star, mend_commas
-   use cards, only: add_data, add_keyword, add_note, cards_type, extend_data, field_type, keyword_card_type
+   use cards, only: add_data, add_keyword, add_note, cards_type, extend_data, field_type, &
+      keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -65,8 +66,8 @@ contains
             'comments of other programs')
          return
       end if
-      if (is_keyword(line) .or. .not. (is_text .or. self%skips_data)) call suspect_look_alike(line, &
-         image, report)
+      if (is_keyword(line) .or. .not. (is_text .or. self%skips_data)) call &
+         suspect_look_alike(line, image, report)
       if (is_keyword(line) .or. lacks_star(line, title, cards)) then
          call self%finish(cards, report)
          call split_fields(line, image, report, fields)
