@@ -144,9 +144,9 @@ contains
       if (is_open .or. has_parameter(card, 'PRESSURE')) return
       n = size(columns, 1)
       if (any(columns(2:, :) < columns(:n - 1, :))) call report%warning(card%place, &
-         'the conductance of '//name//' falls along the table at some temperature and rises at '// &
-         'others; its second column is taken as the pressure, as in CalculiX; in Abaqus it is '// &
-         'the clearance: write *GAP CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
+         'the conductance of '//name//' falls along the table and rises elsewhere; its '// &
+         'second column is taken as the pressure, as in CalculiX; in Abaqus it is the '// &
+         'clearance: write *GAP CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
    end subroutine check_columns
 
    !> Refuses a table that ends at other gaps at other temperatures: between them it would end at
