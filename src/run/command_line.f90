@@ -56,7 +56,7 @@ module command_line
       '           memory and errors; recommend settings for 10, 1 and 0.1 %; DIR/b.trade.csv', &
       '', &
       '  --out DIR          write results to this folder, created if missing (current folder)', &
-      '  --width N          allow N columns in a card (80)', &
+      '  --width N          allow N columns in a card (256)', &
       '  --set NAME=VALUE   override the value of a *PARAMETER of the deck', &
       '  --quiet            print errors and warnings only', &
       '  --accuracy P%      run: refine the mesh and shorten the increments until the error', &

@@ -181,8 +181,8 @@ module keywords
       advice_type(passed_over, '', 'SECTION CONTROLS/HOURGLASS STIFFNESS', &
          'hourglass control is that of incompatible modes'), &
       advice_type(passed_over, '', 'OUTPUT/ENERGY OUTPUT/INCREMENTATION OUTPUT/INTEGRATED '// &
-         'OUTPUT/INTEGRATED OUTPUT SECTION/MODAL OUTPUT/RADIATION OUTPUT/SURFACE OUTPUT/ENERGY FILE/'// &
-         'MODAL FILE/RADIATION FILE/FILE FORMAT/FILE OUTPUT', &
+         'OUTPUT/INTEGRATED OUTPUT SECTION/MODAL OUTPUT/RADIATION OUTPUT/SURFACE OUTPUT/'// &
+         'ENERGY FILE/MODAL FILE/RADIATION FILE/FILE FORMAT/FILE OUTPUT', &
          'fields are written at every increment'), &
       advice_type(passed_over, '', 'ENERGY PRINT/MODAL PRINT/RADIATION PRINT', &
          'the listing has no such table'), &
