@@ -46,7 +46,7 @@ def draw(result, options):
         style.log_ticks(axis, *sorted(axis.get_view_interval()))
     axes.set_xlabel("CPU time of all rounds, s")
     axes.set_ylabel("bound of the error / target")
-    figure.legend(loc="outside lower center", ncols=2, fontsize=7)
+    figure.legend(**style.BELOW, ncols=2, fontsize=7)
     name = style.file_name(result, "accuracy")
     return style.write(figure, stack_tables(tables), options, name)
 

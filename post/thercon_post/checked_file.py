@@ -1,6 +1,8 @@
 """Opens a result file and makes sure that reading it stays inside it and needs no more memory than
 it has content."""
 
+import os
+
 import h5py
 import numpy as np
 
@@ -17,10 +19,10 @@ def open_checked(path):
     except Exception as reason:  # noqa: BLE001  HDF5 tells a damaged file in many ways
         raise UserError(f"{path}: is not an HDF5 file that can be read ({reason})") from None
     try:
-        links = []
-        file.visititems_links(lambda *link: links.append(link))  # follows hard links alone
-        for name, link in links:
-            check(file, name, link)
+        names = []
+        file.id.links.visit(names.append)  # follows hard links alone
+        for name in map(os.fsdecode, names):
+            check(file, name, file.get(name, getlink=True))
     except UserError as reason:
         file.close()
         raise UserError(f"{path}: {reason}") from None

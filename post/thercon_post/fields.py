@@ -247,8 +247,8 @@ def draw_points(axes, grid, fine, values, look, inside):
         extend = overflow(settled[np.unique(grid.triangles[~hidden])], levels)
         colours, norm = colours_of(quantity, levels)
         filled = axes.tricontourf(grid, settled, levels=levels, cmap=colours, norm=norm, extend=extend)
-        filled.set_edgecolor("face")  # no light seams between the bands of an SVG
-        filled.set_linewidth(0.15)
+        for bands in getattr(filled, "collections", [filled]):
+            bands.set(edgecolor="face", linewidth=0.15)  # no light seams between the bands of an SVG
         lines = {"colors": "black", "linewidths": 0.15, "linestyles": "solid"}
         if len(levels) > 2:
             axes.tricontour(grid, settled, levels=levels[1:-1], **lines)

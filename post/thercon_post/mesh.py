@@ -43,7 +43,7 @@ def draw(result, options):
         style.panel_title(close, "", "b")
     figure.legend(
         handles=legend_handles(cells, contacts),
-        loc="outside lower center",
+        **style.BELOW,
         ncols=4,
         columnspacing=1.4,
     )

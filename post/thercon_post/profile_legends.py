@@ -35,7 +35,7 @@ def add(picture, panels, kinds, overlays):
     if handles:  # outside: within the panels it would lie on curves
         figure = panels[0].figure
         figure.set_figheight(figure.get_figheight() + LEGEND_LINE * -(-len(handles) // COLUMNS))
-        figure.legend(handles=handles, loc="outside upper center", ncols=COLUMNS)
+        figure.legend(handles=handles, **style.ABOVE, ncols=COLUMNS)
     if not several:
         name_zones(picture, panels[0])
 

@@ -22,6 +22,10 @@ SERIES = [BLACK, VERMILION, BLUE, GREEN, ORANGE, SKY]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
 BODY_TINTS = ["#F6E3D0", "#DCE8F2", "#E4EEDC", "#EFE2EE", "#F5F0D0", "#E6E6E6"]
 
+# Places of legends outside the figure, which is written with all that it has.
+BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0)}
+ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
+
 SETTINGS = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",

@@ -95,7 +95,7 @@ def figure_of(trade):
         line[0].set_ylabel("error, %")
     exact = ", ".join(quantity_words(name) for name in trade.exact())
     exact = exact and f"no panel, all errors below {style.number_words(SMALLEST)} %: {exact}"
-    figure.legend(handles=legend(trade), loc="outside lower center", ncols=5, title=exact,
+    figure.legend(handles=legend(trade), **style.BELOW, ncols=5, title=exact,
                   title_fontsize=7.5)
     return figure
 

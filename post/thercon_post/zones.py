@@ -79,7 +79,7 @@ def draw_beside(pictures, overlays):
         if len(parts) == 1 and axes is not panels[0][len(pictures) // 2]:
             axes.set_xlabel(picture.abscissa_label)  # one panel says for all what they leave out
         axes.set_xlabel(axes.get_xlabel().replace("; ", ";\n"))
-    figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=3,
+    figure.legend(handles=list(handles.values()), **style.BELOW, ncols=3,
                   columnspacing=1.4)
     for picture, axes in zip(pictures, panels[0]):
         name_regions(picture, axes)
@@ -117,7 +117,7 @@ class Picture:
         self.settle(axes, self.window(self.draw_panel(axes, overlays)))
         figure.legend(
             handles=self.legend_handles(overlays),
-            loc="outside lower center",
+            **style.BELOW,
             ncols=3,
             columnspacing=1.4,
         )

@@ -228,7 +228,7 @@ def add_legend(figure, a, compared):
         looks = {"marker": style.marker(number), "mfc": "none", "ls": "none"}
         looks["mec"] = style.SERIES[1 + number % 5]
         handles.append(Line2D([], [], label=f"B: {style.plain(short(label))}", **looks))
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
+    figure.legend(handles=handles, **style.BELOW, ncols=min(len(handles), 4))
 
 
 def short(label):
