@@ -5,6 +5,7 @@ import numpy as np
 from . import profile_legends, style
 from .overlay import axis_words, file_parts, read_overlays
 from .profile_legends import EDGES, QUANTITY_LINES
+from .result import UNJUDGED
 from .style import plt
 from .tables import stack_tables
 
@@ -73,6 +74,9 @@ class Picture:
         panels[-1].set_xlim(self.window[0] - room, self.window[1] + room)
         if len(self.rows) == 1:
             figure.supxlabel(self.result.load_words(self.rows[0]), fontsize=8.5)
+        elif not self.result.judged[self.rows].all():
+            numbers = ", ".join(str(row + 1) for row in self.rows if not self.result.judged[row])
+            figure.supxlabel(f"increments {numbers}: {UNJUDGED}", fontsize=8.5)
         return figure
 
     def panel_kinds(self):

@@ -44,6 +44,7 @@ GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "weight")
 # Those that every contact has of its points at the increments, and of its edges.
 STATES = ("pressure", "status")
 EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
+UNJUDGED = "inside a step: the mesh is not refined for this time"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
 ITERATION = ("increment", "iteration", "residual", "g_min", "g_max")
 COMPONENTS = {"displacement": 3, "stress": 4, "principal_stress": 3, "heat_flux": 3}
@@ -209,6 +210,14 @@ class Result:
                                   for key in group[f"bounds/{name}"]} for name in group["bounds"]}
         return found
 
+    @cached_property
+    def judged(self):
+        """Which increments have the accuracy that was requested: those at the ends of steps, with
+        bounds; all where none was requested."""
+        if self.accuracy is None:
+            return np.ones(self.increments, dtype=bool)
+        return np.isin(self.history["time"], numbers(self.file, "errors/time", like=(None,)))
+
     def error_bounds(self, contact, key):
         """Return value, bound and its parts of a quantity of a contact at the last increment; None
         where there are none."""
@@ -291,11 +300,11 @@ class Result:
         return rows or [self.increments - 1]
 
     def load_words(self, row):
-        """Return load and time of a row of /history in words."""
+        """Return load and time of a row of /history in words, and what is not known there."""
         words = self.units.load_value(self.load_label, float(self.history["load"][row]))
-        if self.load_label == "time":
-            return words
-        return f"{words}, time {float(self.history['time'][row]):g}"
+        if self.load_label != "time":
+            words += f", time {float(self.history['time'][row]):g}"
+        return words if self.judged[row] else f"{words}\n({UNJUDGED})"
 
     def row_words(self, row):
         """Return what stands in a file name for a row of /history: its load, and its increment

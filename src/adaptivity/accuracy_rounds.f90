@@ -79,6 +79,7 @@ module accuracy_rounds
    contains
       procedure :: begin_round
       procedure :: follow
+      procedure :: settle
       procedure :: is_reached
       procedure :: conclude
       procedure :: stands_still
@@ -158,6 +159,25 @@ contains
          end associate
       end do
    end subroutine follow
+
+   !> Gives the end of a step the bounds that its targets are judged by.
+   subroutine settle(self, record)
+      class(accuracy_rounds_type), intent(in) :: self
+      type(increment_record_type), intent(inout) :: record
+      integer :: d
+
+      do d = 1, size(self%demands)
+         associate (finding => self%rounds(size(self%rounds))%findings(d, record%step), &
+            errors => record%errors(self%demands(d)%interface), q => self%demands(d)%quantity)
+            if (.not. finding%is_there) cycle
+            errors%mesh(q) = finding%mesh
+            errors%bound(q) = finding%bound
+            if (.not. ieee_is_nan(finding%bound)) errors%why_not(q)%value = ''
+            if (.not. finding%has_limit .and. errors%why_not(q)%value == '') errors%why_not(q)%value &
+               = 'no limit: it grows from mesh to mesh'
+         end associate
+      end do
+   end subroutine settle
 
    !> The bounds of one quantity at the end of a step. Where an edge is the end of the interface
    !> there is nothing to judge.
@@ -287,10 +307,11 @@ contains
    end function over_target
 
    !> Concludes a round: whether another one follows, and why not.
-   subroutine conclude(self, most_rounds, nothing_is_left)
+   subroutine conclude(self, most_rounds, nothing_is_left, is_late)
       class(accuracy_rounds_type), intent(inout) :: self
       integer, intent(in) :: most_rounds
       logical, intent(in) :: nothing_is_left     !! whether there is nothing to refine
+      logical, intent(in) :: is_late             !! whether another round takes longer than is left
       logical :: only_corners_are_missed
 
       call name_idle(self)
@@ -307,6 +328,8 @@ contains
          self%reason = 'the last two came no nearer to the targets'
       else if (nothing_is_left) then
          self%reason = 'there is nothing left to refine'
+      else if (is_late) then
+         self%reason = '--limit leaves no time for another one'
       else if (size(self%rounds) >= most_rounds) then
          self%reason = '*ACCURACY, ROUNDS='//to_text(most_rounds)//' allows no more'
       else

@@ -11,6 +11,7 @@
 module adaptive_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use accuracy_rounds, only: accuracy_rounds_type, finding_type
+   use clock, only: wall_seconds
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use contact_system, only: contact_open
@@ -36,7 +37,9 @@ module adaptive_rounds
    type :: adaptive_rounds_type
       type(accuracy_rounds_type) :: accuracy            !! their findings
       type(variation_type), allocatable :: variation    !! of the deck; unallocated: none
+      real(dp) :: deadline = huge(1.0_dp)               !! when no round begins any more [s]
       real(dp), private :: cpu_start = 0.0_dp           !! CPU seconds of the process before it [s]
+      real(dp), private :: start = 0.0_dp               !! when it began [s]
    contains
       procedure :: solve
       procedure :: solve_increments
@@ -100,6 +103,7 @@ contains
 
       do
          call cpu_time(self%cpu_start)
+         self%start = wall_seconds()
          self%accuracy%goes_on = .false.
          call solver%solve_round(self)
          if (.not. self%accuracy%goes_on) return
@@ -135,6 +139,7 @@ contains
                call self%accuracy%follow(interfaces, record)
                if (record%last_of_step) call indicators%take(model, interfaces, self%accuracy, &
                   record)
+               if (allocated(record%errors)) call self%accuracy%settle(record)
             end if
             call keep_restart(model, simulation, record)
             if (allocated(record%restart)) call estimator%exchange(record%restart)
@@ -167,10 +172,12 @@ contains
          round%elements = size(model%mesh%element_kind)
          round%cpu_seconds = now - self%cpu_start
       end associate
-      ! Whether no other mesh and no other increments would help, is the last argument.
+      ! Whether no other mesh and no other increments would help; whether a round that takes as long
+      ! as this one ends too late.
       call self%accuracy%conclude(model%accuracy%rounds, indicators%halvings == 0 .and. &
          size(indicators%division%point_levels) == 0 .and. &
-         .not. any(indicators%division%levels > 0))
+         .not. any(indicators%division%levels > 0), &
+         2.0_dp*wall_seconds() - self%start > self%deadline)
       if (.not. self%accuracy%goes_on) return
       if (.not. allocated(self%variation)) allocate (self%variation)
       call indicators%add_to(self%variation)

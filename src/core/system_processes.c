@@ -182,6 +182,7 @@ static void take_signal(int number)
    caught = number;
    times = times + 1;
    if (ends == at_once && !is_held) end_by_signal();
+   if (shows_progress && times == 1) put(2, "\r\033[Kending after this increment");
    if (ends != 0 && times == 1) alarm(grace);
 }
 

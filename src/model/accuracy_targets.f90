@@ -1,13 +1,18 @@
 !> The accuracy that a deck or the command line asks for.
 module accuracy_targets
    use kinds, only: dp
+   use text, only: read_real
    implicit none
    private
-   public :: accuracy_target_type, accuracy_request_type, whole_request
+   public :: accuracy_target_type, accuracy_request_type, read_request, whole_request
 
-   !> Quantities that --accuracy bounds, at every interface.
-   character(*), parameter :: usual(4) = [character(13) :: 'normal_force', 'heat_rate', &
-      'peak_pressure', 'edge_contact']
+   !> Quantities that --accuracy bounds at every interface, the usual ones first, and their names
+   !> there.
+   integer, parameter :: usual = 4
+   character(*), parameter :: quantities(6) = [character(13) :: 'normal_force', 'heat_rate', &
+      'peak_pressure', 'edge_contact', 'shear_force', 'edge_stick']
+   character(*), parameter :: short_names(6) = [character(8) :: 'force', 'heat', 'pressure', &
+      'edge', 'shear', 'stick']
 
    !> Bound that the error of a quantity must not exceed at the end of each step.
    type :: accuracy_target_type
@@ -31,11 +36,43 @@ contains
       type(accuracy_target_type), allocatable :: targets(:)
       integer :: i
 
-      allocate (targets(size(usual)))
-      do i = 1, size(usual)
-         targets(i)%quantity = trim(usual(i))
+      allocate (targets(usual))
+      do i = 1, usual
+         targets(i)%quantity = trim(quantities(i))
          targets(i)%bound = bound
       end do
    end function whole_request
+
+   !> Reads a request such as 1%, of the usual quantities, or force=1%,heat=2%; unallocated where it
+   !> is none.
+   pure subroutine read_request(words, targets)
+      character(*), intent(in) :: words
+      type(accuracy_target_type), allocatable, intent(out) :: targets(:)
+      character(:), allocatable :: part, rest
+      real(dp) :: bound
+      integer :: comma, equals, q
+      logical :: valid
+
+      allocate (targets(0))
+      rest = words//','
+      do while (len(rest) > 0)
+         comma = index(rest, ',')
+         part = rest(:comma - 1)
+         rest = rest(comma + 1:)
+         equals = index(part, '=')
+         valid = index(part, '%') == len(part) .and. len(part) > equals + 1
+         if (valid) call read_real(part(equals + 1:len(part) - 1), bound, valid)
+         if (valid) valid = bound > 0.0_dp .and. bound < 100.0_dp
+         q = findloc(quantities == part(:max(equals - 1, 0)) .or. &
+            short_names == part(:max(equals - 1, 0)), .true., dim=1)
+         if (equals == 0) valid = valid .and. size(targets) == 0 .and. len(rest) == 0
+         if (equals > 0) valid = valid .and. q > 0
+         if (.not. valid) deallocate (targets)
+         if (.not. valid) return
+         if (equals == 0) targets = whole_request(bound/100.0_dp)
+         if (equals > 0) targets = [targets, accuracy_target_type(trim(quantities(q)), &
+            bound/100.0_dp)]
+      end do
+   end subroutine read_request
 
 end module accuracy_targets

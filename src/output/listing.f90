@@ -101,7 +101,7 @@ contains
       self%summary_start = len(lines)
       allocate (running(0))
       call append(running, 'not finished: the run is still in progress, or was killed')
-      lines = lines//summary_block(running, size(interfaces))
+      lines = lines//summary_block(running, size(interfaces), size(model%steps))
       call append_to_file(self%descriptor, self%path, lines, error)
       if (allocated(error)) return
       call print_list(self%text%unit, 'DEFAULTS AND IGNORED CARDS', model%notes)
@@ -138,7 +138,7 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
 
-      call self%summary%take(record)
+      call self%summary%take(model, interfaces, record)
       call print_increment(self%text%unit, record)
       do i = 1, size(interfaces)
          call print_interface(self%text%unit, interfaces(i), record%contacts(i))
@@ -286,7 +286,7 @@ contains
       if (size(warnings) > 0) call append(lines, counted(size(warnings), 'warning')// &
          ', see WARNINGS below')
       call self%summary%add_lines(model, interfaces, lines)
-      block = summary_block(lines, size(interfaces))
+      block = summary_block(lines, size(interfaces), size(model%steps))
       call overwrite_in_file(self%descriptor, self%path, self%summary_start, block, error)
       if (allocated(error)) return
       if (allocated(self%draft)) call copy_file(self%draft, self%path, error)

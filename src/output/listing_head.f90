@@ -56,16 +56,16 @@ contains
 
    !> The summary as it is in the file: always as many lines of the same length, so that it can be
    !> written over.
-   pure function summary_block(lines, interfaces) result(block)
+   pure function summary_block(lines, interfaces, steps) result(block)
       type(string_type), intent(in) :: lines(:)
-      integer, intent(in) :: interfaces               !! number of them
+      integer, intent(in) :: interfaces, steps        !! number of each
       character(:), allocatable :: block
       type(summary_type) :: summary
       character(page_width) :: line
       integer :: i
 
       block = ''
-      do i = 1, run_lines + summary%most_lines(interfaces)
+      do i = 1, run_lines + summary%most_lines(interfaces, steps)
          line = ''
          if (i <= size(lines)) line = '   '//lines(i)%value
          block = block//line//new_line('a')

@@ -13,6 +13,7 @@ module progress
 
    real(dp), parameter :: pause_seconds = 0.05_dp  !! between two updates of the line [s]
    integer, parameter :: line_length = 100         !! longest progress line
+   character(*), parameter :: to_end_of_line = achar(27)//'[K'   !! erases what is behind
 
    !> The progress line.
    type :: progress_type
@@ -20,10 +21,12 @@ module progress
       logical, public :: is_shown = .false. !! whether there is a terminal that wants it
       real(dp) :: last_update = 0.0_dp      !! when the line was last drawn [s]
       character(:), allocatable :: last     !! what the last increment came to
-      integer :: length = 0                 !! characters that are on the line
+      integer :: round = 0                  !! of a requested accuracy; 0: none
+      real(dp) :: since = 0.0_dp            !! when its run began [s]
       character(line_length) :: line = ''   !! what is there
    contains
       procedure :: start
+      procedure :: of_round
       procedure :: begin_increment
       procedure :: take
       procedure :: say
@@ -41,6 +44,16 @@ contains
       if (self%is_shown) self%is_shown = is_terminal(2)
       self%last = ''
    end subroutine start
+
+   !> From now on the line tells the round of a requested accuracy and the time since its run began.
+   subroutine of_round(self, round, since)
+      class(progress_type), intent(inout) :: self   !! the line
+      integer, intent(in) :: round
+      real(dp), intent(in) :: since                 !! as wall_seconds [s]
+
+      self%round = round
+      self%since = since
+   end subroutine of_round
 
    !> Shows which increment is being solved, and what the last one came to. The line is drawn some
    !> times a second at most.
@@ -70,34 +83,36 @@ contains
       if (allocated(record%iterations)) self%last = self%last//'  iterations '// &
          to_text(size(record%iterations))
       if (record%cut_backs > 0) self%last = self%last//'  cut-backs '//to_text(record%cut_backs)
-      if (sum(zones) > 0) self%last = self%last//'  I '//to_text(zones(1))//' II '// &
-         to_text(zones(2))//' III '//to_text(zones(3))
+      if (sum(zones) > 0) self%last = self%last//'  open '//to_text(zones(1))//', slip '// &
+         to_text(zones(2))//', stick '//to_text(zones(3))
    end subroutine take
 
    !> Shows a line of words in place of the last one.
    subroutine say(self, words)
       class(progress_type), intent(inout) :: self   !! the line
       character(*), intent(in) :: words             !! what it says
-      integer :: length
+      character(:), allocatable :: line
 
       if (.not. self%is_shown) return
-      length = min(len(words), line_length)
-      if (self%length > 0 .and. self%line == words(:length)) return
-      write (error_unit, '(3a)', advance='no') achar(13), words(:length), &
-         repeat(' ', max(0, self%length - length))
+      line = words
+      if (self%round > 0) line = 'round '//to_text(self%round)//', '// &
+         to_text(nint(wall_seconds() - self%since))//' s: '//words
+      line = line(:min(len(line), line_length))
+      if (self%line == line) return
+      write (error_unit, '(3a)', advance='no') achar(13), line, to_end_of_line
       flush (error_unit)
-      self%length = length
-      self%line = words(:length)
+      self%line = line
    end subroutine say
 
    !> Wipes the line away.
    subroutine clear(self)
       class(progress_type), intent(inout) :: self   !! the line
 
-      if (self%length > 0) then
-         write (error_unit, '(3a)', advance='no') achar(13), repeat(' ', self%length), achar(13)
+      if (self%line /= '') then
+         write (error_unit, '(2a)', advance='no') achar(13), to_end_of_line
+         flush (error_unit)
       end if
-      self%length = 0
+      self%line = ''
    end subroutine clear
 
 end module progress

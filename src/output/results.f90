@@ -11,7 +11,7 @@ module results
    use contact_points, only: contact_points_type
    use due_output, only: fields_are_due
    use errors, only: error_type
-   use file_calls, only: file_identity_type, identity_of
+   use file_calls, only: file_identity_type, identity_of, rename_file
    use result_tables, only: bounded_quantities, bytes_in, flush_sets, result_table_type, &
       write_geometry
    use hdf5_writer, only: end_hdf5, start_hdf5
@@ -44,6 +44,7 @@ module results
       description='total time at the end of the step')
    integer, parameter :: history = 1, convergence = 2   !! tables
    character(*), parameter :: contact_end = '.contact.vtkhdf', end_of_name = '.vtkhdf'
+   character(*), parameter :: earlier = '.earlier'   !! before the end of the name
    integer(long), parameter :: memory_limit = 67108864_long   !! bytes that may wait in memory
 
    !> Writer of the results of one run.
@@ -73,6 +74,7 @@ module results
       procedure :: append
       procedure :: finish
       procedure :: give_up
+      procedure :: set_aside
    end type results_type
 
 contains
@@ -99,6 +101,27 @@ contains
       if (allocated(error)) return
       call self%contact_file%reserve(has_lock, error)
    end subroutine reserve
+
+   !> Gives the files of an earlier run, which this one does not replace, other names.
+   subroutine set_aside(self, path, moved)
+      class(results_type), intent(in) :: self
+      character(*), intent(in) :: path                    !! path of the results without extension
+      logical, intent(out) :: moved                       !! whether there were any
+      character(*), parameter :: ends(3) = [character(len(contact_end)) :: end_of_name, &
+         contact_end, '.sta']
+      type(error_type), allocatable :: error
+      logical :: is_there
+      integer :: i
+
+      moved = .false.
+      if (self%accepted > 0 .or. self%is_draft) return
+      do i = 1, size(ends)
+         inquire (file=path//trim(ends(i)), exist=is_there)
+         if (.not. is_there) cycle
+         call rename_file(path//trim(ends(i)), path//earlier//trim(ends(i)), error)
+         moved = moved .or. .not. allocated(error)
+      end do
+   end subroutine set_aside
 
    !> Prepares the results of a run, whose files are reserved; none is touched yet.
    !> Error: status_internal, when HDF5 does not start.

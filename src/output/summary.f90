@@ -4,6 +4,7 @@ module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated, zone_words
+   use contact_system, only: contact_open, contact_stick
    use interface_quantities, only: is_end_of_face, rises_to_end
    use kinds, only: dp
    use model, only: model_type
@@ -12,7 +13,6 @@ module summary
    use run_summaries, only: or_blank
    use text, only: append, few_digits, percent, string_type, to_text
    use unit_labels, only: unit_label
-   use zone_edges, only: edges_kept
    implicit none
    private
    public :: summary_type, words_of
@@ -21,6 +21,12 @@ module summary
    integer, parameter :: value_width = 13   !! of its value
    integer, parameter :: bound_width = 25   !! and of its bound
    integer, parameter :: field_width = 20   !! of the name of a field's range
+   integer, parameter :: step_width = 400   !! longest line of a step
+   integer, parameter :: step_column = 15   !! columns of each of its numbers
+   character(*), parameter :: step_quantities(3) = [character(13) :: 'normal_force', 'heat_rate', &
+      'peak_pressure']
+   character(*), parameter :: step_head = '  step           time   normal force      heat rate'// &
+      '  peak pressure  closed'
    character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
       'highest temperature', 'heat in', 'heat out']
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
@@ -38,6 +44,7 @@ module summary
       real(dp), allocatable :: heat(:)
       !> Likewise: the largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
+      type(string_type), allocatable :: steps(:)   !! a line for each step and interface; none of one
    contains
       procedure :: take
       procedure :: add_lines
@@ -47,10 +54,17 @@ module summary
 contains
 
    !> Takes an accepted increment.
-   pure subroutine take(self, record)
+   subroutine take(self, model, interfaces, record)
       class(summary_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:)
       type(increment_record_type), intent(in) :: record
+      integer :: i
 
+      if (.not. allocated(self%steps)) allocate (self%steps(0))
+      do i = 1, merge(size(interfaces), 0, record%last_of_step .and. size(model%steps) > 1)
+         call append(self%steps, step_line(interfaces(i), record%contacts(i), record))
+      end do
       self%increment = record%increment
       self%time = record%time
       self%load = record%load
@@ -66,12 +80,37 @@ contains
       end associate
    end subroutine take
 
+   !> An interface at the end of a step.
+   function step_line(points, contact, record) result(line)
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+      type(increment_record_type), intent(in) :: record
+      character(:), allocatable :: line, zone
+      character(step_column) :: columns(size(step_quantities) + 1)
+      real(dp) :: value(1)
+      integer :: k
+
+      columns(1) = to_text(record%time)
+      do k = 1, size(step_quantities)
+         value = contact_values(step_quantities(k), points, contact)
+         columns(k + 1) = to_text(value(1))
+         if (ieee_is_nan(value(1)) .or. (step_quantities(k) == 'heat_rate' .and. &
+            .not. allocated(contact%heat_flux))) columns(k + 1) = '-'
+      end do
+      zone = zone_words('edge_contact', contact)
+      if (zone == '') zone = zones('edge_contact', points, contact)
+      allocate (character(step_width) :: line)
+      write (line, '(i6, *(a))') record%step, adjustr(columns), '  ', points%name, ': ', zone
+      line = trim(line)
+   end function step_line
+
    !> Most lines that there can be.
-   pure integer function most_lines(interfaces)
-      integer, intent(in) :: interfaces   !! number of interfaces
+   pure integer function most_lines(interfaces, steps)
+      integer, intent(in) :: interfaces, steps   !! number of each
 
       most_lines = 1 + interfaces*(1 + size(estimated))
       if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
+      if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
    end function most_lines
 
    !> Adds when that increment was, then each interface with a line for each quantity that it has;
@@ -85,6 +124,10 @@ contains
       integer :: i
 
       if (self%increment == 0) return
+      if (size(self%steps) > 0) call append(lines, step_head)
+      do i = 1, size(self%steps)
+         call append(lines, self%steps(i)%value)
+      end do
       line = 'at '//when(self, or_blank(model%load_label))
       if (model%estimates_errors .and. size(interfaces) > 0 .and. .not. allocated(self%errors)) then
          line = line//', inside a step (errors are bounded at the end of steps)'
@@ -178,31 +221,45 @@ contains
                   ', at an end, where it may have no limit'
             end if
          end if
-         words = words//other_edges(estimated(q)%name, points, self%contacts(i), &
-            values(1))
+         zone = zones(estimated(q)%name, points, self%contacts(i))
+         if (zone /= '' .and. zone_words(estimated(q)%name, self%contacts(i)) == '') words = &
+            words//', '//trim(merge('closed', 'stick ', estimated(q)%name == 'edge_contact'))// &
+            ' '//zone
          call append(lines, words)
       end do
    end subroutine add_quantities
 
-   !> Edges of a zone beside the outermost one, behind a semicolon; nothing where there are none.
-   pure function other_edges(name, points, contact, outermost) result(words)
+   !> The zones that an edge ends, such as 'from 0 to 7.4, width 7.4'; nothing for other quantities.
+   pure function zones(name, points, contact) result(words)
       character(*), intent(in) :: name               ! of a quantity
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
-      real(dp), intent(in) :: outermost
       character(:), allocatable :: words
-      real(dp) :: edges(edges_kept)
+      real(dp), allocatable :: ends(:)
+      logical :: is_in(size(points%arc_length))
       integer :: k
 
       words = ''
-      if (index(name, 'edge_') /= 1) return
-      edges = contact_values('edges_'//name(6:), points, contact)
-      do k = 1, size(edges)
-         if (ieee_is_nan(edges(k))) exit
-         if (abs(edges(k) - outermost) > 0.0_dp) words = words//', '//to_text(edges(k))
+      if (name == 'edge_contact') then
+         is_in = contact%contact_state /= contact_open
+         ends = contact%edges_contact
+      else if (name == 'edge_stick') then
+         is_in = contact%contact_state == contact_stick
+         ends = contact%edges_stick
+      else
+         return
+      end if
+      associate (s => points%arc_length)
+         ends = pack(ends, .not. ieee_is_nan(ends))
+         if (is_in(1)) ends = [s(1), ends]
+         if (is_in(size(s)) .and. mod(size(ends), 2) == 1) ends = [ends, s(size(s))]
+      end associate
+      do k = 2, size(ends), 2
+         words = words//', from '//to_text(ends(k - 1))//' to '//to_text(ends(k))//', width '// &
+            to_text(ends(k) - ends(k - 1))
       end do
-      if (words /= '') words = '; also at'//words(2:)
-   end function other_edges
+      words = words(3:)
+   end function zones
 
    !> Whether the deck has a quantity: heat that it solves, friction in this interface.
    pure logical function is_had(quantity, model, i, contact)

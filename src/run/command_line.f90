@@ -1,9 +1,10 @@
 !> The command line: what is to be done with which decks.
 module command_line
+   use accuracy_targets, only: accuracy_target_type, read_request
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use spelling, only: nearest_known
-   use text, only: append, percent, read_integer, read_real, split_words, string_type
+   use text, only: append, read_integer, read_real, split_words, string_type
    implicit none
    private
    public :: command_type, read_command, settings_in_words, usage
@@ -30,17 +31,19 @@ module command_line
       logical :: quiet = .false.                      !! --quiet
       integer :: jobs = 1                             !! --jobs, decks or rows at a time
       logical :: is_batch = .false.                   !! run: several decks, or --jobs
-      real(dp) :: limit = 30.0_dp                     !! --limit, CPU seconds of a row [s]
-      real(dp) :: accuracy = 0.0_dp                   !! --accuracy, a part of the values; 0: none
+      !> --limit: CPU seconds of a row, seconds of the rounds of a run [s]; 0: none is given
+      real(dp) :: limit = 0.0_dp
+      type(accuracy_target_type), allocatable :: targets(:)   !! --accuracy; unallocated: none
+      character(:), allocatable :: accuracy           !! the same as given; empty: none
       character(:), allocatable :: restart            !! --restart, path of a result; empty: none
       real(dp), allocatable :: restart_time           !! its time, where one is given [time]
       logical :: resumes = .false.                    !! --resume
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(38) = [character(88) :: &
+   character(*), parameter :: usage(41) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
-      '                           [--quiet] [--accuracy P%] [--resume]', &
+      '                           [--quiet] [--accuracy P%] [--limit SECONDS] [--resume]', &
       '                           [--restart RESULT[@TIME]]', &
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
@@ -61,12 +64,15 @@ module command_line
       '  --quiet            print errors and warnings only', &
       '  --accuracy P%      run: refine the mesh and shorten the increments until the error', &
       '                     bounds of force, heat rate, peak pressure, edge of contact', &
-      '                     are within P per cent; replaces *ACCURACY', &
+      '                     are within P per cent; replaces *ACCURACY; with names only', &
+      '                     those: force=1%,heat=2% (also pressure, edge, shear, stick)', &
       '  --restart RESULT   go on from the last state that *RESTART, WRITE kept in this result,', &
       '                     or with RESULT@TIME from that at a time', &
       '  --resume           run: skip decks whose results are finished; go on with others from', &
       '                     the last state that their results keep, or from the start', &
-      '  --limit SECONDS    trade: skip rows that would take more CPU time (30)', &
+      '  --limit SECONDS    run: end the rounds of --accuracy in this time with the last whole', &
+      '                     one, after the first in any case;', &
+      '                     trade: skip rows that would take more CPU time (30)', &
       '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)', &
       '', &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,', &
@@ -91,6 +97,7 @@ contains
       allocate (command%decks(0), command%settings(0))
       command%folder = '.'
       command%restart = ''
+      command%accuracy = ''
       if (command_argument_count() == 0) return
       word = argument(1)
       select case (word)
@@ -188,7 +195,7 @@ contains
          command%action == command_check .and. word == '--jobs' .or. &
          command%action /= command_run .and. word == '--accuracy' .or. &
          command%action == command_trade .and. word == '--restart' .or. &
-         command%action /= command_trade .and. word == '--limit') then
+         command%action == command_check .and. word == '--limit') then
          call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
          return
       end if
@@ -222,16 +229,17 @@ contains
          if (.not. valid .or. command%jobs < 1) call set_error(error, status_deck, &
             'option --jobs needs a whole number of at least 1, not '//value)
       case ('--accuracy')
-         valid = index(value, '%') == len(value) .and. len(value) > 1
-         if (valid) call read_real(value(:len(value) - 1), command%accuracy, valid)
-         command%accuracy = command%accuracy/100.0_dp
-         if (.not. valid .or. command%accuracy <= 0.0_dp .or. command%accuracy >= 1.0_dp) call &
-            set_error(error, status_deck, 'option --accuracy needs a percentage above 0% and '// &
-            'below 100%, such as 1%, not '//value)
+         command%accuracy = value
+         call read_request(value, command%targets)
+         if (.not. allocated(command%targets)) call set_error(error, status_deck, &
+            'option --accuracy needs a percentage above 0% and below 100%, such as 1%, or those '// &
+            'of quantities, such as force=1%,heat=2% (force, heat, pressure, edge, shear, '// &
+            'stick), not '//value)
       case ('--limit')
-         call read_real(value, command%limit, valid)
+         call read_real(value(:len(value) - merge(1, 0, index(value, 's') == len(value))), &
+            command%limit, valid)
          if (.not. valid .or. command%limit <= 0.0_dp) call set_error(error, status_deck, &
-            'option --limit needs a number of seconds above 0, not '//value)
+            'option --limit needs a number of seconds above 0, such as 60s, not '//value)
       case ('--out')
          command%folder = value
          if (len(value) > 1 .and. index(value, '/', back=.true.) == len(value)) then
@@ -283,8 +291,8 @@ contains
       do i = 1, size(command%settings)
          words = words//' --set '//command%settings(i)%value
       end do
-      if (command%accuracy > 0.0_dp) words = words//' --accuracy '//percent(command%accuracy)
-      words = adjustl(words)
+      if (command%accuracy /= '') words = words//' --accuracy '//command%accuracy
+      words = trim(adjustl(words))
    end function settings_in_words
 
    !> An argument without trailing blanks of its buffer.

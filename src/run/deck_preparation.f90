@@ -1,9 +1,8 @@
 !> One deck from its cards to a run that can start, or to what is wrong with it.
 module deck_preparation
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use accuracy_targets, only: whole_request
    use cards, only: cards_type
-   use command_line, only: command_type
+   use command_line, only: command_run, command_type
    use contact_definitions, only: pairing_surfaces
    use connections, only: connections_type, contact_laws_type, laws_of_step
    use contact_quantities, only: estimated
@@ -126,14 +125,19 @@ contains
       ! Without the result that it goes on from there is no model.
       if (reads_restart(deck%cards)) return
       call build_model(deck%cards, verifiable, estimated, deck%model, deck%report)
-      if (command%accuracy <= 0.0_dp .or. deck%report%has_errors()) return
+      if (deck%report%has_errors()) return
+      if (command%limit > 0.0_dp .and. command%action == command_run .and. .not. &
+         (allocated(command%targets) .or. allocated(deck%model%accuracy%targets))) call &
+         deck%report%error(deck%cards%last, '--limit ends the rounds of a requested accuracy, '// &
+         'and none is requested; add --accuracy or *ACCURACY, or leave it out')
+      if (.not. allocated(command%targets)) return
       deck%model%steps%restart_frequency = 0
       ! Targets of --accuracy replace those of the deck.
       if (unbounded(deck%model) /= '') call deck%report%error(deck%cards%last, &
          'a requested accuracy needs bounds of errors, which do not know '// &
          unbounded(deck%model)//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
       deck%model%estimates_errors = .true.
-      deck%model%accuracy%targets = whole_request(command%accuracy)
+      deck%model%accuracy%targets = command%targets
       if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &
          'the deck has no *CONTACT PAIR: there is no quantity whose accuracy could be requested')
    end subroutine read_model

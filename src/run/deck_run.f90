@@ -1,6 +1,7 @@
 !> One deck to its results, and the end of a run that comes early: by a signal, an error or a lack
 !> of memory.
 module deck_run
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use adaptive_rounds, only: adaptive_rounds_type, round_solver_type
    use blas_lapack, only: reserve_blas_memory
    use clock, only: wall_seconds
@@ -17,13 +18,12 @@ module deck_run
       run_end_type
    use kinds, only: dp
    use load_histories, only: step_clock_type
-   use messages, only: print_error
+   use messages, only: print_error, print_line
    use model, only: model_type
    use records, only: increment_record_type
    use restarts, only: go_on
    use run_description, only: describe_run
    use run_output, only: run_output_type
-   use run_summaries, only: or_blank
    use run_summaries, only: or_blank
    use text, only: append, counted, string_type, to_text
    use utf8, only: printable
@@ -46,6 +46,8 @@ module deck_run
       type(simulation_type), pointer :: simulation => null()
       type(run_output_type), pointer :: output => null()
       logical :: is_written = .true.          !! whether the output went well
+      real(dp) :: since = 0.0_dp              !! when the run began [s]
+      real(dp) :: deadline = huge(1.0_dp)     !! when a later round ends [s]
    contains
       procedure :: solve_round
       procedure :: take
@@ -73,6 +75,9 @@ contains
       outcome%path = path
       allocate (outcome%failed_checks(0))
       call reserve_blas_memory()
+      self%since = since
+      if (command%limit > 0.0_dp) self%deadline = since + command%limit
+      rounds%deadline = self%deadline
       call rounds%solve(self)
       if (size(outcome%failed_checks) > 0) then
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
@@ -117,6 +122,7 @@ contains
          end if
          associate (goes_on => rounds%accuracy%goes_on)
             goes_on = goes_on .and. outcome%status == status_ok
+            call output%progress%clear()
             call output%listing%close(keeps_lock=goes_on)
          end associate
          call simulation%release()
@@ -152,6 +158,8 @@ contains
          if (.not. (allocated(error) .or. is_later)) call reserve_files(self, error)
          if (.not. allocated(error)) then
             call self%output%progress%start(self%command%quiet)
+            if (allocated(self%model%accuracy%targets)) call self%output%progress%of_round( &
+               self%output%kept_round + 1, self%since)
             call self%output%progress%say('assembling')
             call self%simulation%assemble(self%model)
             call self%output%progress%say('reducing')
@@ -249,6 +257,7 @@ contains
                error%status = status_no_convergence
             end if
             call output%fail(error%message, record)
+            call tell_of_earlier(self)
             call outcome%note(record, output%results%accepted, output%written())
             if (output%kept_round > 0) return
          end if
@@ -275,6 +284,8 @@ contains
 
       call prepare_end(self, end_after_grace)
       call check_signals(self, error)
+      if (.not. allocated(error) .and. self%output%kept_round > 0 .and. &
+         wall_seconds() > self%deadline) call set_error(error, status_verify, '--limit is over')
       if (.not. allocated(error)) call self%output%progress%begin_increment( &
          self%simulation%control%increments + 1, self%simulation%control%planned(self%model))
    end subroutine begin_increment
@@ -402,12 +413,25 @@ contains
       end associate
    end function kept_words
 
+   !> Sets results of an earlier run aside and says so.
+   subroutine tell_of_earlier(self)
+      type(deck_run_type), intent(inout) :: self
+      character(:), allocatable :: path
+      logical :: moved
+
+      path = results_of(self%path, self%command)
+      call self%output%results%set_aside(path, moved)
+      if (moved) call print_line(error_unit, self%path//': note: the results of an earlier run '// &
+         'are in "'//path//'.earlier.vtkhdf"')
+   end subroutine tell_of_earlier
+
    !> Prints why a run ended early. That a later round did is no mistake of the deck.
    subroutine report_failure(self, error, is_told)
       type(deck_run_type), intent(inout) :: self
       type(error_type), intent(inout) :: error           ! in: what went wrong; out: as in outcome
       logical, intent(in) :: is_told                     ! whether the reason is printed already
       character(:), allocatable :: words
+      logical :: is_there
 
       words = error%message
       if (error%status == status_no_convergence) words = words//'; the listing shows the iterations'
@@ -423,6 +447,9 @@ contains
          call self%outcome%fail(error)
          call self%output%progress%clear()
          if (kept_round > 0 .or. .not. is_told) call print_error(self%path, words)
+         inquire (file=results_of(self%path, self%command)//'.vtkhdf', exist=is_there)
+         if (kept_round == 0 .and. is_told .and. is_there) call print_line(error_unit, self%path// &
+            ': note: "'//results_of(self%path, self%command)//'.vtkhdf" is of an earlier run')
       end associate
    end subroutine report_failure
 

@@ -42,6 +42,7 @@ module deck_trade
    public :: trade_deck
 
    integer, parameter :: most_nodes = 2000     !! whose temperatures are compared
+   real(dp), parameter :: usual_limit = 30.0_dp  !! --limit, unless given [s]
    real(dp), parameter :: growth = 4.0_dp      !! of elements from one mesh to the next
    real(dp), parameter :: unknown = 1.0e300_dp !! seconds of a row whose coarser one is left out
 
@@ -71,6 +72,7 @@ module deck_trade
       integer, allocatable :: nodes(:)            !! numbers of nodes whose temperature is compared
       type(row_values_type) :: found              !! values of the row
       type(variation_type) :: variation           !! the row
+      real(dp) :: accuracy = 0.0_dp               !! that it requests; 0: none
    contains
       procedure :: execute
    end type row_task_type
@@ -183,7 +185,7 @@ contains
       do contact_level = 0, merge(most, 0, size(model%contacts) > 0)
          do level = 0, most - contact_level
             call mesh_rows(model, highest, level, contact_level, rows)
-            call leave_out_expensive(runs(1)%task%command%limit, trade, rows)
+            call leave_out_expensive(limit_of(runs(1)%task%command), trade, rows)
             call measure_rows(runs, progress, rows, error)
             trade%rows = [trade%rows, rows]
             if (allocated(error)) return
@@ -194,6 +196,13 @@ contains
       trade%rows = [trade%rows, rows]
       call progress%clear()
    end subroutine measure
+
+   !> CPU seconds that a row may take [s].
+   pure real(dp) function limit_of(command)
+      type(command_type), intent(in) :: command
+
+      limit_of = merge(command%limit, usual_limit, command%limit > 0.0_dp)
+   end function limit_of
 
    !> Leaves out the rows that would cost too much, but never the deck as written; rows on meshes
    !> even finer than those are not named.
@@ -248,7 +257,7 @@ contains
                if (run%row > 0 .or. next > size(rows)) cycle
                run%row = next
                run%task%variation = rows(next)%variation
-               run%task%command%accuracy = rows(next)%accuracy
+               run%task%accuracy = rows(next)%accuracy
                next = next + 1
                call progress%say('level '//to_text(run%task%variation%levels)//', row '// &
                   to_text(run%row)//' of '//to_text(size(rows)))
@@ -280,7 +289,7 @@ contains
       integer :: i
 
       associate (figures => self%task%found%figures)
-         longest = max(patience*self%task%command%limit, least_patience)
+         longest = max(patience*limit_of(self%task%command), least_patience)
          if (self%child%has_ended()) then
             report = self%child%report()
             call self%child%drop_files()
@@ -361,10 +370,10 @@ contains
       call prepare_deck(self%path, self%command, self%deck, model, simulation, error, &
          rounds%variation)
       if (allocated(error)) return
-      model%estimates_errors = self%command%accuracy > 0.0_dp
+      model%estimates_errors = self%accuracy > 0.0_dp
       model%steps%restart_frequency = 0
       if (allocated(model%accuracy%targets)) deallocate (model%accuracy%targets)
-      if (model%estimates_errors) model%accuracy%targets = whole_request(self%command%accuracy)
+      if (model%estimates_errors) model%accuracy%targets = whole_request(self%accuracy)
       call index%build(model%mesh%node_number)
       self%found%nodes = [(index%find(self%nodes(i)), i=1, size(self%nodes))]
       self%found%figures(:, 2) = 0.0_dp

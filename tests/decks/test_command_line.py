@@ -5,6 +5,7 @@ import re
 import subprocess
 
 import h5py
+import numpy as np
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import CYLINDER, INPUT, PROGRAM, copy_deck, run
@@ -228,8 +229,8 @@ def test_a_summary_tells_zones_without_an_edge(tmp_path):
     bounds = (tmp_path / "press_fit.lst").read_text().split("BOUNDS OF THE ERRORS OF SEAT")[1].split("\n\n")[0]
     assert "peak pressure" in bounds and "edge" not in bounds
     pellets = run("run", pellets_without_tables(tmp_path), "--out", tmp_path).stdout
-    assert re.search(r"\n    edge of contact +10 +mm, up to an end of the face; also at 9.65\n", pellets)
-    assert re.search(r"\n    edge of contact +0.51\d+ \+- .* mm\n", pellets)
+    assert re.search(r"\n    edge of contact +10 +mm, up to an end of the face, closed from 9.65\d* to 10, width 0.3\d*\n", pellets)
+    assert re.search(r"\n    edge of contact +0.51\d+ \+- .* mm, closed from 0 to 0.51\d+, width 0.51\d+\n", pellets)
     assert "edge of stick" not in press_fit, "there is no friction"
     rods = run("run", INPUT / "rods" / "r2.inp", "--out", tmp_path).stdout
     assert re.search(r"\n    edge of contact +none \(open\)\n", rods)
@@ -259,7 +260,7 @@ def test_a_summary_tells_the_interface_then_the_results_then_what_failed(tmp_pat
     for line, (name, value), unit, bound in zip(lines[3:9], expected.items(), units, bounds, strict=True):
         assert line[4:21].strip() == name
         assert float(line[21:34]) == pytest.approx(value, rel=1e-5)
-        assert line.endswith(" " + unit)
+        assert line.split(",")[0].endswith(" " + unit)
         assert float(line.split("+-")[1].split()[0]) == pytest.approx(bound, rel=0.05)
     assert lines[9].startswith("  results: ")
     assert lines[9].endswith("cylinder.vtkhdf, .contact.vtkhdf, .lst, .sta, .cvg")
@@ -335,4 +336,46 @@ def test_a_summary_tells_all_edges_of_a_zone(tmp_path):
             outermost = face["edge_stick"][-1]
             (other,) = (edge for edge in face["edges_stick"][-1][:2] if edge != outermost)
             end = ", up to an end of the face" if outermost == face["s"][-1] else ""
-            assert re.search(rf"\n    edge of stick +{outermost:g} .* mm{end}; also at {other:g}\n", said)
+            zone = f"stick from {other:g} to {outermost:g}, width {outermost - other:g}"
+            assert re.search(rf"\n    edge of stick +{outermost:g} .* mm{end}, {zone}\n", said)
+
+
+def test_a_summary_has_a_line_for_each_step_and_interface(tmp_path):
+    """With what the interface was at the end of the step, in the listing, too."""
+    said = run("run", INPUT / "examples" / "turbine_joint.inp", "--out", tmp_path).stdout
+    lines = [line.split() for line in said.splitlines() if line.endswith("whole face") and ":" in line]
+    with h5py.File(tmp_path / "turbine_joint.vtkhdf") as file:
+        times = file["history/time"][()]
+        for line, (step, name) in zip(lines, [(1, "UPPER"), (1, "LOWER"), (2, "UPPER"), (2, "LOWER")],
+                                      strict=True):
+            face, row = file[f"contact/{name}"], np.flatnonzero(times <= step)[-1]
+            assert (int(line[0]), float(line[1]), line[5]) == (step, times[row], name + ":")
+            assert float(line[2]) == pytest.approx(face["normal_force"][row], rel=1e-5)
+            assert float(line[4]) == pytest.approx(face["pressure"][row].max(), rel=1e-5)
+            assert (line[3] == "-") == (step == 1)
+    listing = (tmp_path / "turbine_joint.lst").read_text()
+    assert listing.count("LOWER: whole face") == 2
+    assert "  step  " not in run("run", INPUT / "examples" / "press_fit.inp", "--out", tmp_path).stdout
+
+
+def test_results_of_an_earlier_run_are_set_aside_or_named(tmp_path):
+    """A run that fails before its first increment leaves nothing that a picture takes for its own;
+    one that finds a mistake touches nothing, but says what is there."""
+    for path in (INPUT / "rods").iterdir():
+        (tmp_path / path.name).write_text(path.read_text())
+    deck = tmp_path / "r2.inp"
+    assert run("run", deck, "--out", tmp_path).returncode == 0
+    kept = (tmp_path / "r2.vtkhdf").read_bytes()
+    good = deck.read_text()
+    deck.write_text(good.replace("*COUPLED", "*COUPLD"))
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 1 and (tmp_path / "r2.vtkhdf").read_bytes() == kept
+    assert f'note: "{tmp_path}/r2.vtkhdf" is of an earlier run' in process.stderr
+    assert "note:" not in run("check", deck).stderr
+    deck.write_text(good.replace("METHOD=NEWTON", "METHOD=PICARD"))
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 2
+    assert f'note: the results of an earlier run are in "{tmp_path}/r2.earlier.vtkhdf"' in process.stderr
+    assert {path.name for path in tmp_path.glob("r2.*")} == {"r2.inp", "r2.lst", "r2.cvg", *(
+        f"r2.earlier.{end}" for end in ("vtkhdf", "contact.vtkhdf", "sta"))}
+    assert (tmp_path / "r2.earlier.vtkhdf").read_bytes() == kept

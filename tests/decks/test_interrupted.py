@@ -2,6 +2,7 @@
 
 import os
 import pty
+import re
 import signal
 import subprocess
 import time
@@ -13,7 +14,7 @@ import h5py
 import numpy as np
 import pytest
 import test_rods as rods
-from deck_runs import COUPLED, CYLINDER, PROGRAM, copy_deck, solve
+from deck_runs import COUPLED, CYLINDER, HERTZ, PROGRAM, copy_deck, solve
 
 INCREMENTS, BEFORE = 200000, 100   # more than are solved while a test waits
 AT_MOST = 5.0    # CPU seconds that a run goes on behind a signal, however busy the machine is
@@ -166,6 +167,25 @@ def test_a_signal_ends_a_run_that_reduces_its_bodies(tmp_path):
     os.close(reader)
     assert earlier.read_text() == "of an earlier run"
     assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_a_terminal_shows_the_round_and_answers_a_signal_at_once(tmp_path):
+    """One line that is written over, with the time, and states in words; it is gone at the end."""
+    reader, writer = pty.openpty()
+    process = subprocess.Popen([PROGRAM, "run", str(HERTZ), "--accuracy", "0.001%", "--out", str(tmp_path)],
+                               stdout=writer, stderr=writer)
+    os.close(writer)
+    shown = read_terminal(reader, "\rround 2, ")
+    assert re.search(r"\rround 1, \d+ s: increment \d of 4  load [0-9.]+  open \d+, slip \d+, stick 0\x1b\[K",
+                     shown)
+    process.send_signal(signal.SIGINT)
+    rest = read_terminal(reader)
+    assert process.wait(timeout=PATIENCE) == 5
+    os.close(reader)
+    assert "error: ended by SIGINT in round 2" in rest and "the results are those of round 1" in rest
+    assert "  results: " in rest and rest.rstrip().endswith("12 checks passed, 0 failed")
+    assert all(line == "" or line.endswith("\x1b[K") or "\x1b[K" not in line
+               for line in rest.split("\r") if "round 2," in line)
 
 
 def test_a_batch_names_no_results_of_a_deck_that_wrote_none(tmp_path):

@@ -241,8 +241,47 @@ def test_options_that_say_nothing_are_refused(tmp_path, arguments):
 def test_a_percentage_out_of_range_is_refused_with_its_limits(tmp_path, value):
     process = run("run", HERTZ, "--accuracy", value, folder=tmp_path)
     assert process.returncode == 1 and not list(tmp_path.iterdir())
-    assert "--accuracy needs a percentage above 0% and below 100%, such as 1%, not " \
-        f"{value}\n" in process.stderr
+    assert "--accuracy needs a percentage above 0% and below 100%, such as 1%, or those of " in process.stderr
+    assert process.stderr.endswith(f", not {value}\n")
+
+
+def test_named_quantities_have_targets_of_their_own(tmp_path):
+    process = run("run", HERTZ, "--accuracy", "force=1%,peak_pressure=20%", "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    told = re.findall(r"^     FACE (.*?)  +met: .*, target (.*)$", process.stdout, flags=re.M)
+    assert told == [("normal force", "1 %"), ("peak pressure", "20 %")]
+    with h5py.File(tmp_path / "hertz.vtkhdf") as file:
+        assert file["run"].attrs["settings"] == "--accuracy force=1%,peak_pressure=20%"
+
+
+def test_a_time_limit_ends_the_rounds_with_the_last_whole_one(tmp_path):
+    """Between two rounds or within one; the first is always whole. It needs a request."""
+    began = time.monotonic()
+    process = run("run", HERTZ, "--accuracy", "0.001%", "--limit", "1s", "--out", tmp_path)
+    assert time.monotonic() - began < 15.0
+    assert process.returncode == 4 and "--limit" in process.stderr
+    with h5py.File(tmp_path / "hertz.vtkhdf") as file:
+        assert not file["accuracy"].attrs["reached"] and file["run"].attrs["verify_passed"] == 12
+    process = run("run", HERTZ, "--accuracy", "0.001%", "--limit", "0.001", "--out", tmp_path)
+    assert process.returncode == 4
+    assert "not reached after 1 round: --limit leaves no time for another one" in process.stderr
+    process = run("run", HERTZ, "--limit", "1s", "--out", tmp_path / "none")
+    assert process.returncode == 1 and "--limit ends the rounds of a requested" in process.stderr
+
+
+@pytest.mark.parametrize("name", ["brake_pad", "roller", "press_fit"])
+def test_a_number_has_one_verdict(tmp_path, name):
+    """The bound in the summary is the one that its target is judged by."""
+    process = run("run", INPUT / "examples" / f"{name}.inp", "--accuracy", "5%", "--out", tmp_path)
+    met = set(re.findall(r"^     \S+ (.*?)  +met: ", process.stdout, flags=re.M))
+    unsure = set(re.findall(r"^    (\S.*?)  +\S+ \(uncertain\)", process.stdout, flags=re.M))
+    assert met and not met & unsure
+    with h5py.File(tmp_path / f"{name}.vtkhdf") as file:
+        for face, targets in file["accuracy/bounds"].items():
+            for key, rows in targets.items():
+                step, value, bound, _ = rows[-1]
+                if step == len(file["errors/time"]):
+                    np.testing.assert_array_equal(file[f"errors/{face}/{key}"][-1, :2], [value, bound])
 
 
 def test_a_deck_without_contact_has_nothing_to_request(tmp_path):
@@ -356,7 +395,7 @@ def test_an_edge_that_a_finer_mesh_does_not_have_is_uncertain(tmp_path):
     deck.write_text(text.replace("1., 1.\n", "0.25, 1.\n").replace("A.LEFT, 1\n", "").replace(
         "A.TOP, 2, 2, -0.01", "A.TOP, 2, 2, -0.01\nA.TOP, 1, 1, -0.001"))
     process = run("run", deck, "--out", tmp_path)
-    assert re.search(r"\n    edge of stick .*\(uncertain\): a finer mesh has no such edge; also at 0.375\n",
+    assert re.search(r"\n    edge of stick .*\(uncertain\): a finer mesh has no such edge, stick from 0.375 to ",
                      process.stdout), process.stdout
     assert "\n    uncertain: a finer mesh has no such edge\n" in deck.with_suffix(".lst").read_text()
 

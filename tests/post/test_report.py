@@ -22,6 +22,7 @@ from thercon_post.report.cli import main  # noqa: E402
 from thercon_post.report.data import kept_steps  # noqa: E402
 from thercon_post.report.listing import read_listing  # noqa: E402
 from thercon_post.report.tables import remark, target_cells  # noqa: E402
+from thercon_post.result import Result  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -409,6 +410,7 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
         bounds["normal_force"] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 0.25, 0.1]]
         bounds["peak_pressure"] = [[1, 5000.0, 1320.0, 0.1], [1, 5.1, 0.1, 0.1]]
         bounds["heat_rate"] = np.zeros((2, 4))
+        file["errors/time"] = [900.0]
 
     text = synthetic(ask).read_text()
     assert "<dd>not reached after 2 rounds; round 3 was begun</dd>" in text
@@ -423,6 +425,25 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
     assert rows[2][1:4] == ["1300", "0.1", "0.1"] and ">met<" in rows[2][-1]
     assert "<dd>12.50 s in round 2; all rounds took 0.42 CPU seconds</dd>" in text
     assert "Rounds of the" not in synthetic().read_text()
+
+
+def test_increments_that_no_bound_judges_say_so(synthetic, browser, tmp_path):
+    """On the page and in pictures: a requested accuracy looks at the ends of steps."""
+    def ask(file):
+        group = file.create_group("accuracy")
+        for key in ("cpu_seconds", "unknowns", "elements", "increments"):
+            group[key] = [1]
+        group.create_group("bounds")
+        file["errors/time"] = [900.0]
+
+    browser.open(synthetic(ask))
+    note = "return document.getElementById('unjudged').textContent"
+    assert browser.run(note) == ""
+    browser.press("#load", "left")
+    assert browser.run(note).startswith("Increment 14 is inside a step")
+    with Result(tmp_path / "case.vtkhdf") as opened:
+        assert opened.load_words(13).endswith("(inside a step: the mesh is not refined for this time)")
+        assert "step" not in opened.load_words(14)
 
 
 def test_a_target_that_is_missed_by_little_shows_it():

@@ -9,7 +9,7 @@ from ..courses import HEAT
 from ..field_colours import PRINCIPAL, SIGNED
 from ..cells import CORNERS
 from ..fields import TITLES, USUAL, apart_words, touches_after_a_gap
-from ..result import CELL_FIELDS, FIELD_SOURCES, words_of
+from ..result import CELL_FIELDS, FIELD_SOURCES, UNJUDGED, words_of
 from ..style import matplotlib
 
 FIELD_NUMBERS = 1_400_000  # numbers of all fields together: at most 3.7 MB of text
@@ -70,6 +70,8 @@ def loads(result):
         "unit": plain(result.units.load_unit()),
         "values": load.tolist(),
         "times": result.history["time"].tolist(),
+        "judged": result.judged.tolist(),
+        "unjudged": UNJUDGED,
         # A load that turns would draw loading and unloading over each other.
         "axis": plain(result.units.load_label(result.load_label)) if rises else "Time",
         "rises": rises,

@@ -130,6 +130,7 @@ const loadWords = k => `${data.load.label} ${show(data.load.values[k])} ${data.l
 function tellLoad() {
    const time = data.load.label === 'time' ? '' : `, time ${show(times[row])}`;
    $('now').textContent = `${row + 1} of ${count}: ${loadWords(row)}${time}`;
+   $('unjudged').textContent = data.load.judged[row] ? '' : `Increment ${row + 1} is ${data.load.unjudged}, so tractions may scatter.`;
    $('load').setAttribute('aria-valuetext', $('now').textContent);
 }
 

@@ -103,7 +103,8 @@ def load_bar(result):
 <label for="load">{what}</label>
 <input type="range" id="load" min="{first}" max="{last}" step="{step}" value="{last}">
 <output id="now" for="load"></output>
-</form>""", what=what, first=first, last=last, step=step)
+</form>
+<p id="unjudged" class="note" aria-live="polite"></p>""", what=what, first=first, last=last, step=step)
 
 
 def contact_section(result):
