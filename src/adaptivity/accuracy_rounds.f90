@@ -172,9 +172,13 @@ contains
             if (.not. finding%is_there) cycle
             errors%mesh(q) = finding%mesh
             errors%bound(q) = finding%bound
-            if (.not. ieee_is_nan(finding%bound)) errors%why_not(q)%value = ''
-            if (.not. finding%has_limit .and. errors%why_not(q)%value == '') errors%why_not(q)%value &
-               = 'no limit: it grows from mesh to mesh'
+            associate (why_not => errors%why_not(q))
+               if (.not. ieee_is_nan(finding%bound)) then
+                  why_not%value = ''
+               else if (why_not%value == '' .and. .not. finding%has_limit) then
+                  why_not%value = 'no limit: it grows from mesh to mesh'
+               end if
+            end associate
          end associate
       end do
    end subroutine settle

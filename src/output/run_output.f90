@@ -305,8 +305,8 @@ contains
       integer, intent(in) :: increments            ! in the result file
       character(:), allocatable :: words
 
-      words = 'No increment was accepted: this run has no result file and no .sta. If there are '// &
-         'any, they are of an earlier run.'
+      words = 'No increment was accepted: this run has no result file and no .sta. If there '// &
+         'are any, they are of an earlier run.'
       if (increments > 0) words = 'The results hold the increments up to number '// &
          to_text(increments)//'.'
    end function words_of_kept

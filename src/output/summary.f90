@@ -44,7 +44,7 @@ module summary
       real(dp), allocatable :: heat(:)
       !> Likewise: the largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
-      type(string_type), allocatable :: steps(:)   !! a line for each step and interface; none of one
+      type(string_type), allocatable :: steps(:)   !! a line for each step and interface
    contains
       procedure :: take
       procedure :: add_lines
