@@ -52,14 +52,15 @@ class Browser:
             if self.run(ready):
                 break
 
-    def look(self, width, mode):
-        """Show pages in a window of this width, for a reader of the light or dark colour scheme."""
+    def look(self, width, mode, forces=False):
+        """Show pages in a window of this width, for a reader of the light or dark colour scheme; it may
+        force darkness on pages without one."""
         for command, values in (
             ("Emulation.setDeviceMetricsOverride",
              {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}),
             ("Emulation.setEmulatedMedia",
              {"features": [{"name": "prefers-color-scheme", "value": mode}]}),
-            ("Emulation.setAutoDarkModeOverride", {"enabled": mode == "dark"}),
+            ("Emulation.setAutoDarkModeOverride", {"enabled": forces}),
         ):
             self.call("/goog/cdp/execute", {"cmd": command, "params": values})
 

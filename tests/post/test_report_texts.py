@@ -97,6 +97,7 @@ def hostile(tmp_path_factory):
         group.attrs["reached"], group.attrs["later_round_begun"] = 0, 0
         for key in ("cpu_seconds", "unknowns", "elements", "increments"):
             group[key] = [1]
+        file["errors/time"] = [15.0]
         bounds = group.create_group("bounds").create_group(name("contact"))
         bounds[name("quantity")] = [[1.0, 5.0, 2.0, 0.1]]
     words = {key: payload(key) for key in IN_LISTING}

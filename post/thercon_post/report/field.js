@@ -195,7 +195,7 @@ function drawBars(scales, quantity, tallest) {
          out.push(html`<path d="M22 ${y}h5" stroke="var(--ink)"/><text x="31" y="${y + 4}">${show(scale.first + k * scale.step)}</text>`);
       }
       const whose = scales.length > 1 ? `bod${scale.bodies.length > 1 ? 'ies' : 'y'} ${scale.bodies.sort((a, b) => a - b).join(', ')}` : '';
-      return html`<svg viewBox="0 0 136 ${H}" role="img" aria-label="Colours of ${quantity.label} ${whose}"><text x="4" y="14">${quantity.unit}</text>
+      return html`<svg viewBox="0 0 136 ${H}" role="img" aria-label="Colours of ${quantity.label} ${whose}"><rect width="136" height="${H}" fill="var(--paper)"/><text x="4" y="14">${quantity.unit}</text>
          <text x="4" y="28">${whose}</text><rect x="4" y="42" width="18" height="${H - 58}" fill="none" stroke="var(--ink)"/>${out}</svg>`;
    })}`);
 }

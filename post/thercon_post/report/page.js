@@ -101,6 +101,8 @@ function chart(box, options) {
    if (options.yLabel)
       out.push(html`<text transform="translate(14 ${(top + H - bottom) / 2}) rotate(-90)" text-anchor="middle">${options.yLabel}</text>`);
    const total = H + legend(out, [...options.lines, ...(options.clouds || [])].filter(e => e.name), W, left, H + 14) ;
+   // A browser that forces darkness leaves charts as they are, and so must find what is behind them there.
+   out.unshift(html`<rect width="${W}" height="${total}" fill="var(--paper)"/>`);
    const caption = options.caption ? html`<figcaption>${options.caption}</figcaption>` : '';
    put(box, html`<svg viewBox="0 0 ${W} ${total}" role="img" aria-label="${options.title}">${out}</svg>${caption}`);
 }
