@@ -38,7 +38,7 @@ module deck_preparation
       'that decks include'
 
    !> Why a deck is not solved.
-   character(*), parameter :: no_analysis = 'it has *NO ANALYSIS; it was read without errors'
+   character(*), parameter :: no_analysis = 'it has *NO ANALYSIS; it is read and found sound'
 
    !> A deck that was read, from which any number of variations can be made.
    type :: read_deck_type

@@ -379,3 +379,16 @@ def test_results_of_an_earlier_run_are_set_aside_or_named(tmp_path):
     assert {path.name for path in tmp_path.glob("r2.*")} == {"r2.inp", "r2.lst", "r2.cvg", *(
         f"r2.earlier.{end}" for end in ("vtkhdf", "contact.vtkhdf", "sta"))}
     assert (tmp_path / "r2.earlier.vtkhdf").read_bytes() == kept
+
+
+@pytest.mark.parametrize(("arguments", "said"), [
+    (["good.inp"], "good.inp is no command; write thercon run good.inp, or thercon check good.inp"),
+    (["nowhere.inp"], "nowhere.inp is no command; write thercon run nowhere.inp"),
+    (["chekc", "good.inp"], "unknown command chekc; the nearest known is check"),
+    (["solve", "good.inp"], "unknown command solve; see thercon --help"),
+    (["run", "--acuracy", "1%", "good.inp"], "the nearest known is --accuracy"),
+    (["run", "-x", "good.inp"], "unknown option -x; see thercon --help")])
+def test_a_wrong_word_is_answered_with_the_one_that_is_meant(good, tmp_path, arguments, said):
+    process = run(*arguments, folder=good.parent)
+    assert process.returncode == 1
+    assert said in process.stderr

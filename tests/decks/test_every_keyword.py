@@ -8,7 +8,8 @@ from deck_runs import DECKS
 
 REFERENCE = DECKS.parents[1] / "docs" / "deck.md"
 FLAGS = {"GENERATE", "DIRECT", "PRESSURE", "CLEARANCE", "ROUGH", "ADD", "REMOVE", "SHRINK",
-         "READ", "WRITE", "OVERLAY"}
+         "READ", "WRITE", "OVERLAY", "SHIFT",
+         "REFLECT"}
 VALUES = {"GAP LAW, CLEARANCE"}   # no flag there, but a value of TYPE=
 
 # What has one value only, or none.
@@ -27,7 +28,7 @@ ONE_VALUE = {
     "PART": "no data", "END PART": "no data", "ASSEMBLY": "no data", "END ASSEMBLY": "no data",
     "ASSEMBLY, NAME": "means nothing", "END INSTANCE": "no data",
     "COUPLING": "no data", "COUPLING, CONSTRAINT NAME": "means nothing",
-    "CLEARANCE": "no data", "FIXED POINT": "no data", "INCLUDE": "no data",
+    "ELCOPY": "no data", "CLEARANCE": "no data", "FIXED POINT": "no data", "INCLUDE": "no data",
     "MATERIAL": "no data", "OPTIONS": "no data", "PHYSICAL CONSTANTS": "no data",
     "REFINE": "no data", "RESTART": "no data", "SOLVER": "no data",
     "STEP": "no data", "SURFACE INTERACTION": "its thickness is not needed",
@@ -36,7 +37,7 @@ ONE_VALUE = {
 
 def sections():
     """Return the keywords and the text of each section of the reference that describes cards."""
-    text = REFERENCE.read_text().split("\n## Decks from CalculiX")[0]
+    text = REFERENCE.read_text().split("\n## Decks from Abaqus")[0]
     text = text.replace("\\*", "*")
     for part in re.split(r"^###? ", text[text.index("\n## Model"):], flags=re.M)[1:]:
         title, _, body = part.partition("\n")

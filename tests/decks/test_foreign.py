@@ -1,5 +1,7 @@
 """Decks as other programs write them run unchanged."""
 
+import math
+
 import pytest
 from blocks import write
 from calculix import thercon
@@ -114,3 +116,98 @@ def test_nodes_are_generated_at_equal_distances_on_a_line(tmp_path):
              "LEFT, 1", "RIGHT, 1, 1, 0.07", "*STEP", "*STATIC", "*END STEP"]
     judge(tmp_path, cards, [("S11", "MAX", "LAST", 10.0, 1e-13), ("U1", "14", "LAST", 0.03, 1e-13),
                             ("S11", "MIN", "LAST", 10.0, 1e-13)])
+
+
+def quarter(cards, middle):
+    """Return a deck that presses a ring of four elements, a quarter of it given; `middle` makes the
+    rest."""
+    return [*cards, *middle, *material("RING", (1000.0, 0.3)), "*BOUNDARY", "INNER, 1, 2", "*STEP",
+            "*STATIC", "*CLOAD", "OUTER, 1, 1.", "OUTER, 2, -0.5", "*NODE PRINT, NSET=OUTER", "U, RF",
+            "*EL PRINT, ELSET=RING", "S", "*END STEP"]
+
+
+def ring_nodes(radii=(1.0, 1.4, 2.0), angles=(0.0, 45.0, 90.0, 135.0, 180.0)):
+    """Return the places of the nodes of a half ring: 100 for each angle, 1 for each radius."""
+    return {100 * k + i + 1: (radius * math.cos(math.radians(angle)),
+                              radius * math.sin(math.radians(angle)))
+            for k, angle in enumerate(angles) for i, radius in enumerate(radii)}
+
+
+def written_ring(radii):
+    """Return the cards of the half ring, written out."""
+    places = ring_nodes(radii)
+    rows = [f"{n}, {x!r}, {y!r}" for n, (x, y) in places.items()]
+    ends = [(name, [100 * k + i for k in range(5)]) for name, i in (("INNER", 1), ("OUTER", 3))]
+    sets = [card for name, nodes in ends for card in
+            (f"*NSET, NSET={name}", ", ".join(map(str, nodes)))]
+    elements = [f"{10 * k + i}, {100 * k + i}, {100 * k + i + 1}, {100 * k + 101 + i}, "
+                f"{100 * k + 100 + i}" for k in range(4) for i in (1, 2)]
+    return ["*NODE", *rows, *sets, "*ELEMENT, TYPE=CPE4, ELSET=RING", *elements]
+
+
+def copied_ring(bias, change="200"):
+    """Return the cards of the half ring: nodes filled in, and a quarter turned or reflected."""
+    ends = {n: x for n, x in ring_nodes().items() if n < 300 and n % 100 != 2}
+    rows = [f"{n}, {x!r}, {y!r}" for n, (x, y) in ends.items()]
+    fill = ["*NODE", *rows, "*NSET, NSET=INNER, GENERATE", "1, 201, 100", "*NSET, NSET=OUTER",
+            "3, 103, 203", f"*NFILL, NSET=FIRST, BIAS={bias!r}", "INNER, OUTER, 2, 1",
+            "*ELEMENT, TYPE=CPE4, ELSET=RING", "1, 1, 2, 102, 101", "2, 2, 3, 103, 102",
+            "11, 101, 102, 202, 201", "12, 102, 103, 203, 202"]
+    turn = [f"*NCOPY, OLD SET=FIRST, CHANGE NUMBER={change}, NEW SET=SECOND, SHIFT, MULTIPLE=2",
+            "0., 0., 0.", "0., 0., 0., 0., 0., 1., 45."]
+    return fill, [*turn, "*NSET, NSET=INNER", "301, 401", "*NSET, NSET=OUTER", "303, 403",
+                  f"*ELCOPY, OLD SET=RING, ELEMENT SHIFT=20, SHIFT NODES={change}, NEW SET=RING"]
+
+
+def assert_same_tables(tmp_path, one, other):
+    """Assert that two decks print the same."""
+    found = [thercon(write(tmp_path / f"{name}.inp", deck))
+             for name, deck in zip(("one", "other"), (one, other), strict=True)]
+    assert found[0].keys() == found[1].keys()
+    for key, values in found[0].items():
+        assert values == pytest.approx(found[1][key], rel=1e-5, abs=1e-9), key
+
+
+@pytest.mark.changes("NFILL", "NFILL, BIAS", "NCOPY", "NCOPY, MULTIPLE")
+@pytest.mark.parametrize("bias", [1.0, 2.0 / 3.0])
+def test_a_mesh_of_filled_and_turned_nodes_is_the_one_that_is_written_out(tmp_path, bias):
+    """Of a bias of 2/3 the first of two distances is 2/5 of the whole."""
+    middle = 1.0 + 1.0 * bias / (1.0 + bias)
+    fill, copies = copied_ring(bias)
+    note_changes(copied_ring(1.0)[0], copied_ring(2.0 / 3.0)[0])
+    note_changes(fill, [card.replace("OUTER, 2, 1", "OUTER, 4, 1") for card in fill])
+    note_changes(copies, [card.replace("MULTIPLE=2", "MULTIPLE=3").replace("45.", "30.")
+                          for card in copies])
+    thrice = [card.replace("MULTIPLE=2", "MULTIPLE=3").replace("45.", "30.") for card in copies]
+    whole = quarter(written_ring((1.0, middle, 2.0)), [])
+    for made in (copies, thrice):
+        assert_same_tables(tmp_path, quarter(fill, made), whole)
+
+
+@pytest.mark.changes("NFILL, NSET", "NCOPY, REFLECT", "NCOPY, SHIFT", "NCOPY, OLD SET",
+                     "NCOPY, NEW SET", "NCOPY, CHANGE NUMBER", "ELCOPY, OLD SET",
+                     "ELCOPY, NEW SET", "ELCOPY, ELEMENT SHIFT", "ELCOPY, SHIFT NODES",
+                     "ELCOPY, REFLECT")
+def test_a_reflected_mesh_is_the_one_that_is_written_out(tmp_path):
+    """Reflected at the line x = 0, elements whose nodes go round the other way are sound."""
+    fill, turned = copied_ring(1.0)
+    fill = [card.replace("FIRST", "WHOLE") for card in fill]
+    reflected = ["*NCOPY, OLD SET=WHOLE, CHANGE NUMBER=1000, NEW SET=MIRROR, REFLECT=LINE",
+                 "0., 0., 0., 0., 1., 0.",
+                 "*ELCOPY, OLD SET=RING, ELEMENT SHIFT=500, SHIFT NODES=1000, NEW SET=COPIES, REFLECT"]
+    note_changes(fill, copied_ring(1.0)[0])
+    note_changes(turned, reflected)
+    places = {n: x for n, x in ring_nodes((1.0, 1.5, 2.0)).items() if n < 300}
+    given = ["*NODE, NSET=MIRROR", *(f"{1000 + n}, {-x!r}, {y!r}" for n, (x, y) in places.items()),
+             "*ELEMENT, TYPE=CPE4, ELSET=COPIES", "501, 1001, 1101, 1102, 1002",
+             "502, 1002, 1102, 1103, 1003", "511, 1101, 1201, 1202, 1102",
+             "512, 1102, 1202, 1203, 1103"]
+    ends = ["*NSET, NSET=INNER", "1001, 1101, 1201", "*NSET, NSET=OUTER", "1003, 1103, 1203",
+            "*ELSET, ELSET=RING", "COPIES"]
+    assert_same_tables(tmp_path, quarter(fill, reflected + ends), quarter(fill, given + ends))
+    halves = ["*ELSET, ELSET=FEW", "1, 2", "*ELSET, ELSET=OTHERS", "11, 12",
+              *(card.replace("OLD SET=RING", f"OLD SET={name}") for name in ("FEW", "OTHERS")
+                for card in reflected[2:])]
+    note_changes(halves[4:5], halves[5:6])
+    assert_same_tables(tmp_path, quarter(fill, reflected[:2] + halves + ends),
+                       quarter(fill, given + ends))

@@ -128,3 +128,16 @@ def test_a_line_that_is_no_face(tmp_path, meshes, name, fault):
     message = refusal(tmp_path, meshes / "inner_line.mesh", "*SURFACE, NAME=HIGH", name)
     assert f":3:1: error: line " in message
     assert fault in message
+
+
+@pytest.mark.parametrize(("plane", "warned"), [("", True), ("STRESS", False), ("STRAIN", False)])
+def test_plane_stress_of_gmsh_is_warned_of_where_gmsh_wrote_it(tmp_path, plane, warned):
+    """Once, at the first type of an element."""
+    shutil.copy(FOLDER / "everything.mesh", tmp_path / "square.mesh")
+    options = [f"*OPTIONS, PLANE={plane}"] if plane else []
+    process = run("check", write(tmp_path / "deck.inp", options + square(*loaded("HIGH"))))
+    assert process.returncode == 0, process.stderr
+    assert ("gmsh calls all elements CPS, plane stress" in process.stderr) == warned
+    if warned:
+        line = int(process.stderr.partition("square.mesh:")[2].partition(":")[0])
+        assert "CPS" in (tmp_path / "square.mesh").read_text().splitlines()[line - 1]

@@ -9,7 +9,7 @@ module assembly_cards
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_place, &
       field_text, field_type, keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
-   use generated_cards, only: exact_text
+   use given_cards, only: exact_text
    use kinds, only: dp, long
    use spelling, only: nearest_known
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper

@@ -1,32 +1,26 @@
-!> *NGEN and *ELGEN -> the *NODE and *ELEMENT cards that they stand for.
+!> *NGEN, *NFILL, *NCOPY, *ELGEN and *ELCOPY -> the *NODE and *ELEMENT cards that they stand for.
 module generated_cards
-   use card_parameters, only: has_parameter, parameter_text
+   use card_parameters, only: parameter_text
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_text, &
-      field_type, keyword_card_type, parameter_type, replace_cards
+   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, &
+      keyword_card_type, replace_cards
+   use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
-   use keywords, only: find_keyword
+   use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
+      given_type, keep_last, node_place, position_of
    use kinds, only: dp
-   use text, only: read_integer, read_real, string_type, to_text
+   use text, only: to_text
    implicit none
    private
-   public :: generate_cards, exact_text
+   public :: generate_cards
 
    integer, parameter :: most_generated = 10000000   !! nodes or elements of one data card
    character(*), parameter :: too_many = 'a card generates at most 10000000 nodes or elements'
 
-   !> Nodes, or elements, of the cards so far.
-   type :: given_type
-      integer :: count = 0
-      integer, allocatable :: number(:)      !! (capacity) their numbers
-      integer, allocatable :: keyword(:)     !! (capacity) keyword card
-      integer, allocatable :: card(:)        !! (capacity) data card
-   end type given_type
-
 contains
 
-   !> Replaces each *NGEN by *NODE and each *ELGEN by *ELEMENT, with the data that they generate.
-   !> Generated cards have the place of the data card that generates them.
+   !> Replaces each card that generates nodes or elements by *NODE or *ELEMENT, with the data that
+   !> it generates. Generated cards have the place of the card that generates them.
    subroutine generate_cards(cards, report)
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report   !! receives errors
@@ -47,15 +41,23 @@ contains
                   if (card%name == 'NODE') call keep_last(all, nodes)
                   if (card%name == 'ELEMENT') call keep_last(all, elements)
                end do
-            else if (card%name == 'NGEN') then
-               do j = card%first_data, card%last_data
-                  call generate_nodes(card, cards%data(j), nodes, report, all)
-               end do
-            else
-               do j = card%first_data, card%last_data
-                  call generate_elements(card, cards%data(j), elements, report, all)
-               end do
+               cycle
             end if
+            select case (card%name)
+            case ('NFILL')
+               call fill_nodes(cards, card, nodes, report, all)
+            case ('NCOPY')
+               call copy_nodes(cards, card, nodes, report, all)
+            case ('ELCOPY')
+               call copy_elements(card, elements, report, all)
+            case default
+               do j = card%first_data, card%last_data
+                  if (card%name == 'NGEN') call generate_nodes(card, cards%data(j), nodes, &
+                     report, all)
+                  if (card%name == 'ELGEN') call generate_elements(card, cards%data(j), elements, &
+                     report, all)
+               end do
+            end select
          end associate
       end do
       call replace_cards(cards, all)
@@ -65,8 +67,8 @@ contains
    pure logical function generates(card)
       type(keyword_card_type), intent(in) :: card
 
-      generates = (card%name == 'NGEN' .or. card%name == 'ELGEN') .and. &
-         card%last_data >= card%first_data
+      generates = card%name == 'ELCOPY' .or. card%last_data >= card%first_data .and. &
+         any(card%name == [character(5) :: 'NGEN', 'ELGEN', 'NFILL', 'NCOPY'])
    end function generates
 
    !> First and last node, increment: the nodes between the two, at equal distances on a line.
@@ -76,10 +78,9 @@ contains
       type(given_type), intent(inout) :: nodes
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
-      type(string_type) :: words(3)
-      real(dp) :: place(2), x(2, 2)
-      integer :: ends(2), at, step, i, j, n
-      logical :: valid, is_number
+      real(dp) :: x(2, 2)
+      integer :: ends(2), at, step, i, n
+      logical :: valid
 
       valid = .true.
       step = 1
@@ -92,10 +93,7 @@ contains
          at = position_of(ends(i), nodes)
          valid = at > 0
          if (valid) then
-            ! A coordinate that is no number is 0 here and reported elsewhere.
-            do j = 1, 2
-               call read_real(field_text(all%data(nodes%card(at)), j + 1), x(j, i), is_number)
-            end do
+            x(:, i) = node_place(all, nodes, at)
          else
             call report%error(field_place(data, i), 'no *NODE before this card has node '// &
                to_text(ends(i)))
@@ -110,12 +108,7 @@ contains
       n = (ends(2) - ends(1))/step
       if (n > 1) call add_generated(card, 'NODE', '', all)
       do i = 1, n - 1
-         place = x(:, 1) + (x(:, 2) - x(:, 1))*i/n
-         words(1)%value = to_text(ends(1) + i*step)
-         words(2)%value = exact_text(place(1))
-         words(3)%value = exact_text(place(2))
-         call add_fields(data, words, all)
-         call keep_last(all, nodes)
+         call add_node_card(data, ends(1) + i*step, x(:, 1) + (x(:, 2) - x(:, 1))*i/n, all, nodes)
       end do
    end subroutine generate_nodes
 
@@ -142,7 +135,7 @@ contains
    subroutine generate_elements(card, data, elements, report, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
-      type(given_type), intent(in) :: elements
+      type(given_type), intent(inout) :: elements
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
       integer, allocatable :: corners(:)
@@ -166,8 +159,10 @@ contains
          parameter_text(all%keywords(elements%keyword(at)), 'TYPE'), all)
       do j = 0, counts(2) - 1
          do i = 0, counts(1) - 1
-            if (i + j > 0) call add_numbers(data, [master + i*steps(2, 1) + j*steps(2, 2), &
+            if (i + j == 0) cycle
+            call add_numbers(data, [master + i*steps(2, 1) + j*steps(2, 2), &
                corners + i*steps(1, 1) + j*steps(1, 2)], all)
+            call keep_last(all, elements)
          end do
       end do
    end subroutine generate_elements
@@ -198,124 +193,5 @@ contains
       call report%error(field_place(data, 2), too_many)
       valid = .false.
    end subroutine read_rows
-
-   !> Puts what the generating card names itself into its set.
-   subroutine add_set(card, keyword, data, numbers, all)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: keyword     ! NSET or ELSET, which is also the parameter
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: numbers(:)
-      type(cards_type), intent(inout) :: all
-
-      if (.not. has_parameter(card, keyword)) return
-      call add_generated(card, keyword, '', all)
-      call add_numbers(data, numbers, all)
-   end subroutine add_set
-
-   !> Adds a keyword card in the place of the generating one, and with its set.
-   subroutine add_generated(card, keyword, element_type, all)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: keyword
-      character(*), intent(in) :: element_type    ! TYPE=, or empty
-      type(cards_type), intent(inout) :: all
-      type(keyword_card_type) :: generated
-      type(parameter_type) :: type_parameter
-
-      generated%name = keyword
-      generated%meant = ''
-      generated%known = find_keyword(keyword)
-      generated%place = card%place
-      generated%parameters = card%parameters
-      if (len(element_type) > 0) then
-         type_parameter = parameter_type('TYPE', element_type, card%place, card%place)
-         generated%parameters = [generated%parameters, type_parameter]
-      end if
-      call add_keyword(all, generated)
-   end subroutine add_generated
-
-   subroutine add_numbers(data, numbers, all)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: numbers(:)
-      type(cards_type), intent(inout) :: all
-      type(string_type) :: words(size(numbers))
-      integer :: i
-
-      do i = 1, size(numbers)
-         words(i)%value = to_text(numbers(i))
-      end do
-      call add_fields(data, words, all)
-   end subroutine add_numbers
-
-   subroutine add_fields(data, words, all)
-      type(data_card_type), intent(in) :: data
-      type(string_type), intent(in) :: words(:)
-      type(cards_type), intent(inout) :: all
-      type(field_type), allocatable :: fields(:)
-      integer :: i
-
-      allocate(fields(size(words)))
-      do i = 1, size(words)
-         fields(i)%text = words(i)%value
-         fields(i)%place = field_place(data, 1)
-      end do
-      call add_data(all, fields, data%end)
-   end subroutine add_fields
-
-   !> Remembers the node or element of the last data card; fields that are no numbers are reported
-   !> elsewhere.
-   subroutine keep_last(all, given)
-      type(cards_type), intent(in) :: all
-      type(given_type), intent(inout) :: given
-      integer :: number
-      logical :: valid
-
-      call read_integer(field_text(all%data(all%data_count), 1), number, valid)
-      if (.not. valid) return
-      if (.not. allocated(given%number)) allocate(given%number(0), given%keyword(0), given%card(0))
-      if (given%count == size(given%number)) then
-         given%number = [given%number, spread(0, 1, given%count + 64)]
-         given%keyword = [given%keyword, spread(0, 1, given%count + 64)]
-         given%card = [given%card, spread(0, 1, given%count + 64)]
-      end if
-      given%count = given%count + 1
-      given%number(given%count) = number
-      given%keyword(given%count) = all%keyword_count
-      given%card(given%count) = all%data_count
-   end subroutine keep_last
-
-   !> Position of a number in a list, the last one where there are several; 0 where it is not.
-   pure integer function position_of(number, given)
-      integer, intent(in) :: number
-      type(given_type), intent(in) :: given
-
-      position_of = 0
-      if (given%count > 0) position_of = findloc(given%number(:given%count), number, dim=1, &
-         back=.true.)
-   end function position_of
-
-   !> Nodes of an element, up to the first field that is no number.
-   pure function corners_of(data) result(corners)
-      type(data_card_type), intent(in) :: data
-      integer, allocatable :: corners(:)
-      integer :: i, number
-      logical :: valid
-
-      allocate(corners(0))
-      do i = 2, size(data%fields)
-         call read_integer(data%fields(i)%text, number, valid)
-         if (.not. valid) exit
-         corners = [corners, number]
-      end do
-   end function corners_of
-
-   !> A number with all of its digits.
-   function exact_text(value) result(string)
-      real(dp), intent(in) :: value
-      character(:), allocatable :: string
-      character(32) :: buffer
-
-      write (buffer, '(es24.16e3)') value
-      string = trim(adjustl(buffer))
-   end function exact_text
 
 end module generated_cards

@@ -68,7 +68,7 @@ module keywords
 
    integer, parameter :: shortest = 3   !! letters of an abbreviation
 
-   type(keyword_type), parameter :: known_keywords(80) = [ &
+   type(keyword_type), parameter :: known_keywords(83) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -77,7 +77,12 @@ module keywords
       keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
       keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
       keyword_type('NGEN', built, in_model, 1, many, 'NSET='), &
+      keyword_type('NFILL', built, in_model, 1, many, 'NSET=/BIAS='), &
+      keyword_type('NCOPY', built, in_model, 1, 2, &
+         'OLD SET=/CHANGE NUMBER=/NEW SET=/SHIFT/REFLECT=/MULTIPLE='), &
       keyword_type('ELGEN', built, in_model, 1, many, 'ELSET='), &
+      keyword_type('ELCOPY', built, in_model, 0, 0, &
+         'OLD SET=/ELEMENT SHIFT=/SHIFT NODES=/NEW SET=/REFLECT'), &
       keyword_type('NSET', built, in_model, 1, many, &
          'NSET=/GENERATE/ELSET=/SURFACE=/INSTANCE=/~INTERNAL/~UNSORTED'), &
       keyword_type('ELSET', built, in_model, 1, many, &

@@ -1,0 +1,338 @@
+!> *NFILL, *NCOPY and *ELCOPY of Abaqus -> the *NODE and *ELEMENT cards that they stand for: nodes
+!> between two sets, and copies of sets.
+module copied_cards
+   use card_parameters, only: choose, has_parameter, lacks_parameter, need_parameter, &
+      parameter_place, parameter_text, take_from, take_parameter, take_positive
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, field_text, keyword_card_type
+   use deck_report, only: deck_report_type
+   use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
+      given_type, keep_last, members_of, node_place, position_of
+   use kinds, only: dp
+   use text, only: read_integer, to_text, to_upper
+   implicit none
+   private
+   public :: fill_nodes, copy_nodes, copy_elements
+
+   real(dp), parameter :: same_place = 1.0e-6_dp   !! distance, by the largest coordinate
+   real(dp), parameter :: degree = acos(-1.0_dp)/180.0_dp
+
+contains
+
+   !> *NFILL: nodes between those of two sets, in the order of their numbers, at equal distances or,
+   !> with BIAS=, at distances of which each is the one behind it times the bias.
+   subroutine fill_nodes(cards, card, nodes, report, all)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(given_type), intent(inout) :: nodes          !! nodes so far; receives the new ones
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      type(cards_type), intent(inout) :: all            !! receives the cards
+      real(dp) :: bias
+      integer :: j
+
+      bias = 1.0_dp
+      call take_positive(card, 'BIAS', report, bias)
+      do j = card%first_data, card%last_data
+         call fill_line(card, cards%data(j), bias, nodes, report, all)
+      end do
+   end subroutine fill_nodes
+
+   !> Two sets or nodes, number of intervals, increment.
+   subroutine fill_line(card, data, bias, nodes, report, all)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: bias
+      type(given_type), intent(inout) :: nodes
+      type(deck_report_type), intent(inout) :: report
+      type(cards_type), intent(inout) :: all
+      integer, allocatable :: from(:), to(:)
+      real(dp) :: parts(0:10000), x(2, 2)
+      integer :: i, intervals, k, step
+      logical :: valid
+
+      valid = .true.
+      step = 1
+      intervals = 1
+      call end_of_fill(data, 1, nodes, all, report, from, valid)
+      call end_of_fill(data, 2, nodes, all, report, to, valid)
+      call need_field(data, 3, 'number of intervals', report, intervals, valid)
+      call take_field(data, 4, 'increment', report, step, valid)
+      call check_extra(data, 4, 'two sets or nodes, number of intervals, increment', report)
+      if (valid .and. (intervals < 1 .or. intervals > ubound(parts, 1) .or. step < 1)) then
+         call report%error(field_place(data, 3), 'the number of intervals is from 1 to '// &
+            to_text(ubound(parts, 1))//', the increment from 1')
+         valid = .false.
+      else if (valid .and. size(from) /= size(to)) then
+         call report%error(field_place(data, 2), 'the two ends have '//to_text(size(from))// &
+            ' and '//to_text(size(to))//' nodes; give sets of as many nodes')
+         valid = .false.
+      end if
+      if (.not. valid) then
+         call report%lose('node')
+         return
+      end if
+      call add_set(card, 'NSET', data, [from, to], all)
+      call add_generated(card, 'NODE', '', all)
+      parts(0) = 0.0_dp
+      do k = 1, intervals
+         parts(k) = parts(k - 1) + bias**(1 - k)
+      end do
+      do i = 1, size(from)
+         x(:, 1) = node_place(all, nodes, position_of(from(i), nodes))
+         x(:, 2) = node_place(all, nodes, position_of(to(i), nodes))
+         do k = 1, intervals - 1
+            call add_node_card(data, from(i) + k*step, x(:, 1) + (x(:, 2) - x(:, 1))* &
+               (parts(k)/parts(intervals)), all, nodes)
+         end do
+      end do
+   end subroutine fill_line
+
+   !> A node set, or one node, of the cards so far.
+   subroutine end_of_fill(data, i, nodes, all, report, numbers, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                          ! position of the field
+      type(given_type), intent(in) :: nodes
+      type(cards_type), intent(in) :: all
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable, intent(out) :: numbers(:)
+      logical, intent(inout) :: valid
+      integer :: k, number
+      logical :: is_number
+
+      call read_integer(field_text(data, i), number, is_number)
+      numbers = [number]
+      if (.not. is_number) numbers = members_of(all, 'NSET', field_text(data, i))
+      numbers = pack(numbers, [(position_of(numbers(k), nodes) > 0, k=1, size(numbers))])
+      if (size(numbers) > 0) return
+      call report%error(field_place(data, i), 'no *NODE before this card has node or set '// &
+         to_upper(field_text(data, i)))
+      valid = .false.
+   end subroutine end_of_fill
+
+   !> *NCOPY: copies of the nodes of a set, shifted and then turned about an axis along z, MULTIPLE=
+   !> times, or reflected at a line. A copy that is there already, as on a seam, is that node.
+   subroutine copy_nodes(cards, card, nodes, report, all)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(given_type), intent(inout) :: nodes          !! nodes so far; receives the new ones
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      type(cards_type), intent(inout) :: all            !! receives the cards
+      integer, allocatable :: numbers(:)
+      real(dp) :: center(2), shift(2), turn(2, 2)
+      real(dp), allocatable :: x(:, :)
+      integer :: at, change, i
+      logical :: valid
+      logical, allocatable :: is_there(:)
+
+      valid = .true.
+      change = 0
+      if (card%last_data > card%first_data + 1) call report%error(field_place( &
+         cards%data(card%first_data + 2), 1), 'extra data card; *NCOPY has at most 2')
+      call take_old_set(card, 'NSET', nodes, all, report, numbers, valid)
+      call need_shift(card, 'CHANGE NUMBER', report, change, valid)
+      call read_motion(card, cards%data(card%first_data:card%last_data), report, center, shift, &
+         turn, valid)
+      if (.not. valid) then
+         call report%lose('node')
+         return
+      end if
+      allocate (x(2, size(numbers)), is_there(size(numbers)))
+      do i = 1, size(numbers)
+         x(:, i) = matmul(turn, node_place(all, nodes, position_of(numbers(i), nodes)) + shift - &
+            center) + center
+      end do
+      do i = 1, size(numbers)
+         at = position_of(numbers(i) + change, nodes)
+         is_there(i) = at > 0
+         if (at > 0) is_there(i) = norm2(node_place(all, nodes, at) - x(:, i)) <= &
+            same_place*maxval(abs(x))
+      end do
+      associate (data => cards%data(card%first_data))
+         call add_copies_card(card, 'NODE', 'NSET', '', all)
+         do i = 1, size(numbers)
+            if (.not. is_there(i)) call add_node_card(data, numbers(i) + change, x(:, i), all, &
+               nodes)
+         end do
+         if (.not. (any(is_there) .and. has_parameter(card, 'NEW SET'))) return
+         call add_copies_card(card, 'NSET', 'NSET', '', all)
+         call add_numbers(data, pack(numbers + change, is_there), all)
+      end associate
+   end subroutine copy_nodes
+
+   !> What a copy does to a place: x -> turn (x + shift - center) + center.
+   subroutine read_motion(card, rows, report, center, shift, turn, valid)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: rows(:)
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(out) :: center(2), shift(2), turn(2, 2)
+      logical, intent(inout) :: valid
+      character(:), allocatable :: kind
+      real(dp) :: angle, points(3, 2)
+      integer :: times
+
+      kind = ''
+      call choose(card, 'REFLECT', 'LINE', report, kind)
+      valid = valid .and. (kind == 'LINE' .or. .not. has_parameter(card, 'REFLECT'))
+      if (.not. valid) return
+      shift = 0.0_dp
+      angle = 0.0_dp
+      points = reshape([0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [3, 2])
+      if (kind == 'LINE') then
+         call read_points(rows(1), report, points, valid)
+         associate (along => points(:2, 2) - points(:2, 1))
+            if (valid .and. norm2(along) <= 0.0_dp) then
+               call report%error(field_place(rows(1), 1), 'the two points of the line coincide')
+               valid = .false.
+            end if
+            angle = 2.0_dp*atan2(along(2), along(1))
+         end associate
+         turn = reshape([cos(angle), sin(angle), sin(angle), -cos(angle)], [2, 2])
+      else
+         if (lacks_parameter(card, 'SHIFT')) then
+            call report%error(card%place, '*NCOPY needs SHIFT or REFLECT=LINE')
+            valid = .false.
+         end if
+         call take_field(rows(1), 1, 'shift along x', report, shift(1), valid)
+         call take_field(rows(1), 2, 'shift along y', report, shift(2), valid)
+         call check_extra(rows(1), 3, 'shift along x, y and z', report)
+         if (size(rows) > 1) then
+            call read_points(rows(2), report, points, valid)
+            call take_field(rows(2), 7, 'angle', report, angle, valid)
+            call check_extra(rows(2), 7, 'two points of the axis, angle', report)
+            if (valid .and. norm2(points(:2, 2) - points(:2, 1)) > 0.0_dp) call report%error( &
+               field_place(rows(2), 4), 'the axis of the turn must be parallel to z')
+            times = 1
+            call take_from(1, card, 'MULTIPLE', report, times)
+            angle = sign(1.0_dp, points(3, 2) - points(3, 1))*angle*times*degree
+         end if
+         turn = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
+      end if
+      center = points(:2, 1)
+   end subroutine read_motion
+
+   !> Two points with three coordinates each.
+   subroutine read_points(data, report, points, valid)
+      type(data_card_type), intent(in) :: data
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: points(3, 2)
+      logical, intent(inout) :: valid
+      character(*), parameter :: names = 'xyz'
+      integer :: i, k
+
+      do k = 1, 2
+         do i = 1, 3
+            call take_field(data, 3*(k - 1) + i, names(i:i)//' of point '//to_text(k), report, &
+               points(i, k), valid)
+         end do
+      end do
+   end subroutine read_points
+
+   !> *ELCOPY: copies of the elements of a set; with REFLECT their nodes go round the other way.
+   subroutine copy_elements(card, elements, report, all)
+      type(keyword_card_type), intent(in) :: card
+      type(given_type), intent(inout) :: elements       !! elements so far; receives the new ones
+      type(deck_report_type), intent(inout) :: report   !! receives errors
+      type(cards_type), intent(inout) :: all            !! receives the cards
+      character(:), allocatable :: kind, last_kind
+      integer, allocatable :: corners(:), numbers(:)
+      type(data_card_type) :: data
+      integer :: at, i, node_shift, shift
+      logical :: valid
+
+      valid = .true.
+      shift = 0
+      node_shift = 0
+      if (card%last_data >= card%first_data) call report%error(card%place, '*ELCOPY has no data')
+      call take_old_set(card, 'ELSET', elements, all, report, numbers, valid)
+      call need_shift(card, 'ELEMENT SHIFT', report, shift, valid)
+      call need_shift(card, 'SHIFT NODES', report, node_shift, valid)
+      if (.not. valid) then
+         call report%lose('element')
+         return
+      end if
+      last_kind = ''
+      do i = 1, size(numbers)
+         at = position_of(numbers(i), elements)
+         kind = parameter_text(all%keywords(elements%keyword(at)), 'TYPE')
+         if (kind /= last_kind) call add_copies_card(card, 'ELEMENT', 'ELSET', kind, all)
+         last_kind = kind
+         data = all%data(elements%card(at))
+         corners = corners_of(data)
+         if (has_parameter(card, 'REFLECT')) corners = reflected(corners)
+         data%fields = data%fields(:1)
+         data%fields(1)%place = card%place
+         call add_numbers(data, [numbers(i) + shift, corners + node_shift], all)
+         call keep_last(all, elements)
+      end do
+   end subroutine copy_elements
+
+   !> The nodes of an element the other way round: 1 4 3 2, and its midside nodes 8 7 6 5.
+   pure function reflected(nodes) result(back)
+      integer, intent(in) :: nodes(:)
+      integer :: back(size(nodes))
+      integer :: corners
+
+      corners = size(nodes)
+      if (any(corners == [6, 8])) corners = corners/2
+      back(:corners) = [nodes(1), nodes(corners:2:-1)]
+      back(corners + 1:) = nodes(size(nodes):corners + 1:-1)
+   end function reflected
+
+   !> The nodes or elements of OLD SET=.
+   subroutine take_old_set(card, keyword, given, all, report, numbers, valid)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: keyword               ! NSET or ELSET
+      type(given_type), intent(in) :: given
+      type(cards_type), intent(in) :: all
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable, intent(out) :: numbers(:)
+      logical, intent(inout) :: valid
+      character(:), allocatable :: name
+      integer :: i
+
+      allocate (numbers(0))
+      call need_parameter(card, 'OLD SET', report, name)
+      valid = valid .and. len(name) > 0
+      if (.not. valid) return
+      numbers = members_of(all, keyword, name)
+      numbers = pack(numbers, [(position_of(numbers(i), given) > 0, i=1, size(numbers))])
+      if (size(numbers) > 0) return
+      call report%error(parameter_place(card, 'OLD SET'), 'no card before this one gives set '// &
+         name//' a node or element')
+      valid = .false.
+   end subroutine take_old_set
+
+   !> What the numbers of the copies have above those of the set.
+   subroutine need_shift(card, name, report, shift, valid)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name                  ! of the parameter
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(inout) :: shift
+      logical, intent(inout) :: valid
+      integer :: errors
+
+      errors = report%error_count()
+      call take_parameter(card, name, report, shift)
+      valid = valid .and. report%error_count() == errors
+      if (lacks_parameter(card, name)) call report%error(card%place, '*'//card%name//' needs '// &
+         name//'=')
+      valid = valid .and. has_parameter(card, name)
+   end subroutine need_shift
+
+   !> Adds the keyword card of copies, which are in the set NEW SET=.
+   subroutine add_copies_card(card, keyword, set, element_type, all)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: keyword, set
+      character(*), intent(in) :: element_type          ! TYPE=, or empty
+      type(cards_type), intent(inout) :: all
+      type(keyword_card_type) :: named
+      integer :: i
+
+      named = card
+      named%parameters = pack(card%parameters, [(card%parameters(i)%name == 'NEW SET', &
+         i=1, size(card%parameters))])
+      if (size(named%parameters) > 0) named%parameters(1)%name = set
+      call add_generated(named, keyword, element_type, all)
+   end subroutine add_copies_card
+
+end module copied_cards

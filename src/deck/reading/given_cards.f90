@@ -1,0 +1,219 @@
+!> Nodes and elements of the cards so far, and the cards that are added to them where a card stands
+!> for others.
+module given_cards
+   use card_parameters, only: has_parameter, parameter_text
+   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_text, &
+      field_type, keyword_card_type, parameter_type
+   use keywords, only: find_keyword
+   use kinds, only: dp
+   use sorting, only: sort_order
+   use text, only: read_integer, read_real, string_type, to_text, to_upper
+   implicit none
+   private
+   public :: given_type, add_set, add_generated, add_numbers, add_node_card, node_place
+   public :: keep_last, members_of, position_of, corners_of, exact_text
+
+   !> Nodes, or elements, of the cards so far.
+   type :: given_type
+      integer :: count = 0
+      integer, allocatable :: number(:)      !! (capacity) their numbers
+      integer, allocatable :: keyword(:)     !! (capacity) keyword card
+      integer, allocatable :: card(:)        !! (capacity) data card
+   end type given_type
+
+contains
+
+   !> Puts what the generating card names itself into its set.
+   subroutine add_set(card, keyword, data, numbers, all)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: keyword           !! NSET or ELSET, which is also the parameter
+      type(data_card_type), intent(in) :: data      !! whose place the cards have
+      integer, intent(in) :: numbers(:)             !! of nodes or elements
+      type(cards_type), intent(inout) :: all        !! receives the cards
+
+      if (.not. has_parameter(card, keyword)) return
+      call add_generated(card, keyword, '', all)
+      call add_numbers(data, numbers, all)
+   end subroutine add_set
+
+   !> Adds a keyword card in the place of the generating one, and with its set.
+   subroutine add_generated(card, keyword, element_type, all)
+      type(keyword_card_type), intent(in) :: card   !! the generating one
+      character(*), intent(in) :: keyword           !! NODE, ELEMENT, NSET or ELSET
+      character(*), intent(in) :: element_type      !! TYPE=, or empty
+      type(cards_type), intent(inout) :: all        !! receives the card
+      type(keyword_card_type) :: generated
+      type(parameter_type) :: type_parameter
+
+      generated%name = keyword
+      generated%meant = ''
+      generated%known = find_keyword(keyword)
+      generated%place = card%place
+      generated%parameters = card%parameters
+      if (len(element_type) > 0) then
+         type_parameter = parameter_type('TYPE', element_type, card%place, card%place)
+         generated%parameters = [generated%parameters, type_parameter]
+      end if
+      call add_keyword(all, generated)
+   end subroutine add_generated
+
+   !> Adds a data card of numbers.
+   subroutine add_numbers(data, numbers, all)
+      type(data_card_type), intent(in) :: data      !! whose place it has
+      integer, intent(in) :: numbers(:)             !! its fields
+      type(cards_type), intent(inout) :: all        !! receives the card
+      type(string_type) :: words(size(numbers))
+      integer :: i
+
+      do i = 1, size(numbers)
+         words(i)%value = to_text(numbers(i))
+      end do
+      call add_fields(data, words, all)
+   end subroutine add_numbers
+
+   subroutine add_fields(data, words, all)
+      type(data_card_type), intent(in) :: data
+      type(string_type), intent(in) :: words(:)
+      type(cards_type), intent(inout) :: all
+      type(field_type), allocatable :: fields(:)
+      integer :: i
+
+      allocate(fields(size(words)))
+      do i = 1, size(words)
+         fields(i)%text = words(i)%value
+         fields(i)%place = field_place(data, 1)
+      end do
+      call add_data(all, fields, data%end)
+   end subroutine add_fields
+
+   !> Adds a node.
+   subroutine add_node_card(data, number, x, all, nodes)
+      type(data_card_type), intent(in) :: data      !! whose place it has
+      integer, intent(in) :: number                 !! of the node
+      real(dp), intent(in) :: x(2)                  !! its place [length]
+      type(cards_type), intent(inout) :: all        !! receives the card
+      type(given_type), intent(inout) :: nodes      !! receives the node
+      type(string_type) :: words(3)
+
+      words(1)%value = to_text(number)
+      words(2)%value = exact_text(x(1))
+      words(3)%value = exact_text(x(2))
+      call add_fields(data, words, all)
+      call keep_last(all, nodes)
+   end subroutine add_node_card
+
+   !> Place of a node; a coordinate that is no number is 0 and reported elsewhere.
+   function node_place(all, nodes, at) result(x)
+      type(cards_type), intent(in) :: all
+      type(given_type), intent(in) :: nodes
+      integer, intent(in) :: at                     !! its position in the list
+      real(dp) :: x(2)
+      integer :: i
+      logical :: is_number
+
+      x = 0.0_dp
+      do i = 1, 2
+         call read_real(field_text(all%data(nodes%card(at)), i + 1), x(i), is_number)
+      end do
+   end function node_place
+
+   !> Remembers the node or element of the last data card; fields that are no numbers are reported
+   !> elsewhere.
+   subroutine keep_last(all, given)
+      type(cards_type), intent(in) :: all           !! the cards so far
+      type(given_type), intent(inout) :: given      !! receives it
+      integer :: number
+      logical :: valid
+
+      call read_integer(field_text(all%data(all%data_count), 1), number, valid)
+      if (.not. valid) return
+      if (.not. allocated(given%number)) allocate(given%number(0), given%keyword(0), given%card(0))
+      if (given%count == size(given%number)) then
+         given%number = [given%number, spread(0, 1, given%count + 64)]
+         given%keyword = [given%keyword, spread(0, 1, given%count + 64)]
+         given%card = [given%card, spread(0, 1, given%count + 64)]
+      end if
+      given%count = given%count + 1
+      given%number(given%count) = number
+      given%keyword(given%count) = all%keyword_count
+      given%card(given%count) = all%data_count
+   end subroutine keep_last
+
+   !> Numbers of a set of the cards so far, each once and ascending. What is no number and no set so
+   !> far is reported elsewhere.
+   recursive function members_of(all, keyword, name) result(numbers)
+      type(cards_type), intent(in) :: all
+      character(*), intent(in) :: keyword           !! NSET or ELSET
+      character(*), intent(in) :: name              !! of the set, in any case
+      integer, allocatable :: numbers(:)
+      integer :: i, j, k, number, range(3)
+      logical :: valid
+
+      allocate (numbers(0))
+      do k = 1, all%keyword_count
+         associate (card => all%keywords(k))
+            if (to_upper(parameter_text(card, keyword)) /= to_upper(name)) cycle
+            do j = card%first_data, card%last_data
+               associate (data => all%data(j))
+                  if (card%name == keyword .and. has_parameter(card, 'GENERATE')) then
+                     range(3) = 1
+                     do i = 1, min(size(data%fields), 3)
+                        call read_integer(field_text(data, i), range(i), valid)
+                     end do
+                     if (range(3) > 0) numbers = [numbers, (i, i=range(1), range(2), range(3))]
+                  else if (card%name == keyword) then
+                     do i = 1, size(data%fields)
+                        call read_integer(field_text(data, i), number, valid)
+                        if (valid) numbers = [numbers, number]
+                        if (valid .or. to_upper(field_text(data, i)) == to_upper(name)) cycle
+                        numbers = [numbers, members_of(all, keyword, field_text(data, i))]
+                     end do
+                  else if (any(card%name == ['NODE   ', 'ELEMENT'])) then
+                     call read_integer(field_text(data, 1), number, valid)
+                     if (valid) numbers = [numbers, number]
+                  end if
+               end associate
+            end do
+         end associate
+      end do
+      numbers = numbers(sort_order(numbers))
+      numbers = pack(numbers, [(i == 1 .or. numbers(max(i - 1, 1)) /= numbers(i), &
+         i=1, size(numbers))])
+   end function members_of
+
+   !> Position of a number in a list, the last one where there are several; 0 where it is not.
+   pure integer function position_of(number, given)
+      integer, intent(in) :: number                 !! of a node or element
+      type(given_type), intent(in) :: given         !! the list
+
+      position_of = 0
+      if (given%count > 0) position_of = findloc(given%number(:given%count), number, dim=1, &
+         back=.true.)
+   end function position_of
+
+   !> Nodes of an element, up to the first field that is no number.
+   pure function corners_of(data) result(corners)
+      type(data_card_type), intent(in) :: data      !! of *ELEMENT
+      integer, allocatable :: corners(:)            !! numbers of its nodes
+      integer :: i, number
+      logical :: valid
+
+      allocate(corners(0))
+      do i = 2, size(data%fields)
+         call read_integer(data%fields(i)%text, number, valid)
+         if (.not. valid) exit
+         corners = [corners, number]
+      end do
+   end function corners_of
+
+   !> A number with all of its digits.
+   function exact_text(value) result(string)
+      real(dp), intent(in) :: value
+      character(:), allocatable :: string           !! such as 1.0000000000000000E+000
+      character(32) :: buffer
+
+      write (buffer, '(es24.16e3)') value
+      string = trim(adjustl(buffer))
+   end function exact_text
+
+end module given_cards
