@@ -18,6 +18,7 @@ module adaptive_rounds
    use element_kinds, only: element_corner_count
    use error_estimator, only: error_estimator_type, largest_part, squared_errors
    use errors, only: error_type
+   use growing_modes, only: analyse_stability
    use increments, only: simulation_type
    use interface_quantities, only: closed_length, point_before
    use kinds, only: dp
@@ -141,6 +142,7 @@ contains
                   record)
                if (allocated(record%errors)) call self%accuracy%settle(record)
             end if
+            call analyse_stability(model, simulation, record)
             call keep_restart(model, simulation, record)
             if (allocated(record%restart)) call estimator%exchange(record%restart)
          end if

@@ -28,7 +28,7 @@ module heat_reduction
    use unconstrained_bodies, only: undetermined_beside
    implicit none
    private
-   public :: heat_reduction_type
+   public :: heat_reduction_type, loads_of_temperatures
 
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
    !> Factor of B, a power of the base: the digits of the loads stay, their squares vanish.
@@ -214,13 +214,28 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: on_tail(:)                  !! (thermal tail) [temperature]
       real(dp) :: load(bodies%mechanical%map%tail)        !! (mechanical tail) [force]
-      real(dp) :: condensed(size(load), 1), forces(bodies%thermal_load%row_count, 1)
+      real(dp) :: condensed(size(load), 1)
 
-      call bodies%thermal_load%multiply_columns(self%extended(bodies%thermal, reshape(on_tail, &
-         [size(on_tail), 1])), forces)
-      call bodies%equilibrium%condense_forces(bodies%mechanical, forces, condensed)
-      load = balanced_jump(condensed(:, 1), bodies)
+      condensed = loads_of_temperatures(bodies, self%extended(bodies%thermal, reshape(on_tail, &
+         [size(on_tail), 1])))
+      load = condensed(:, 1)
    end function load_of_jumps
+
+   !> Condensed mechanical loads of temperatures, balanced.
+   function loads_of_temperatures(bodies, temperature) result(load)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: temperature(:, :)           !! (nodes, n) [temperature]
+      real(dp) :: load(bodies%mechanical%map%tail, size(temperature, 2))   !! (mechanical tail, n)
+      real(dp), allocatable :: forces(:, :)
+      integer :: k
+
+      allocate (forces(bodies%thermal_load%row_count, size(load, 2)))
+      call bodies%thermal_load%multiply_columns(temperature, forces)
+      call bodies%equilibrium%condense_forces(bodies%mechanical, forces, load)
+      do k = 1, size(load, 2)
+         load(:, k) = balanced_jump(load(:, k), bodies)
+      end do
+   end function loads_of_temperatures
 
    !> The condensed load of jumps balanced: it has no resultant.
    function balanced_jump(load, bodies) result(balanced)
@@ -260,7 +275,7 @@ contains
    subroutine form_friction(self, bodies)
       class(heat_reduction_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies
-      real(dp), allocatable :: forces(:, :), heat(:, :), temperature(:, :)
+      real(dp), allocatable :: heat(:, :), temperature(:, :)
       real(dp) :: unit(size(bodies%points%heated))
       integer :: first, k, last, n, nodes
 
@@ -272,8 +287,7 @@ contains
          bodies%mechanical%map%tail, n), self%friction_mean(size(bodies%points%slave), n))
       do first = 1, n, columns_at_once
          last = min(first + columns_at_once - 1, n)
-         allocate (forces(bodies%thermal_load%row_count, last - first + 1), heat(nodes, &
-            last - first + 1), temperature(nodes, last - first + 1))
+         allocate (heat(nodes, last - first + 1), temperature(nodes, last - first + 1))
          heat = 0.0_dp
          do k = first, last
             unit = 0.0_dp
@@ -282,14 +296,11 @@ contains
          end do
          call self%condense_forces(bodies%thermal, heat, self%friction_heat(:, first:last), &
             temperature)
-         call bodies%thermal_load%multiply_columns(temperature, forces)
-         call bodies%equilibrium%condense_forces(bodies%mechanical, forces, &
-            self%friction_load(:, first:last))
+         self%friction_load(:, first:last) = loads_of_temperatures(bodies, temperature)
          do k = first, last
-            self%friction_load(:, k) = balanced_jump(self%friction_load(:, k), bodies)
             self%friction_mean(:, k) = bodies%points%means(temperature(:, k - first + 1))
          end do
-         deallocate (forces, heat, temperature)
+         deallocate (heat, temperature)
       end do
       self%friction_equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
    end subroutine form_friction

@@ -41,7 +41,7 @@ module reduced_bodies
       real(dp), allocatable :: held_direction(:, :)
       type(field_problem_type) :: thermal                     !! heat, (3.3)
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
-      !> C of (1.2); without values where no step stores heat [energy/temperature]
+      !> C of (1.2); without values where no step needs it [energy/temperature]
       type(sparse_matrix_type) :: capacity
       type(dilatation_type) :: dilatation                     !! heat that strains take up
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
@@ -292,7 +292,7 @@ contains
             points))
          if (with_strain) self%thermal_load = assemble_thermal_load(mesh, sections, points)
          if (with_heat) call self%thermal%set_matrix(assemble_conduction(mesh, sections, points))
-         if (any(model%steps%is_transient)) then
+         if (any(model%steps%is_transient .or. model%steps%stability_frequency > 0)) then
             self%heat_capacity = capacities(model, temperature)
             self%capacity = assemble_capacity(mesh, sections, self%heat_capacity)
          end if

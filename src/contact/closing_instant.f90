@@ -60,6 +60,7 @@ module closing_instant
       real(dp), allocatable :: force(:, :)    !! (m, n) of the compressive forces [force]
       !> (m, n) of the shear forces, and of the slip in the increment; where they are asked for
       real(dp), allocatable :: shear(:, :), slip(:, :)
+      real(dp), allocatable :: motion(:, :)   !! (tail, n) of the unknowns, where slip is asked for
    end type contact_change_type
 
    !> Contact points on their way through the increment, 2n rows: n normal, then n tangential ones.
@@ -392,7 +393,9 @@ contains
             end associate
          end do
       end associate
-      if (with_slip) call add_slip(system, tangent, state, motion, -taken_up, change)
+      if (.not. with_slip) return
+      call add_slip(system, tangent, state, motion, -taken_up, change)
+      change%motion = motion
    end subroutine contact_response
 
    !> Changes of shear and slip.

@@ -25,7 +25,7 @@ module contact_heat
    private
    public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega, &
       take_temperatures, settle_conductance, at_own_temperatures, derivative_by_temperature, &
-      changes_by_temperature
+      changes_by_temperature, changes_by_faces
 
    !> How the unknowns of the tail follow the conductance of each contact point that carries heat.
    type :: jump_derivatives_type
@@ -303,17 +303,32 @@ contains
       real(dp), intent(in) :: of_tail(:, :)                    !! (thermal tail, n)
       real(dp), intent(in), optional :: made(:, :)             !! (heats, n)
       real(dp) :: change(size(coordinate), size(of_tail, 2))   !! (m, n)
-      real(dp) :: by_faces(2)
+      real(dp) :: jump(size(coordinate), size(of_tail, 2))
       integer :: k
 
       change = product_of(heat%jump_mean, of_tail)
       if (present(made)) change = change + product_of(heat%friction_mean, &
          workspace%friction%entering_part(made))
+      jump = 0.0_dp
+      do k = 1, size(coordinate)
+         if (bodies%jump_index(k) > 0) jump(k, :) = of_tail(bodies%jump_index(k), :)
+      end do
+      change = changes_by_faces(bodies, workspace, coordinate, change, jump)
+   end function changes_by_temperature
+
+   !> dW with the temperatures of the faces.
+   pure function changes_by_faces(bodies, workspace, coordinate, mean, jump) result(change)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
+      real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
+      real(dp), intent(in) :: mean(:, :), jump(:, :)           !! (m, n) their changes
+      real(dp) :: change(size(mean, 1), size(mean, 2))         !! (m, n)
+      real(dp) :: by_faces(2)
+      integer :: k
+
       do k = 1, size(coordinate)
          by_faces = graph_derivatives(workspace%pass%graph(k), coordinate(k))
-         change(k, :) = by_faces(1)*change(k, :)
-         if (bodies%jump_index(k) > 0) change(k, :) = change(k, :) + &
-            by_faces(2)*of_tail(bodies%jump_index(k), :)
+         change(k, :) = by_faces(1)*mean(k, :) + by_faces(2)*jump(k, :)
       end do
    contains
       !> Derivatives of omega by mean and jump at a coordinate.
@@ -336,7 +351,7 @@ contains
             end if
          end associate
       end function graph_derivatives
-   end function changes_by_temperature
+   end function changes_by_faces
 
    !> The derivative of the openings by the conductances that coordinates give, the temperatures
    !> following: of D domega with domega = dW + (dW/domega) domega.

@@ -226,9 +226,11 @@ contains
                   call record%warn('det(I - U'') is negative: the increment is too long to '// &
                      'show a mode that grows, the state does not last; take shorter increments')
                else if (allocated(workspace%friction%made)) then
+                  record%is_unstable = .true.
                   ! Heat of friction has no bound: the other solutions may be at infinity.
                   call record%warn('det(I - U'') is negative: the branch is unstable')
                else
+                  record%is_unstable = .true.
                   call record%warn('det(I - U'') is negative: the branch is unstable, and '// &
                      'there are at least two other solutions')
                end if

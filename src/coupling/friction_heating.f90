@@ -197,16 +197,20 @@ contains
    end function slips_before
 
    !> Changes of the heats with those of the contact.
-   pure function changes(self, bodies, contact, change) result(heat)
+   pure function changes(self, bodies, contact, change, growth) result(heat)
       class(friction_heating_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       type(contact_state_type), intent(in) :: contact      !! of which the changes are
       type(contact_change_type), intent(in) :: change
+      !> rate at which the changes grow; absent: they come about in the duration [1/time]
+      real(dp), intent(in), optional :: growth
       real(dp) :: heat(size(self%old), size(change%force, 2))   !! (n, columns)
-      real(dp) :: rate(size(contact%gap))
+      real(dp) :: rate(size(contact%gap)), by_slip
       integer :: j
 
       rate = rates_of_slip(self, bodies, contact)
+      by_slip = 1.0_dp/self%duration
+      if (present(growth)) by_slip = growth
       heat = 0.0_dp
       do j = 1, size(heat, 1)
          associate (k => bodies%points%heated(j), law => bodies%laws%heat(j), &
@@ -214,7 +218,7 @@ contains
             if (contact%contact_state(k) == contact_open) cycle
             if (law%speed < 0.0_dp) then
                heat(j, :) = -law%efficiency*(change%shear(k, :)*rate(k) + &
-                  contact%shear_force(k)*change%slip(k, :)/self%duration)
+                  contact%shear_force(k)*change%slip(k, :)*by_slip)
             else if (friction%coefficient*contact%force(k) < friction%largest_shear) then
                heat(j, :) = law%efficiency*law%speed*friction%coefficient*change%force(k, :)
             end if

@@ -49,6 +49,8 @@ module solution_report
       !> Real part of the eigenvalue of U' largest in modulus; NaN where nothing is iterated.
       real(dp) :: coupling_gain = 0.0_dp
       real(dp) :: coupling_gain_max = 0.0_dp !! largest real eigenvalue of U'; NaN likewise
+      !> Whether a steady state is proven to be unstable: det(I - U') < 0.
+      logical :: is_unstable = .false.
       type(work_record_type) :: work = work_record_type()       !! re-factorisation
       character(:), allocatable :: runaway   !! thermal runaway, in words; else unallocated
       type(string_type), allocatable :: notes(:)                !! unallocated for none

@@ -7,6 +7,8 @@
 !>    end do
 !>
 !> The start is a vector without any order: one that is near an eigenvector would hide the others.
+!> Products are wanted until the eigenvalue of largest modulus and the largest real one are sharp.
+!> A caller that seeks others says how many products it can have, and stops when it likes.
 module arnoldi
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use dense, only: eigenvalues
@@ -29,35 +31,47 @@ module arnoldi
       complex(dp) :: largest = (0.0_dp, 0.0_dp)    !! the eigenvalue of largest modulus
       real(dp) :: largest_real = -huge(1.0_dp)     !! the largest real one; -huge without any
       integer :: products = 0                      !! so far
+      logical :: is_checked = .false.              !! whether eigenvalues were sought with the last
+      complex(dp), allocatable :: value(:)         !! (k) all eigenvalues of the space then
+      real(dp), allocatable :: residual(:)         !! (k) of these
       real(dp), private :: nothing = 0.0_dp        !! as begin has it
+      integer, private :: most = 0                 !! products
+      logical, private :: stops_itself = .true.
+      real(dp), allocatable, private :: vectors(:, :)   !! (k, k) on the basis, as eigenvalues has it
       integer, private :: next_check = first_check
       real(dp), allocatable, private :: basis(:, :)      !! (n, products) orthonormal
       real(dp), allocatable, private :: projected(:, :)  !! (products, products) the matrix on it
    contains
       procedure :: begin
       procedure :: take
+      procedure :: eigenvector
    end type arnoldi_type
 
 contains
 
    !> Begins with a matrix of which nothing is known.
-   subroutine begin(self, n, nothing)
+   subroutine begin(self, n, nothing, most)
       class(arnoldi_type), intent(out) :: self
       integer, intent(in) :: n                     !! rows, > 0
       !> Modulus below which the largest real eigenvalue, where the others may be dense, need not be
       !> sharp.
       real(dp), intent(in) :: nothing
+      !> Products that the caller can have, who stops; absent: until both eigenvalues are sharp
+      integer, intent(in), optional :: most
       integer :: i
 
       self%nothing = nothing
+      self%most = n
+      self%stops_itself = .not. present(most)
+      if (present(most)) self%most = min(n, most)
       self%vector = [(modulo(golden*i, 1.0_dp) - 0.5_dp, i=1, n)]
       self%vector = self%vector/norm2(self%vector)
-      allocate (self%basis(n, n), self%projected(n, n))
+      allocate (self%basis(n, self%most), self%projected(self%most, self%most))
       self%wants_product = .true.
    end subroutine begin
 
    !> Takes the product of the vector. No more are wanted when both eigenvalues are sharp, the space
-   !> is invariant, or the product overflowed; then none is found.
+   !> is invariant or full, or the product overflowed; then none is found.
    subroutine take(self, product)
       class(arnoldi_type), intent(inout) :: self
       real(dp), intent(in) :: product(:)           !! (n)
@@ -65,6 +79,7 @@ contains
       integer :: pass
 
       self%wants_product = .false.
+      self%is_checked = .false.
       if (.not. all(ieee_is_finite(product))) return
       self%products = self%products + 1
       associate (n => size(product), k => self%products)
@@ -79,8 +94,9 @@ contains
          end do
          length = norm2(rest)
          if (k == n .or. length <= rounding*norm2(product)) length = 0.0_dp
-         if (length <= 0.0_dp .or. k == self%next_check) then
+         if (length <= 0.0_dp .or. k == self%next_check .or. k == self%most) then
             call seek(self, length)
+            self%wants_product = self%wants_product .and. k < self%most .and. length > 0.0_dp
             if (.not. self%wants_product) return
             self%next_check = k + k/2
          end if
@@ -95,12 +111,22 @@ contains
       type(arnoldi_type), intent(inout) :: self
       real(dp), intent(in) :: length   !! what the last product is outside of the space
       real(dp), allocatable :: real_part(:), imaginary_part(:), residual(:)
-      integer :: largest, largest_real
+      integer :: i, largest, largest_real
 
-      call eigenvalues(self%projected(:self%products, :self%products), real_part, imaginary_part, &
-         self%found, residual)
-      if (.not. self%found) return
-      residual = length*residual
+      associate (k => self%products)
+         call eigenvalues(self%projected(:k, :k), real_part, imaginary_part, self%found, &
+            self%vectors)
+         if (.not. self%found) return
+         residual = length*abs(self%vectors(k, :))
+         do i = 1, k - 1
+            if (imaginary_part(i) > 0.0_dp) residual(i:i + 1) = hypot(residual(i), residual(i + 1))
+         end do
+      end associate
+      self%is_checked = .true.
+      self%value = cmplx(real_part, imaginary_part, dp)
+      self%residual = residual
+      self%wants_product = .not. self%stops_itself
+      if (self%wants_product) return
       largest = maxloc(hypot(real_part, imaginary_part), dim=1)
       largest_real = maxloc(real_part, mask=abs(imaginary_part) <= nearly_real* &
          maxval(abs(real_part)), dim=1)
@@ -113,5 +139,18 @@ contains
          sharp*abs(self%largest_real) .and. abs(self%largest_real) + residual(largest_real) > &
          self%nothing)
    end subroutine seek
+
+   !> The eigenvector of an eigenvalue, its real and imaginary part.
+   pure function eigenvector(self, i) result(vector)
+      class(arnoldi_type), intent(in) :: self
+      integer, intent(in) :: i                     !! index into value
+      real(dp) :: vector(size(self%basis, 1), 2)   !! (n, 2)
+
+      vector = 0.0_dp
+      associate (k => self%products, imaginary => aimag(self%value(i)))
+         vector(:, 1) = matmul(self%basis(:, :k), self%vectors(:, i))
+         if (imaginary > 0.0_dp) vector(:, 2) = matmul(self%basis(:, :k), self%vectors(:, i + 1))
+      end associate
+   end function eigenvector
 
 end module arnoldi

@@ -8,13 +8,13 @@
 !> as unknowns too, however large W is (Woodbury).
 module dense
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use blas_lapack, only: dgeev, dgelsy, dgemm, dgemv, dgesvd, dgetrf, dgetrs
+   use blas_lapack, only: dgeev, dgelsy, dgemm, dgemv, dgesvd, dgetrf, dgetrs, dsyev
    use column_panels, only: column_panels_type
    use kinds, only: dp, long
    implicit none
    private
-   public :: lu_type, null_space, column_space, eigenvalues, least_squares, product_of, &
-      tail_factors_type, tail_flops
+   public :: lu_type, null_space, column_space, eigenvalues, symmetric_eigenvectors, &
+      least_squares, product_of, tail_factors_type, tail_flops
 
    !> Pivot, relative to its column, below which it is rounding.
    real(dp), parameter :: lost = 1.0e-14_dp
@@ -136,38 +136,55 @@ contains
    end function negative_determinant
 
    !> Eigenvalues of a general matrix.
-   subroutine eigenvalues(matrix, real_part, imaginary_part, found, last)
+   subroutine eigenvalues(matrix, real_part, imaginary_part, found, vectors)
       real(dp), intent(in) :: matrix(:, :)                      !! (n, n), n > 0
       real(dp), allocatable, intent(out) :: real_part(:)        !! (n)
       real(dp), allocatable, intent(out) :: imaginary_part(:)   !! (n)
       logical, intent(out) :: found !! LAPACK found them; not where the matrix overflowed
-      !> (n) moduli of the last components of the eigenvectors, whose length is 1
-      real(dp), allocatable, intent(out), optional :: last(:)
+      !> (n, n) eigenvectors of length 1; of a pair, in two columns, real and imaginary part of the
+      !> first one's
+      real(dp), allocatable, intent(out), optional :: vectors(:, :)
       real(dp), allocatable :: copy(:, :), right(:, :), work(:)
       real(dp) :: left(1, 1), best(1)
       character :: wanted
-      integer :: i, info, n
+      integer :: info, n
 
       n = size(matrix, 1)
       copy = matrix
       allocate (real_part(n), imaginary_part(n), source=0.0_dp)
       found = all(ieee_is_finite(matrix))
       if (.not. found) return
-      wanted = merge('V', 'N', present(last))
-      allocate (right(merge(n, 1, present(last)), merge(n, 1, present(last))))
+      wanted = merge('V', 'N', present(vectors))
+      allocate (right(merge(n, 1, present(vectors)), merge(n, 1, present(vectors))))
       call dgeev('N', wanted, n, copy, n, real_part, imaginary_part, left, 1, right, &
          size(right, 1), best, -1, info)
       allocate (work(max(1, nint(best(1)))))
       call dgeev('N', wanted, n, copy, n, real_part, imaginary_part, left, 1, right, &
          size(right, 1), work, size(work), info)
       found = info == 0
-      if (.not. present(last)) return
-      last = abs(right(n, :))
-      ! Columns i and i + 1 are real and imaginary part of the vectors of a pair.
-      do i = 1, n - 1
-         if (imaginary_part(i) > 0.0_dp) last(i:i + 1) = hypot(last(i), last(i + 1))
-      end do
+      if (present(vectors)) call move_alloc(right, vectors)
    end subroutine eigenvalues
+
+   !> Eigenvalues of a symmetric matrix, ascending, and its eigenvectors.
+   subroutine symmetric_eigenvectors(matrix, values, vectors, found)
+      real(dp), intent(in) :: matrix(:, :)                   !! (n, n), n > 0; its upper triangle
+      real(dp), allocatable, intent(out) :: values(:)        !! (n)
+      real(dp), allocatable, intent(out) :: vectors(:, :)    !! (n, n) orthonormal columns
+      logical, intent(out) :: found !! LAPACK found them; not where the matrix overflowed
+      real(dp), allocatable :: work(:)
+      real(dp) :: best(1)
+      integer :: info, n
+
+      n = size(matrix, 1)
+      vectors = matrix
+      allocate (values(n), source=0.0_dp)
+      found = all(ieee_is_finite(matrix))
+      if (.not. found) return
+      call dsyev('V', 'U', n, vectors, n, values, best, -1, info)
+      allocate (work(max(1, nint(best(1)))))
+      call dsyev('V', 'U', n, vectors, n, values, work, size(work), info)
+      found = info == 0
+   end subroutine symmetric_eigenvectors
 
    !> The product of a matrix and some columns.
    pure function product_of(matrix, columns) result(product)

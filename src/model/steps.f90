@@ -84,6 +84,8 @@ module steps
       !> Part of the range of temperatures that an increment of a transient may err by.
       real(dp) :: local_error = 1.0e-3_dp
       logical :: dilates = .false.                   !! DILATATION=YES
+      !> *STABILITY at every n-th increment and the last; 0 never
+      integer :: stability_frequency = 0
       real(dp) :: largest_change = huge(1.0_dp)      !! DELTMX=, of a temperature in an increment
       integer :: max_increments = 100                !! INC=
       logical :: ramped = .true.                     !! loads ramp over the step; else whole at once

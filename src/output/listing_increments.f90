@@ -5,7 +5,7 @@ module listing_increments
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use contact_system, only: contact_open, contact_stick
-   use increment_quantities, only: error_values, history_value
+   use increment_quantities, only: error_values, history_value, stability_words
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, page_width, print_wrapped
@@ -164,6 +164,8 @@ contains
          write (unit, '(a)') history_line(needs_friction_heat, record)
       end if
       if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
+      if (stability_words(record) /= '') call print_wrapped(unit, '   ', 'stability: '// &
+         stability_words(record))
       associate (work => record%work)
          if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
             'refactored ', work%columns_again, ' of ', work%columns_full, ' columns (', &

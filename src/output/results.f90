@@ -19,7 +19,7 @@ module results
    use model, only: model_type
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_heat, needs_mechanics, &
-      needs_nothing, needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, &
+      needs_nothing, needs_stability, needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, &
       of_interface, of_passes, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
@@ -42,7 +42,7 @@ module results
 
    type(quantity_type), parameter :: step_time = quantity_type('time', of_history, 'time', &
       description='total time at the end of the step')
-   integer, parameter :: history = 1, convergence = 2   !! tables
+   integer, parameter :: history = 1, convergence = 2, stability = 3   !! tables
    character(*), parameter :: contact_end = '.contact.vtkhdf', end_of_name = '.vtkhdf'
    character(*), parameter :: earlier = '.earlier'   !! before the end of the name
    integer(long), parameter :: memory_limit = 67108864_long   !! bytes that may wait in memory
@@ -55,8 +55,8 @@ module results
       type(status_file_type) :: passes                        !! `.cvg`
       type(field_results_type) :: fields                      !! `/VTKHDF`
       type(restart_results_type) :: restarts                  !! `/restart`
-      !> `/history`, `/convergence`, `/contact/<name>` of each interface, then, where errors are
-      !> estimated, `/errors` and `/errors/<name>` of each interface
+      !> `/history`, `/convergence`, `/stability`, `/contact/<name>` of each interface, then, where
+      !> errors are estimated, `/errors` and `/errors/<name>` of each interface
       type(result_table_type), allocatable :: tables(:)
       type(working_file_type) :: contact_file                 !! `NAME.contact.vtkhdf`
       type(contact_grid_type) :: contact_grid                 !! its contents
@@ -133,7 +133,8 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      logical :: has(0:needs_friction_heat), has_errors
+      type(quantity_type), allocatable :: of_history_alone(:), of_stability(:)
+      logical :: has(0:needs_stability), has_errors
       integer :: i, expected, n
 
       call start_hdf5(error)
@@ -150,21 +151,26 @@ contains
          [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected, &
          model%units)
       has_errors = self%has_contact .and. model%estimates_errors
-      allocate (self%tables(merge(3 + 2*n, 2 + n, has_errors)))
+      allocate (self%tables(merge(4 + 2*n, 3 + n, has_errors)))
       associate (tables => self%tables, units => model%units, steps => size(model%steps))
-         call tables(history)%start('/history', [datasets(of_history, has), &
+         of_stability = datasets(of_history, has)
+         of_history_alone = pack(of_stability, of_stability%needs /= needs_stability)
+         of_stability = pack(of_stability, of_stability%needs == needs_stability)
+         if (size(of_stability) > 0) of_stability = [of_history_alone(1), of_stability]
+         call tables(stability)%start('/stability', of_stability, 0, expected, units)
+         call tables(history)%start('/history', [of_history_alone, &
             datasets(of_bodies, has)], model%mesh%body_count, expected, units)
          call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected, &
             units)
          do i = 1, n
-            call tables(2 + i)%start('/contact/'//interfaces(i)%name, &
+            call tables(3 + i)%start('/contact/'//interfaces(i)%name, &
                [datasets(of_contact_points, has), datasets(of_interface, has)], &
                size(interfaces(i)%slave), expected, units)
          end do
          if (.not. has_errors) return
-         call tables(3 + n)%start('/errors', [step_time], 0, steps, units)
+         call tables(4 + n)%start('/errors', [step_time], 0, steps, units)
          do i = 1, n
-            call tables(3 + n + i)%start('/errors/'//interfaces(i)%name, bounded_quantities(), 0, &
+            call tables(4 + n + i)%start('/errors/'//interfaces(i)%name, bounded_quantities(), 0, &
                steps, units)
          end do
       end associate
@@ -216,7 +222,8 @@ contains
       if (allocated(error)) call self%give_up()
    end subroutine go_on
 
-   !> Which number of rows is that of a table: of the increments, the passes, or the ends of steps.
+   !> Which number of rows is that of a table: of the increments, the passes, the ends of steps, or
+   !> the analyses of stability.
    pure integer function row_of(self, i)
       class(results_type), intent(in) :: self
       integer, intent(in) :: i                            ! index of the table
@@ -224,6 +231,7 @@ contains
       row_of = 1
       if (i == convergence) row_of = 2
       if (index(self%tables(i)%group, '/errors') == 1) row_of = 4
+      if (i == stability) row_of = 5
    end function row_of
 
    !> Adds a restart, with the rows of all datasets at its increment.
@@ -236,7 +244,8 @@ contains
 
       associate (last => self%tables(size(self%tables)))
          rows = [self%accepted, self%tables(convergence)%sets(1)%rows(), self%fields%increments, &
-            last%sets(1)%rows()]
+            last%sets(1)%rows(), 0]
+         if (size(self%tables(stability)%sets) > 0) rows(5) = self%tables(stability)%sets(1)%rows()
       end associate
       call integers(restart, 'rows', rows)
       call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts, &
@@ -264,19 +273,20 @@ contains
       self%accepted = self%accepted + 1
       call self%tables(history)%append(record)
       call self%increments%add_increment(record)
+      if (allocated(record%stability)) call self%tables(stability)%append(record)
       if (allocated(record%iterations)) then
          call self%tables(convergence)%append(record%iterations)
          call self%passes%add_iterations(record%iterations)
       end if
       do i = 1, size(interfaces)
-         call self%tables(2 + i)%append(interfaces(i), record%contacts(i))
+         call self%tables(3 + i)%append(interfaces(i), record%contacts(i))
       end do
       if (self%has_contact) call self%contact_grid%append(record, interfaces)
       if (allocated(record%errors)) then
          n = size(interfaces)
-         call self%tables(3 + n)%append(record)
+         call self%tables(4 + n)%append(record)
          do i = 1, n
-            call self%tables(3 + n + i)%append(record%errors(i))
+            call self%tables(4 + n + i)%append(record%errors(i))
          end do
       end if
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
@@ -343,7 +353,7 @@ contains
    pure function what_is_solved(model, has_contact) result(has)
       type(model_type), intent(in) :: model
       logical, intent(in) :: has_contact
-      logical :: has(0:needs_friction_heat)
+      logical :: has(0:needs_stability)
 
       associate (analysis => model%steps%analysis)
          has(needs_nothing) = .true.
@@ -352,6 +362,7 @@ contains
          has(needs_mechanics) = any(solves_mechanics(analysis))
          has(needs_storage) = any(model%steps%is_transient)
          has(needs_dilatation) = any(model%steps%dilates)
+         has(needs_stability) = any(model%steps%stability_frequency > 0)
          has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
             model%interactions, model%contacts)
          has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &
@@ -462,10 +473,10 @@ contains
          call self%fields%write_head(file, model, self%element_points)
          call file%create_group('/contact')
          do i = 1, size(self%tables)
-            call file%create_group(self%tables(i)%group)
+            if (size(self%tables(i)%sets) > 0) call file%create_group(self%tables(i)%group)
          end do
          do i = 1, size(interfaces)
-            associate (group => self%tables(2 + i)%group)
+            associate (group => self%tables(3 + i)%group)
                call file%set(group, 'friction', &
                   model%interactions(model%contacts(i)%interaction)%friction%coefficient)
                call file%set(group, 'pairing', pairing_name(interfaces(i)%pairing))

@@ -6,6 +6,7 @@ module summary
    use contact_quantities, only: contact_values, end_words, estimated, zone_words
    use contact_system, only: contact_open, contact_stick
    use interface_quantities, only: is_end_of_face, rises_to_end
+   use increment_quantities, only: stability_words
    use kinds, only: dp
    use model, only: model_type
    use quantity_types, only: needs_heat, quantity_type
@@ -45,6 +46,7 @@ module summary
       !> Likewise: the largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
       type(string_type), allocatable :: steps(:)   !! a line for each step and interface
+      character(:), allocatable :: stability                       !! whether it lasts; or empty
    contains
       procedure :: take
       procedure :: add_lines
@@ -69,6 +71,7 @@ contains
       self%time = record%time
       self%load = record%load
       self%contacts = record%contacts
+      self%stability = stability_words(record)
       if (allocated(self%errors)) deallocate (self%errors)
       if (allocated(record%errors)) self%errors = record%errors
       if (allocated(self%heat)) deallocate (self%heat)
@@ -108,7 +111,7 @@ contains
    pure integer function most_lines(interfaces, steps)
       integer, intent(in) :: interfaces, steps   !! number of each
 
-      most_lines = 1 + interfaces*(1 + size(estimated))
+      most_lines = 2 + interfaces*(1 + size(estimated))
       if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
       if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
    end function most_lines
@@ -138,6 +141,7 @@ contains
          call add_quantities(self, model, interfaces(i), i, lines)
       end do
       if (size(interfaces) == 0) call add_fields(self, model, lines)
+      if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines
 
    !> The temperatures, the heat and the displacement of a deck without contact.

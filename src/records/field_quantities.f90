@@ -2,8 +2,8 @@
 !> by those of the result file.
 module field_quantities
    use kinds, only: dp
-   use quantity_types, only: needs_heat, needs_mechanics, needs_temperature, of_elements, &
-      of_nodes, of_points, quantity_type
+   use quantity_types, only: needs_heat, needs_mechanics, needs_stability, needs_temperature, &
+      of_elements, of_nodes, of_points, quantity_type
    use records, only: field_record_type
    implicit none
    private
@@ -39,6 +39,10 @@ module field_quantities
       is_traded=.true., description='temperature'), &
       quantity_type('heat_flux', of_points, 'power/length^2', needs_heat, values=3, &
       description='heat flux, averaged per body and section', components='x y z'), &
+      quantity_type('mode_temperature', of_points, '-', needs_stability, &
+      description='temperature of the fastest small motion, the largest 1'), &
+      quantity_type('mode_displacement', of_points, 'length/temperature', needs_stability, &
+      values=3, description='displacement of the fastest small motion', components='x y z'), &
       quantity_type('stress_error', of_elements, 'stress', needs_mechanics, &
       description='estimated error of the stress by the mesh, rms in the element'), &
       quantity_type('heat_flux_error', of_elements, 'power/length^2', needs_heat, &
@@ -65,6 +69,10 @@ contains
          values = rows(fields%displacement, [2], point_node)
       case ('displacement')
          values = rows(fields%displacement, [1, 2, 0], point_node)
+      case ('mode_displacement')
+         values = rows(fields%mode_displacement, [1, 2, 0], point_node)
+      case ('mode_temperature')
+         if (allocated(fields%mode_temperature)) values = fields%mode_temperature(point_node)
       case ('NT', 'temperature')
          if (allocated(fields%temperature)) values = fields%temperature(point_node)
       case ('S11')

@@ -4,14 +4,15 @@ module increment_quantities
    use kinds, only: dp
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_heat, needs_mechanics, &
-      needs_storage, of_bodies, of_elements, &
+      needs_stability, needs_storage, of_bodies, of_elements, &
       of_history, of_passes, quantity_type
    use field_recovery, only: error_record_type
-   use records, only: increment_record_type
+   use records, only: increment_record_type, stability_record_type
    use solution_report, only: iteration_record_type
+   use text, only: counted, few_digits
    implicit none
    private
-   public :: increment_table, history_value, error_values, pass_value
+   public :: increment_table, history_value, error_values, pass_value, stability_words
 
    type(quantity_type), parameter :: increment_table(*) = [ &
       quantity_type('time', of_history, 'time', &
@@ -47,6 +48,12 @@ module increment_quantities
       description='real part of the eigenvalue of U'' that is largest in modulus'), &
       quantity_type('coupling_gain_max', of_history, '-', needs_coupling, &
       label='largest real eigenvalue', description='largest real eigenvalue of U'''), &
+      quantity_type('unstable_modes', of_history, '-', needs_stability, is_integer=.true., &
+      description='small motions of the state that grow'), &
+      quantity_type('growth_rate', of_history, '1/time', needs_stability, &
+      description='rate of the fastest one, of the slowest to decay where none grows'), &
+      quantity_type('period', of_history, 'time', needs_stability, &
+      description='period of its oscillation, 0 without one'), &
       quantity_type('stress_error', of_bodies, '-', needs_mechanics, label='stress', &
       description='estimated error of the stress by the mesh, relative; one column per body'), &
       quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
@@ -115,10 +122,69 @@ contains
          value = record%coupling_gain
       case ('coupling_gain_max')
          value = record%coupling_gain_max
+      case ('unstable_modes', 'growth_rate', 'period')
+         value = stability_value(name, record)
       case default
          value = ieee_value(value, ieee_quiet_nan)
       end select
    end function history_value
+
+   !> A quantity of the small motions; NaN where they are not known.
+   pure function stability_value(name, record) result(value)
+      character(*), intent(in) :: name
+      type(increment_record_type), intent(in) :: record
+      real(dp) :: value
+
+      value = ieee_value(value, ieee_quiet_nan)
+      if (.not. allocated(record%stability)) return
+      if (.not. record%stability%is_known) return
+      select case (name)
+      case ('unstable_modes')
+         value = record%stability%unstable_modes
+      case ('growth_rate')
+         value = record%stability%growth_rate
+      case default
+         value = record%stability%period
+      end select
+   end function stability_value
+
+   !> Whether a state lasts, in words; empty where nothing is known of it.
+   pure function stability_words(record) result(words)
+      type(increment_record_type), intent(in) :: record
+      character(:), allocatable :: words   !! such as 'stable; slowest mode decays in 41'
+
+      words = ''
+      if (record%is_unstable) words = 'unstable whatever the heat capacities are: det(I - U'') '// &
+         'is negative'
+      if (.not. allocated(record%stability)) return
+      associate (found => record%stability)
+         if (found%is_known) words = motion_words(found)
+         if (.not. allocated(found%doubt) .or. (record%is_unstable .and. .not. found%is_known)) &
+            return
+         if (words == '') then
+            words = 'uncertain: '//found%doubt
+         else
+            words = 'uncertain, '//words//'; '//found%doubt
+         end if
+      end associate
+   end function stability_words
+
+   !> Small motions in words.
+   pure function motion_words(found) result(words)
+      type(stability_record_type), intent(in) :: found
+      character(:), allocatable :: words
+
+      if (found%unstable_modes > 0) then
+         words = 'unstable: '//counted(found%unstable_modes, 'mode')//trim(merge(' grows', &
+            ' grow ', found%unstable_modes == 1))//', doubling in '// &
+            few_digits(log(2.0_dp)/found%growth_rate, 3)
+      else if (found%growth_rate < 0.0_dp) then
+         words = 'stable; slowest mode decays in '//few_digits(-1.0_dp/found%growth_rate, 3)
+      else
+         words = 'neutral: a mode neither grows nor decays'
+      end if
+      if (found%period > 0.0_dp) words = words//', period '//few_digits(found%period, 3)
+   end function motion_words
 
    !> A quantity of the bodies or of the elements.
    pure function error_values(quantity, record) result(values)

@@ -13,7 +13,7 @@ module records
    public :: increment_record_type, contact_record_type
    public :: field_record_type, attempt_record_type
    public :: add_attempts, note_failure
-   public :: interface_errors_type
+   public :: interface_errors_type, stability_record_type
 
 
    !> Bounds of the errors of an interface: how far its quantities may be off to either side. NaN
@@ -82,7 +82,19 @@ module records
       real(dp), allocatable :: reaction_heat(:)
       !> (nodes) the same with loads and films, without what crosses the contacts [power]
       real(dp), allocatable :: external_heat(:)
+      ! Of the fastest small motion, where stability is analysed.
+      real(dp), allocatable :: mode_temperature(:)      !! (nodes) the largest 1
+      real(dp), allocatable :: mode_displacement(:, :)  !! (2, nodes) [length/temperature]
    end type field_record_type
+
+   !> Small motions of a state in time.
+   type :: stability_record_type
+      logical :: is_known = .false.                 !! whether a fastest motion was found
+      integer :: unstable_modes = 0                 !! motions that grow
+      real(dp) :: growth_rate = 0.0_dp              !! of the fastest, negative: it decays [1/time]
+      real(dp) :: period = 0.0_dp                   !! of its oscillation, 0 without one [time]
+      character(:), allocatable :: doubt            !! why it is uncertain; unallocated: it is not
+   end type stability_record_type
 
    !> An attempt at an increment that failed.
    type :: attempt_record_type
@@ -129,6 +141,7 @@ module records
       type(error_record_type) :: heat_flux_error = error_record_type()
       !> One an *EL PRINT of the step, empty where its table is not due; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
+      type(stability_record_type), allocatable :: stability   !! where *STABILITY is due
       !> Where a restart is due: what the run needs to go on from here
       type(state_table_type), allocatable :: restart
    end type increment_record_type

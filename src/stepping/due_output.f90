@@ -7,7 +7,8 @@ module due_output
    use time_points, only: time_points_type
    implicit none
    private
-   public :: fields_are_due, is_judged, needs_recovery, restart_is_due, table_is_due
+   public :: fields_are_due, is_judged, needs_recovery, restart_is_due, &
+      stability_is_due, table_is_due
 
    real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
 
@@ -52,6 +53,16 @@ contains
       restart_is_due = table_is_due(model%steps(record%step)%restart_frequency, no_others, &
          record, model)
    end function restart_is_due
+
+   !> Whether the stability of the state is analysed: at every n-th increment of a step and its last.
+   pure logical function stability_is_due(record, model)
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+      type(time_points_type) :: no_others
+
+      stability_is_due = table_is_due(model%steps(record%step)%stability_frequency, no_others, &
+         record, model)
+   end function stability_is_due
 
    !> How near the end of an increment meets an instant.
    pure real(dp) function tolerance(record, model)

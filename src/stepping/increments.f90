@@ -6,6 +6,7 @@ module increments
    use contact_system, only: contact_open
    use controls, only: stage_part
    use discretisation_errors, only: recovery_type
+   use due_output, only: stability_is_due
    use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: solved_loads_type
    use balances, only: sound_imbalance
@@ -51,6 +52,8 @@ module increments
       type(corrections_type) :: corrections         !! what bodies are beyond their operators
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
+      !> What its solution left, where its stability is analysed
+      type(increment_workspace_type) :: solved
       type(solved_loads_type), allocatable :: known(:)  !! loads of earlier increments, solved
       type(increment_control_type) :: control       !! position in the steps, size of increments
       type(run_seconds_type) :: seconds             !! where the time went
@@ -437,6 +440,7 @@ contains
             call complete_record(bodies, model, self%recovery, self%loads, trial%data, next, record)
             self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
             call warn_of_tables(model, record)
+            if (stability_is_due(record, model)) self%solved = trial%workspace
             call check_record(record, step%analysis, error)
             if (allocated(error)) return
          end if

@@ -1,7 +1,7 @@
 !> *STEP to *END STEP -> steps with their increments; loads become requests.
 module deck_builder_steps
    use card_parameters, only: choose, has_parameter, is_on, lacks_parameter, parameter_place, &
-      take_parameter
+      take_from, take_parameter
    use card_values, only: check_extra, decimal_comma, report_decimal_comma, take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
@@ -168,6 +168,15 @@ contains
          counts%element_prints = counts%element_prints + 1
          call build_print(cards, card, counts%element_prints == 1, context, mesh, report, &
             step%element_prints)
+      case ('STABILITY')
+         if (step%analysis /= analysis_coupled .or. counts%analyses == 0) then
+            call report%error(card%place, '*STABILITY needs a step with *COUPLED '// &
+               'TEMPERATURE-DISPLACEMENT before it: whether a state lasts is decided by heat '// &
+               'and contact together')
+            return
+         end if
+         step%stability_frequency = huge(1)
+         call take_from(1, card, 'FREQUENCY', report, step%stability_frequency)
       case ('CONTACT PRINT')
          call read_frequency(card, context, report, step%contact_print_frequency, &
             step%contact_print_points)

@@ -68,7 +68,7 @@ module keywords
 
    integer, parameter :: shortest = 3   !! letters of an abbreviation
 
-   type(keyword_type), parameter :: known_keywords(83) = [ &
+   type(keyword_type), parameter :: known_keywords(84) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -137,6 +137,7 @@ module keywords
          'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM?/~EXTRAPOLATION=/~CONVERT SDI='), &
       keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
       keyword_type('NO ANALYSIS', built, in_step, 0, 0, ''), &
+      keyword_type('STABILITY', built, in_step, 0, 0, 'FREQUENCY='), &
       keyword_type('TIME POINTS', built, in_model, 1, many, 'NAME=/TIME=/GENERATE'), &
       keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
          'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/~END='), &

@@ -1,0 +1,150 @@
+!> Whether the state of a coupled step lasts: the number of small motions that grow, and the
+!> fastest one.
+!>
+!> The number is that of the bodies projected on their responses at rates from a tenth of the
+!> slowest conduction on, up to where the gain of the coupling is small. The fastest motion is found
+!> on the bodies themselves (fastest_motion), where the growing ones are counted again: the one
+!> checks the other.
+module growing_modes
+   use dense, only: eigenvalues, product_of
+   use due_output, only: stability_is_due
+   use errors, only: error_type
+   use fastest_motion, only: find_fastest, neutral
+   use increments, only: simulation_type
+   use kinds, only: dp
+   use materials, only: heat_capacity
+   use model, only: follows_temperatures, model_type
+   use projected_motions, only: projected_motions_type
+   use records, only: increment_record_type
+   use small_motions, only: shifted_conduction_type, small_motion_type
+   implicit none
+   private
+   public :: analyse_stability
+
+   real(dp), parameter :: slower = 0.1_dp      !! than the slowest conduction: the first rate
+   real(dp), parameter :: ratio = 10.0_dp      !! of one rate to the next
+   integer, parameter :: least_rates = 3, most_rates = 8
+   real(dp), parameter :: small_gain = 0.3_dp  !! largest modulus, beyond which nothing grows
+
+contains
+
+   !> Analyses the state at the end of an increment, where that is due.
+   subroutine analyse_stability(model, simulation, record)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation        !! the run at its end
+      type(increment_record_type), intent(inout) :: record
+      type(error_type), allocatable :: error
+
+      if (.not. stability_is_due(record, model)) return
+      allocate (record%stability)
+      associate (found => record%stability)
+         if (.not. any(heat_capacity(model%materials(model%sections%material)) > 0.0_dp)) then
+            found%doubt = 'bodies without *SPECIFIC HEAT and *DENSITY have no course in time, '// &
+               'and det(I - U'') is not negative'
+            return
+         end if
+         call find_motions(model, simulation, record, error)
+         if (allocated(error)) found%doubt = error%message
+         if (any(simulation%state%resting)) found%doubt = &
+            'contact points rest where their law jumps'
+         if (follows_temperatures(model)) found%doubt = &
+            'changes of properties with the temperature are left out'
+         if (model%steps(record%step)%dilates) found%doubt = &
+            'the heat that strains take up is left out'
+      end associate
+   end subroutine analyse_stability
+
+   !> Counts the growing motions and finds the fastest one.
+   !> Errors: as small_motion_type's begin and shifted_conduction_type's factor.
+   subroutine find_motions(model, simulation, record, error)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(increment_record_type), intent(inout) :: record   ! with an empty stability record
+      type(error_type), allocatable, intent(out) :: error
+      type(small_motion_type) :: motion
+      complex(dp), allocatable :: rates(:)
+      logical :: is_known
+
+      call motion%begin(simulation%bodies, simulation%state, simulation%heats( &
+         simulation%in_use), simulation%solved, error)
+      if (allocated(error)) return
+      rates = [complex(dp) ::]
+      is_known = .true.
+      if (size(motion%active) + motion%heated > 0) call project(model, simulation, motion, &
+         rates, is_known, error)
+      if (allocated(error)) return
+      record%stability%unstable_modes = count(real(rates) > neutral*slowest_conduction(model))
+      call find_fastest(model, simulation, motion, rates, slowest_conduction(model), record, error)
+      if (.not. is_known) record%stability%doubt = 'the projected bodies have no sound eigenvalues'
+   end subroutine find_motions
+
+   !> Rates of the projected bodies.
+   !> Errors: as shifted_conduction_type's factor.
+   subroutine project(model, simulation, motion, rates, is_known, error)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(small_motion_type), intent(in) :: motion
+      complex(dp), allocatable, intent(out) :: rates(:)
+      logical, intent(out) :: is_known
+      type(error_type), allocatable, intent(out) :: error
+      type(projected_motions_type) :: projection
+      type(shifted_conduction_type) :: conduction
+      real(dp), allocatable :: answer(:, :), by_rate(:, :), response(:, :), stored(:, :)
+      real(dp) :: sigma
+      integer :: i
+
+      sigma = slower*slowest_conduction(model)
+      do i = 1, most_rates
+         associate (bodies => simulation%bodies, state => simulation%state)
+            call conduction%factor(model, bodies, state, simulation%heats(simulation%in_use), &
+               sigma, error)
+            if (allocated(error)) return
+            response = conduction%responses(bodies, motion)
+            allocate (stored, mold=response)
+            call bodies%capacity%multiply_columns(response, stored)
+            answer = motion%answers(bodies, state, response, 0.0_dp)
+            by_rate = 0.0_dp*answer
+            if (motion%takes_rates) by_rate = motion%answers(bodies, state, response, 1.0_dp) - &
+               answer
+            call projection%add(sigma, motion%heats(bodies, response), &
+               product_of(transpose(response), stored), answer, by_rate)
+            deallocate (stored)
+         end associate
+         if (i >= least_rates .and. largest_modulus(answer + sigma*by_rate) <= small_gain) exit
+         sigma = ratio*sigma
+      end do
+      call projection%rates(rates, is_known)
+   end subroutine project
+
+   !> The largest modulus of the eigenvalues of a matrix.
+   real(dp) function largest_modulus(matrix)
+      real(dp), intent(in) :: matrix(:, :)
+      real(dp), allocatable :: real_part(:), imaginary_part(:)
+      logical :: found
+
+      call eigenvalues(matrix, real_part, imaginary_part, found)
+      largest_modulus = maxval(hypot(real_part, imaginary_part))
+   end function largest_modulus
+
+   !> Rate at which temperatures even out over the largest body that conducts worst, k/(rho c L^2).
+   pure real(dp) function slowest_conduction(model) result(rate)
+      type(model_type), intent(in) :: model
+      real(dp) :: extent(2)
+      logical :: is_of(size(model%mesh%node_number))
+      integer :: body, e
+
+      rate = huge(rate)
+      do body = 1, model%mesh%body_count
+         is_of = model%mesh%node_body == body
+         extent = [(maxval(model%mesh%coordinates(e, :), mask=is_of) - &
+            minval(model%mesh%coordinates(e, :), mask=is_of), e=1, 2)]
+         e = findloc(model%mesh%element_body, body, dim=1)
+         associate (material => model%materials(model%sections(model%mesh%element_section(e))% &
+            material))
+            if (heat_capacity(material) > 0.0_dp) rate = min(rate, maxval(material% &
+               conductivity)/(heat_capacity(material)*maxval(extent)**2))
+         end associate
+      end do
+   end function slowest_conduction
+
+end module growing_modes
