@@ -9,6 +9,7 @@ module coupled_increment
    use contact_heat, only: changes_by_temperature, derivative_by_temperature, heat_by_omega, &
       jump_derivatives, jump_derivatives_type
    use contact_operator, only: make_graph, opening_changes, opening_derivative
+   use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type
    use controls, only: method_picard, start_both, start_closed, start_given, start_open, &
       start_previous
@@ -31,8 +32,10 @@ module coupled_increment
    real(dp), parameter :: end_conductance(2) = [1.0e-8_dp, 1.0e8_dp] !! of the starts open and
    !! closed, in the conductance of the bodies about the contact point
    real(dp), parameter :: different = 1.0e-3_dp !! in omega, relative: more than residuals explain
+   real(dp), parameter :: disturbed = 0.5_dp    !! of log omega at a start that is turned over
    real(dp), parameter :: near_turning_point = 0.1_dp !! distance of the largest real eigenvalue
    !! from 1
+   real(dp), parameter :: same = 1.0e3_dp       !! times the rounding of coordinates: equal gaps
    real(dp), parameter :: no_gain = 1.0e-6_dp      !! a largest real gain that is none beside 1
    real(dp), parameter :: least_part = 1.0e-12_dp  !! of the largest factor, that counts in scales
 
@@ -117,9 +120,9 @@ contains
       end select
    end function starting_conductance
 
-   !> The increment from the last ones, and from both ends of the conductance: do all lead to one
-   !> solution? That of the first start that leads to any is the increment's. It is found last, for
-   !> the factors to be its own.
+   !> The increment from the last ones, from both ends of the conductance, and from what was found
+   !> there, turned over and disturbed: do all lead to one solution? That of the first start that
+   !> leads to any is the increment's. It is found last, for the factors to be its own.
    subroutine solve_from_both(bodies, heat, data, workspace, next, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
@@ -131,13 +134,21 @@ contains
       character(*), parameter :: names(3) = [character(8) :: 'OPEN', 'CLOSED', 'PREVIOUS']
       type(solution_state_type) :: guess
       type(increment_workspace_type) :: fresh
-      real(dp) :: omega(size(next%omega), 3)
-      logical :: found(3)
+      real(dp), dimension(size(next%omega)) :: turned
+      real(dp) :: omega(size(turned), 3)
+      logical :: found(3), has_other
       integer :: i
 
       guess = next
       fresh = workspace
+      has_other = .false.
       do i = 1, 3
+         if (i == 3 .and. any(found(:2))) then
+            turned = turned_over(bodies, omega(:, findloc(found(:2), .true., dim=1)))
+            call try_from(turned)
+            has_other = .not. allocated(error)
+            turned = next%omega
+         end if
          call try_start(i)
          found(i) = .not. allocated(error)
          omega(:, i) = next%omega
@@ -147,16 +158,47 @@ contains
       if (.not. found(3) .and. any(found)) call try_start(findloc(found, .true., dim=1))
       if (allocated(fresh%record%notes)) workspace%record%notes = fresh%record%notes
       call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, workspace%record)
+      if (has_other) has_other = differ(turned, omega(:, findloc(found, .true., dim=1)))
+      if (has_other) call workspace%record%warn('a start with conductances that are turned over '// &
+         'leads to a different solution; this is one of several')
    contains
       subroutine try_start(i)
          integer, intent(in) :: i
 
+         call try_from(starting_conductance(bodies, heat, kinds(i), data))
+      end subroutine try_start
+
+      subroutine try_from(omega_start)
+         real(dp), intent(in) :: omega_start(:)
+
          next = guess
-         next%omega = starting_conductance(bodies, heat, kinds(i), data)
+         next%omega = omega_start
          workspace = fresh
          call iterate(bodies, heat, data%fixed_point, data, workspace, next, error)
-      end subroutine try_start
+      end subroutine try_from
    end subroutine solve_from_both
+
+   !> Conductances high where they are low and the other way round, and a little more so at every
+   !> other contact point: what leads out of a state in which all of a face do the same.
+   pure function turned_over(bodies, omega) result(turned)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: omega(:)
+      real(dp) :: turned(size(omega))
+      integer :: i, k
+
+      turned = omega
+      do i = 1, size(bodies%interfaces)
+         associate (first => bodies%points%interface_start(i), &
+            last => bodies%points%interface_start(i + 1) - 1)
+            if (last < first) cycle
+            if (any(omega(first:last) <= 0.0_dp)) cycle
+            associate (mean => sum(log(omega(first:last)))/(last - first + 1))
+               turned(first:last) = exp([(2.0_dp*mean - log(omega(k)) + merge(disturbed, &
+                  -disturbed, modulo(k, 2) == 0), k=first, last)])
+            end associate
+         end associate
+      end do
+   end function turned_over
 
    !> Says whether all starts lead to one solution.
    subroutine compare(from_open, from_closed, from_previous, found, record)
@@ -219,9 +261,16 @@ contains
                ', near 1: a turning point, where solutions meet and small changes of the load '// &
                'have large effects', severity=-abs(record%coupling_gain_max - 1.0_dp))
          end if
+         if (alternates(bodies, next)) call record%warn('closed and open contact points '// &
+            'alternate in a uniform face: a pattern, which is not the only solution; *START, '// &
+            'FROM=BOTH tries others, *STABILITY says which of them last')
          ! Where all gains are below 1 in modulus, det(I - U') is positive.
          if (any(next%resting) .or. abs(gains%largest) >= 1.0_dp) then
-            if (is_unstable(bodies, heat, data, workspace, next)) then
+            if (.not. is_unstable(bodies, heat, data, workspace, next)) then
+               if (record%coupling_gain_max > 1.0_dp + near_turning_point) call record%warn( &
+                  'the largest real gain is ', record%coupling_gain_max, ', above 1: the '// &
+                  'solution may be one of several; *START, FROM=BOTH tries others')
+            else
                if (data%equation%duration > 0.0_dp) then
                   call record%warn('det(I - U'') is negative: the increment is too long to '// &
                      'show a mode that grows, the state does not last; take shorter increments')
@@ -238,6 +287,31 @@ contains
          end if
       end associate
    end subroutine judge
+
+   !> Whether closed contact points of a face whose gap is the same everywhere have open neighbours
+   !> on both sides, or the other way round.
+   pure logical function alternates(bodies, next)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(solution_state_type), intent(in) :: next
+      logical, allocatable :: is_open(:)
+      integer :: i
+
+      alternates = .false.
+      do i = 1, size(bodies%interfaces)
+         associate (first => bodies%points%interface_start(i), &
+            last => bodies%points%interface_start(i + 1) - 1)
+            if (last - first < 2) cycle
+            associate (gap => bodies%points%initial_gap(first:last))
+               if (maxval(abs(gap - gap(1))) > same*bodies%equilibrium%contact%least_length) cycle
+            end associate
+            is_open = next%contact%contact_state(first:last) == contact_open
+            associate (m => size(is_open))
+               alternates = alternates .or. any((is_open(2:m - 1) .neqv. is_open(:m - 2)) .and. &
+                  (is_open(2:m - 1) .neqv. is_open(3:)))
+            end associate
+         end associate
+      end do
+   end function alternates
 
    !> Whether det(I - U') < 0.
    logical function is_unstable(bodies, heat, data, workspace, next)

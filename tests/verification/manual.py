@@ -39,6 +39,7 @@ tolerance.
 | [Heat of strains](#heat-of-strains) | plate and columns loaded at once, columns that settle, a strip's damping | closed forms of sudden loads to rounding; the others with order 2, whatever the coupling |
 | [Heat of friction](#heat-of-friction) | half-spaces that rub, sliding blocks, sliding bars and half-planes that grow hot, a turning ring | heat is the work of friction to rounding; growth rates to 1 % |
 | [Properties over temperature](#properties-over-temperature) | slab, bar, half-spaces, cylinders, steady and warmed | rectangles with linear k(T) to rounding; transients with the order 2 of the scheme; cylinders to 0.01 % |
+| [Stability in time](#stability-in-time) | rods with three solutions and with one that oscillates, Barber's rod, sliding bars and half-planes | growth rates and periods to four digits |
 
 `./setup.sh verify` writes this page from runs of the program. Every deck carries the reference
 values and tolerances of its tables as `*VERIFY` cards, so the verdicts are the program's own; the
@@ -57,7 +58,7 @@ How to read the tables:
 RESULTANTS = ("normal_force", "shear_force", "heat_in", "heat_out")
 ROUNDING = 1e-9  # errors below it have no order
 THEMES = ("elements", "nafems", "contact", "friction", "heat", "bodies", "transients",
-          "dilatation", "frictional_heat", "tables")
+          "dilatation", "frictional_heat", "tables", "stability")
 DOCUMENT = Document("verification.md", HERE, THEMES, PREFACE)
 HEAD = ["mesh", "quantity", "value", "reference", "error", "order", "allowed", "verdict"]
 
