@@ -10,67 +10,48 @@
 module fastest_motion
    use arnoldi, only: arnoldi_type
    use dense, only: lu_type, product_of
-   use errors, only: error_type, set_error, status_no_convergence
    use increments, only: simulation_type
    use kinds, only: dp
-   use model, only: model_type
+   use motion_responses, only: motion_response_type
    use records, only: increment_record_type
-   use small_motions, only: shifted_conduction_type, small_motion_type
+   use small_motions, only: small_motion_type
    use text, only: counted, to_text
    implicit none
    private
-   public :: find_fastest, neutral
+   public :: find_fastest
 
-   real(dp), parameter :: above = 1.5_dp       !! the fastest projected rate: sigma
    integer, parameter :: most_products = 80
-   real(dp), parameter :: neutral = 1.0e-8_dp  !! part of the slowest conduction that is no growth
    real(dp), parameter :: sharp = 1.0e-8_dp    !! residual of an eigenvalue, relative
    real(dp), parameter :: nothing = 1.0e-6_dp  !! of the largest one, that is none
    real(dp), parameter :: alike = 0.05_dp      !! relative difference of both fastest rates
    real(dp), parameter :: nearly_real = 1.0e-6_dp !! imaginary part of a rate that is none, relative
    real(dp), parameter :: full_turn = 8*atan(1.0_dp)
 
-   !> The operator at its sigma.
-   type :: resolvent_type
-      type(shifted_conduction_type) :: conduction    !! A + sigma C
-      real(dp), allocatable :: response(:, :)        !! (nodes, changes) W
-      type(lu_type) :: coupling                      !! I - N W
-      real(dp) :: sigma = 0.0_dp                     !! [1/time]
-   contains
-      procedure :: make
-      procedure :: product
-   end type resolvent_type
-
 contains
 
    !> Finds it, and sees whether as many motions grow as among the projected ones.
-   !> Errors: as shifted_conduction_type's factor.
-   subroutine find_fastest(model, simulation, motion, projected, slowest, record, error)
-      type(model_type), intent(in) :: model
+   subroutine find_fastest(simulation, motion, response, projected, neutral, record)
       type(simulation_type), intent(in) :: simulation        !! the run at its end
       type(small_motion_type), intent(in) :: motion
+      type(motion_response_type), intent(in) :: response     !! at a rate above it
       complex(dp), intent(in) :: projected(:)                !! rates of the projected bodies
-      real(dp), intent(in) :: slowest                        !! conduction of a body [1/time]
+      real(dp), intent(in) :: neutral                        !! a rate that is no growth [1/time]
       type(increment_record_type), intent(inout) :: record   !! receives it
-      type(error_type), allocatable, intent(out) :: error
-      type(resolvent_type) :: resolvent
       type(arnoldi_type) :: modes
+      type(lu_type) :: coupling
       complex(dp), allocatable :: rates(:)
       logical, allocatable :: is_sharp(:)
-      integer :: fastest
+      logical :: singular
+      integer :: fastest, growing
 
-      resolvent%sigma = slowest
-      if (size(projected) > 0) resolvent%sigma = above*abs(projected(maxloc(real(projected), &
-         dim=1)))
-      call resolvent%make(model, simulation, motion, error)
-      if (allocated(error)) return
+      call coupling%factor(unit_matrix(size(response%answer, 1)) - response%gain(), singular)
       call modes%begin(size(simulation%state%temperature), 0.0_dp, most_products)
       rates = [complex(dp) ::]
       is_sharp = [logical ::]
-      do while (modes%wants_product)
-         call modes%take(resolvent%product(simulation, motion, modes%vector))
+      do while (modes%wants_product .and. .not. singular)
+         call modes%take(product(simulation, motion, response, coupling, modes%vector))
          if (.not. modes%is_checked) cycle
-         rates = rates_of(modes%value, resolvent%sigma)
+         rates = rates_of(modes%value, response%sigma)
          is_sharp = modes%residual <= sharp*abs(modes%value)
          if (.not. any(is_sharp)) cycle
          if (all(is_sharp .or. real(rates) <= min(0.0_dp, maxval(real(rates), mask=is_sharp)))) &
@@ -82,9 +63,9 @@ contains
          return
       end if
       call take_motion(modes%eigenvector(fastest), rates(fastest), simulation, motion, record)
-      if (abs(rates(fastest)) <= neutral*slowest) record%stability%growth_rate = 0.0_dp
-      associate (found => record%stability, growing => count(is_sharp .and. &
-         real(rates) > neutral*slowest))
+      growing = count(is_sharp .and. real(rates) > neutral)
+      associate (found => record%stability)
+         if (abs(rates(fastest)) <= neutral) found%growth_rate = 0.0_dp
          if (growing /= found%unstable_modes) then
             found%doubt = 'the projected bodies have '//counted(found%unstable_modes, &
                'growing motion')//', Arnoldi''s method finds '//to_text(growing)
@@ -94,6 +75,17 @@ contains
          end if
       end associate
    end subroutine find_fastest
+
+   pure function unit_matrix(n) result(matrix)
+      integer, intent(in) :: n
+      real(dp) :: matrix(n, n)
+      integer :: i
+
+      matrix = 0.0_dp
+      do i = 1, n
+         matrix(i, i) = 1.0_dp
+      end do
+   end function unit_matrix
 
    !> Rates of eigenvalues; those that are none decay at once.
    pure function rates_of(values, sigma) result(rates)
@@ -132,49 +124,23 @@ contains
       end associate
    end subroutine take_motion
 
-   !> Makes the operator.
-   !> Errors: as shifted_conduction_type's factor.
-   subroutine make(self, model, simulation, motion, error)
-      class(resolvent_type), intent(inout) :: self           !! with its sigma
-      type(model_type), intent(in) :: model
+   !> A product with the inverse.
+   function product(simulation, motion, response, coupling, vector) result(temperature)
       type(simulation_type), intent(in) :: simulation
       type(small_motion_type), intent(in) :: motion
-      type(error_type), allocatable, intent(out) :: error
-      real(dp), allocatable :: matrix(:, :)
-      logical :: singular
-      integer :: i
-
-      associate (bodies => simulation%bodies, state => simulation%state)
-         call self%conduction%factor(model, bodies, state, simulation%heats(simulation%in_use), &
-            self%sigma, error)
-         if (allocated(error)) return
-         self%response = self%conduction%responses(bodies, motion)
-         matrix = -motion%answers(bodies, state, self%response, self%sigma)
-      end associate
-      do i = 1, size(matrix, 1)
-         matrix(i, i) = matrix(i, i) + 1.0_dp
-      end do
-      call self%coupling%factor(matrix, singular)
-      if (singular) call set_error(error, status_no_convergence, &
-         'the coupling has no inverse at the rate '//to_text(self%sigma))
-   end subroutine make
-
-   !> A product.
-   function product(self, simulation, motion, vector) result(temperature)
-      class(resolvent_type), intent(in) :: self
-      type(simulation_type), intent(in) :: simulation
-      type(small_motion_type), intent(in) :: motion
-      real(dp), intent(in) :: vector(:)                      !! (nodes)
-      real(dp) :: temperature(size(vector))                  !! (nodes)
+      type(motion_response_type), intent(in) :: response
+      type(lu_type), intent(in) :: coupling                  ! I - N W
+      real(dp), intent(in) :: vector(:)                      ! (nodes)
+      real(dp) :: temperature(size(vector))                  ! (nodes)
       real(dp), allocatable :: changes(:, :), columns(:, :)
 
       associate (bodies => simulation%bodies, state => simulation%state)
          columns = reshape(bodies%capacity%multiply(vector), [size(vector), 1])
-         columns = self%conduction%solve(bodies, columns)
-         changes = motion%answers(bodies, state, columns, self%sigma)
+         columns = response%conduction%solve(bodies, columns)
+         changes = motion%answers(bodies, state, columns, response%sigma)
          if (motion%takes_rates) changes = changes - by_rate(simulation, motion, vector)
-         call self%coupling%solve(changes)
-         columns = columns + product_of(self%response, changes)
+         call coupling%solve(changes)
+         columns = columns + product_of(response%temperature, changes)
       end associate
       temperature = columns(:, 1)
    end function product

@@ -2,21 +2,22 @@
 !> fastest one.
 !>
 !> The number is that of the bodies projected on their responses at rates from a tenth of the
-!> slowest conduction on, up to where the gain of the coupling is small. The fastest motion is found
-!> on the bodies themselves (fastest_motion), where the growing ones are counted again: the one
-!> checks the other.
+!> slowest conduction on, up to where the gain of the coupling is small, and once more above the
+!> fastest one. That is found on the bodies themselves (fastest_motion), where the growing ones are
+!> counted again: the one checks the other.
 module growing_modes
-   use dense, only: eigenvalues, product_of
+   use dense, only: eigenvalues
    use due_output, only: stability_is_due
    use errors, only: error_type
-   use fastest_motion, only: find_fastest, neutral
+   use fastest_motion, only: find_fastest
    use increments, only: simulation_type
    use kinds, only: dp
    use materials, only: heat_capacity
    use model, only: follows_temperatures, model_type
+   use motion_responses, only: motion_response_type
    use projected_motions, only: projected_motions_type
    use records, only: increment_record_type
-   use small_motions, only: shifted_conduction_type, small_motion_type
+   use small_motions, only: small_motion_type
    implicit none
    private
    public :: analyse_stability
@@ -24,6 +25,8 @@ module growing_modes
    real(dp), parameter :: slower = 0.1_dp      !! than the slowest conduction: the first rate
    real(dp), parameter :: ratio = 10.0_dp      !! of one rate to the next
    integer, parameter :: least_rates = 3, most_rates = 8
+   real(dp), parameter :: above = 1.5_dp       !! the fastest rate: where it is sought
+   real(dp), parameter :: neutral = 1.0e-8_dp  !! part of the slowest conduction that is no growth
    real(dp), parameter :: small_gain = 0.3_dp  !! largest modulus, beyond which nothing grows
 
 contains
@@ -54,66 +57,66 @@ contains
       end associate
    end subroutine analyse_stability
 
-   !> Counts the growing motions and finds the fastest one.
-   !> Errors: as small_motion_type's begin and shifted_conduction_type's factor.
+   !> Counts the growing motions and finds the fastest one. The rate at which that is sought is one
+   !> more of the projection.
+   !> Errors: as small_motion_type's begin and motion_response_type's make.
    subroutine find_motions(model, simulation, record, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record   ! with an empty stability record
       type(error_type), allocatable, intent(out) :: error
       type(small_motion_type) :: motion
+      type(motion_response_type) :: response
+      type(projected_motions_type) :: projection
       complex(dp), allocatable :: rates(:)
+      real(dp) :: sigma
       logical :: is_known
 
       call motion%begin(simulation%bodies, simulation%state, simulation%heats( &
          simulation%in_use), simulation%solved, error)
       if (allocated(error)) return
+      sigma = slowest_conduction(model)
       rates = [complex(dp) ::]
       is_known = .true.
-      if (size(motion%active) + motion%heated > 0) call project(model, simulation, motion, &
-         rates, is_known, error)
+      if (size(motion%active) + motion%heated > 0) then
+         call project(model, simulation, motion, projection, error)
+         if (allocated(error)) return
+         call projection%rates(rates, is_known)
+         if (size(rates) > 0) sigma = above*abs(rates(maxloc(real(rates), dim=1)))
+      end if
+      call response%make(model, simulation, motion, sigma, error)
       if (allocated(error)) return
+      if (size(rates) > 0) then
+         call projection%add(sigma, motion%heats(simulation%bodies, response%temperature), &
+            response%stored(simulation), response%answer, response%by_rate)
+         call projection%rates(rates, is_known)
+      end if
       record%stability%unstable_modes = count(real(rates) > neutral*slowest_conduction(model))
-      call find_fastest(model, simulation, motion, rates, slowest_conduction(model), record, error)
-      if (.not. is_known) record%stability%doubt = 'the projected bodies have no sound eigenvalues'
+      call find_fastest(simulation, motion, response, rates, neutral*slowest_conduction(model), &
+         record)
+      if (.not. is_known) record%stability%doubt = &
+         'the projected bodies have no sound eigenvalues'
    end subroutine find_motions
 
-   !> Rates of the projected bodies.
-   !> Errors: as shifted_conduction_type's factor.
-   subroutine project(model, simulation, motion, rates, is_known, error)
+   !> Projects the bodies on their responses.
+   !> Errors: as motion_response_type's make.
+   subroutine project(model, simulation, motion, projection, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(small_motion_type), intent(in) :: motion
-      complex(dp), allocatable, intent(out) :: rates(:)
-      logical, intent(out) :: is_known
+      type(projected_motions_type), intent(inout) :: projection
       type(error_type), allocatable, intent(out) :: error
-      type(projected_motions_type) :: projection
-      type(shifted_conduction_type) :: conduction
-      real(dp), allocatable :: answer(:, :), by_rate(:, :), response(:, :), stored(:, :)
-      real(dp) :: sigma
+      type(motion_response_type) :: response
       integer :: i
 
-      sigma = slower*slowest_conduction(model)
       do i = 1, most_rates
-         associate (bodies => simulation%bodies, state => simulation%state)
-            call conduction%factor(model, bodies, state, simulation%heats(simulation%in_use), &
-               sigma, error)
-            if (allocated(error)) return
-            response = conduction%responses(bodies, motion)
-            allocate (stored, mold=response)
-            call bodies%capacity%multiply_columns(response, stored)
-            answer = motion%answers(bodies, state, response, 0.0_dp)
-            by_rate = 0.0_dp*answer
-            if (motion%takes_rates) by_rate = motion%answers(bodies, state, response, 1.0_dp) - &
-               answer
-            call projection%add(sigma, motion%heats(bodies, response), &
-               product_of(transpose(response), stored), answer, by_rate)
-            deallocate (stored)
-         end associate
-         if (i >= least_rates .and. largest_modulus(answer + sigma*by_rate) <= small_gain) exit
-         sigma = ratio*sigma
+         call response%make(model, simulation, motion, slower*ratio**(i - 1)* &
+            slowest_conduction(model), error)
+         if (allocated(error)) return
+         call projection%add(response%sigma, motion%heats(simulation%bodies, &
+            response%temperature), response%stored(simulation), response%answer, response%by_rate)
+         if (i >= least_rates .and. largest_modulus(response%gain()) <= small_gain) exit
       end do
-      call projection%rates(rates, is_known)
    end subroutine project
 
    !> The largest modulus of the eigenvalues of a matrix.

@@ -21,13 +21,13 @@ module projected_motions
    public :: projected_motions_type
 
    !> Part of the largest eigenvalue of the energy A'/sigma + E below which a motion is rounding.
-   real(dp), parameter :: rounding = 1.0e-11_dp
-   real(dp), parameter :: beyond = 1.0e2_dp   !! times the largest sigma: rates that are rounding
+   real(dp), parameter :: rounding = 1.0e-10_dp
+   real(dp), parameter :: beyond = 3.0_dp   !! times the largest sigma from it: rates that are not known
 
    !> The projection, rate by rate.
    type :: projected_motions_type
       private
-      real(dp), allocatable :: sigma(:)           !! (p) rates, ascending [1/time]
+      real(dp), allocatable :: sigma(:)           !! (p) rates, all different [1/time]
       real(dp), allocatable :: exchange(:, :, :)  !! (n, n, p) H
       real(dp), allocatable :: stored(:, :, :)    !! (n, n, p) W_i^T C W_i
       real(dp), allocatable :: answer(:, :, :)    !! (n, n, p) N W_i at constant temperatures
@@ -39,7 +39,7 @@ module projected_motions
 
 contains
 
-   !> Adds the responses at a rate above the former ones.
+   !> Adds the responses at another rate.
    pure subroutine add(self, sigma, exchange, stored, answer, by_rate)
       class(projected_motions_type), intent(inout) :: self
       real(dp), intent(in) :: sigma                !! [1/time]
@@ -82,7 +82,7 @@ contains
       call project(self, conduction, capacity, by_rate, found)
       if (.not. found) return
       ! 1/(shift - s) are the eigenvalues of (A' - G P + shift (E - G P'))^-1 (E - G P').
-      shift = self%sigma(size(self%sigma))
+      shift = maxval(self%sigma)
       capacity = capacity - by_rate
       call lu%factor(conduction + shift*capacity, singular)
       found = .not. singular
@@ -116,9 +116,9 @@ contains
             end associate
          end do
       end do
-      scale = [(1.0_dp/sqrt(max(conduction(i, i)/self%sigma(1) + capacity(i, i), &
-         tiny(1.0_dp))), i=1, r)]
-      energy = (conduction/self%sigma(1) + capacity)*spread(scale, 1, r)*spread(scale, 2, r)
+      energy = conduction/minval(self%sigma) + capacity
+      scale = [(1.0_dp/sqrt(max(energy(i, i), tiny(1.0_dp))), i=1, r)]
+      energy = energy*spread(scale, 1, r)*spread(scale, 2, r)
       call symmetric_eigenvectors(energy, values, vectors, found)
       if (.not. found) return
       i = count(values <= rounding*values(r)) + 1

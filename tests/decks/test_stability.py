@@ -6,23 +6,25 @@ import re
 import h5py
 import numpy as np
 import pytest
-from deck_runs import run
+from changes import note_changes
+from deck_runs import run, solve
 from physics import mesh, material
 
 import rod_modes
 import rods
 
-WIDTH = 0.02
+WIDTH = 1e-3   # so that temperatures even out across the rods
 RODS = 500
 
 
-def rod_deck(both, law, capacities, omega, *cards, stability="*STABILITY", elements=(8, 8)):
+def rod_deck(both, law, capacities, omega, *cards, stability="*STABILITY", elements=(8, 8),
+             width=WIDTH):
     """Return the cards of two rods with the laws gas(a, b) and power(touch, c, 1), solved steadily
     from a conductance."""
     a, b, touch, c = law
     cold = np.linspace(-both.length[1], 0.0, elements[1] + 1)
     hot = np.linspace(0.0, both.length[0], elements[0] + 1)
-    xs = [0.0, WIDTH]
+    xs = [0.0, width]
     made = [*mesh("HOT", xs, hot), *mesh("COLD", xs, cold, first=1001)]
     for i, name in enumerate(("HOT", "COLD")):
         made += material(name, (both.young[i], 0.0), expansion=both.expansion[i],
@@ -85,10 +87,149 @@ def test_number_of_growing_modes_is_that_of_dense_eigenvalues(tmp_path):
         found = stability_of(tmp_path / f"{i}.vtkhdf")
         growing = np.count_nonzero(rates.real > 0.0)
         assert found["unstable_modes"] == growing, (i, rates[:3], found)
-        assert found["growth_rate"] == pytest.approx(rates[0].real, rel=1e-3), (i, rates[:3])
+        # Fast motions stay in a layer at the face that is thinner than an element.
+        assert found["growth_rate"] == pytest.approx(rates[0].real, rel=0.03), (i, rates[:3])
         assert found["period"] == pytest.approx(2 * np.pi / abs(rates[0].imag) if rates[0].imag
-                                                else 0.0, rel=1e-3)
+                                                else 0.0, rel=0.03)
         counts.append((growing, rates[0].imag != 0.0))
     # The rods show all kinds of motions.
     for kind in (0, False), (0, True), (1, False), (2, True):
         assert counts.count(kind) > 5, kind
+
+
+MIDDLE = rods.Rods((0.1, 0.1), (20.0, 20.0), (0.0, 12e-6), (2e11, 2e11), (500.0, 0.0), 1.2e-4)
+LAW = 0.005, 1e-5, 500.0, 1e-4
+BRANCHES = rods.exact_solutions(MIDDLE, *LAW)
+
+
+def middle(*cards, branch=1, capacities=(3.6e6, 3.6e6), **options):
+    """Return the cards of the rods with three solutions in one of them."""
+    return rod_deck(MIDDLE, LAW, capacities, BRANCHES[branch].conductance, *cards, **options)
+
+
+def solved(folder, cards, *arguments, status=0, name="deck"):
+    """Solve cards; return the result and what was printed."""
+    deck = folder / f"{name}.inp"
+    deck.write_text("\n".join(cards) + "\n")
+    process = run("run", deck, "--out", folder, *arguments)
+    assert process.returncode == status, process.stderr
+    return deck.with_suffix(".vtkhdf"), process.stdout + process.stderr
+
+
+@pytest.mark.parametrize("cards", [
+    [], ["*SOLVER, TYPE=MUMPS"], ["*REFINE, LEVELS=1, SURFACE=HOT.BOTTOM"]],
+    ids=["skyline", "mumps", "refined"])
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_rate_is_the_same_with_any_solver_mesh_and_pairing(cards, pairing, tmp_path):
+    made = [line.replace("NAME=FACE", f"NAME=FACE, PAIRING={pairing}")
+            if line.startswith("*CONTACT PAIR") else line for line in middle(*cards)]
+    result, printed = solved(tmp_path, made)
+    rate = float(rod_modes.rates(MIDDLE, (3.6e6, 3.6e6), BRANCHES[1])[0].real)
+    found = stability_of(result)
+    assert found["growth_rate"] == pytest.approx(rate, rel=1e-4)
+    assert found["unstable_modes"] == 1
+    assert "unstable: 1 mode grows, doubling in 270\n" in printed
+
+
+def test_mode_is_that_of_the_rods(tmp_path):
+    """Each rod has sinh(sqrt(s/kappa) x) from its wall on, the hot one against the cold one."""
+    result, _ = solved(tmp_path, middle())
+    rate = stability_of(result)["growth_rate"][0]
+    with h5py.File(result) as file:
+        grid = file["VTKHDF"]
+        points, mode = grid["Points"][:], grid["PointData/mode_temperature"][:]
+        moved = grid["PointData/mode_displacement"][:]
+    number = np.sqrt(rate * 3.6e6 / 20.0)
+    # A little more heat warms the cold rod, which expands, and cools the hot one.
+    expected = np.sign(points[:, 1]) * np.sinh(number * (0.1 - abs(points[:, 1])))
+    inside = abs(points[:, 1]) > 1e-9
+    scale = mode[inside] @ expected[inside] / (expected[inside] @ expected[inside])
+    np.testing.assert_allclose(mode[inside], scale * expected[inside], atol=1e-4)
+    assert abs(mode).max() == pytest.approx(1.0)
+    # The end of the cold rod moves by alpha times the integral of its temperature.
+    integral = abs(scale) * (np.cosh(number * 0.1) - 1) / number
+    assert abs(moved[:, 1]).max() == pytest.approx(12e-6 * integral, rel=1e-3)
+
+
+def test_transient_that_leaves_the_state_has_the_rate(tmp_path):
+    """Both ways: a little more or less than the middle state, with increments by their error."""
+    rate = float(rod_modes.rates(MIDDLE, (3.6e6, 3.6e6), BRANCHES[1])[0].real)
+    for way in 1, -1:
+        cards = middle("*INITIAL CONDITIONS, TYPE=TEMPERATURE", "HOT, 0.")
+        end = cards.index("*END STEP")
+        made = [*cards[:end + 1], "*STEP, INC=10000",
+                "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "4., 1600.", "*BOUNDARY",
+                f"HOT.TOP, 11, 11, {500 + way * 1e-3}", "*END STEP"]
+        result, _ = solved(tmp_path, made, name=f"way{way}")
+        with h5py.File(result) as file:
+            time, heat = file["history/time"][:], file["contact/FACE/heat_rate"][:]
+        # The prescribed change adds a constant; differences grow with the motion alone.
+        late = time > 1 + 900
+        growth = np.polyfit(time[late][1:], np.log(abs(np.diff(heat[late]))), 1)[0]
+        assert growth == pytest.approx(rate, rel=0.01)
+        assert way * (heat[-1] - heat[0]) > 0
+
+
+@pytest.mark.changes("STABILITY, FREQUENCY")
+def test_frequency_asks_for_increments_in_between(tmp_path):
+    cards = {n: [line.replace("1., 1.", "0.25, 1.") for line in middle(
+        stability=f"*STABILITY, FREQUENCY={n}", branch=0)] for n in (1, 2)}
+    note_changes(cards[1], cards[2])
+    for n, times in (1, [0.25, 0.5, 0.75, 1.0]), (2, [0.5, 1.0]):
+        result, _ = solved(tmp_path, cards[n], name=f"every{n}")
+        assert stability_of(result)["time"] == pytest.approx(times)
+
+
+def test_steady_states_without_capacities_say_what_remains(tmp_path):
+    _, printed = solved(tmp_path, middle(capacities=None, stability="**"))
+    assert "unstable whatever the heat capacities are: det(I - U') is negative" in printed
+    result, printed = solved(tmp_path, middle(capacities=None, branch=0))
+    assert "uncertain: bodies without *SPECIFIC HEAT and *DENSITY have no course" in printed
+    assert np.isnan(stability_of(result)["growth_rate"]).all()
+
+
+def test_checks_may_name_what_is_found(tmp_path):
+    rate = float(rod_modes.rates(MIDDLE, (3.6e6, 3.6e6), BRANCHES[1])[0].real)
+    check = ['*VERIFY, KIND=ANALYTIC, SOURCE="dense eigenvalues"',
+             "unstable_modes, , LAST, 1., 0., ABS", "period, , LAST, 0., 0., ABS"]
+    solved(tmp_path, [*middle(), *check, f"growth_rate, , LAST, {rate!r}, 1e-3"])
+    solved(tmp_path, [*middle(), *check, f"growth_rate, , LAST, {2 * rate!r}, 1e-3"], status=4)
+
+
+def test_analysis_changes_no_digit_of_the_run(tmp_path):
+    results = [solved(tmp_path, middle(stability=card, branch=2), name=name)[0]
+               for card, name in (("*STABILITY", "with"), ("**", "without"))]
+    with h5py.File(results[0]) as one, h5py.File(results[1]) as two:
+        assert "stability" not in two
+        for group in "history", "contact/FACE", "errors/FACE":
+            for name in two[group]:
+                np.testing.assert_array_equal(one[f"{group}/{name}"][:], two[f"{group}/{name}"][:])
+
+
+def pattern(*cards):
+    """Return the cards of two rods, three contact points wide, whose faces are uniform: there is
+    one uniform solution, q = 41054.97, and patterns."""
+    both = rods.Rods((0.27562411602468528, 0.17065966503820518), (52.413934057605438,
+                     40.448857908897281), (8.3028851643860443e-06, 7.9320987911076132e-06),
+                     (2e11, 2e11), (500.0, 0.0), 1.01444715514876e-3)
+    law = 4.5163293095943511e-08, 6.2290230987686257e-11, 725.04616537098616, 1e-4
+    (only,) = rods.exact_solutions(both, *law)
+    made = rod_deck(both, law, None, only.conductance, stability="**", elements=(3, 3),
+                    width=0.1)
+    start = made.index("*START, FROM=GIVEN")
+    return [*made[:start], *cards, *made[start + (0 if not cards else 2):]], both.flux(
+        only.conductance)
+
+
+def test_patterns_are_told_from_the_uniform_solution(tmp_path):
+    cards, flux = pattern()
+    assert flux == pytest.approx(41054.97, rel=1e-6)
+    result, printed = solved(tmp_path, cards)
+    with h5py.File(result) as file:
+        np.testing.assert_allclose(file["contact/FACE/heat_flux"][:], flux, rtol=1e-4)
+    assert "above 1: the solution may be one of several" in printed
+    _, printed = solved(tmp_path, pattern("*START, FROM=CLOSED")[0])
+    assert re.search("closed and open contact points alternate in a uniform face", printed)
+    _, printed = solved(tmp_path, pattern("*START, FROM=BOTH")[0])
+    assert "leads to a different solution; this is one of several" in printed
+
