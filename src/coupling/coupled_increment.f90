@@ -159,7 +159,7 @@ contains
       if (allocated(fresh%record%notes)) workspace%record%notes = fresh%record%notes
       call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, workspace%record)
       if (has_other) has_other = differ(turned, omega(:, findloc(found, .true., dim=1)))
-      if (has_other) call workspace%record%warn('a start with conductances that are turned over '// &
+      if (has_other) call workspace%record%warn('a start with conductances turned over '// &
          'leads to a different solution; this is one of several')
    contains
       subroutine try_start(i)

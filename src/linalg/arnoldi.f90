@@ -37,7 +37,7 @@ module arnoldi
       real(dp), private :: nothing = 0.0_dp        !! as begin has it
       integer, private :: most = 0                 !! products
       logical, private :: stops_itself = .true.
-      real(dp), allocatable, private :: vectors(:, :)   !! (k, k) on the basis, as eigenvalues has it
+      real(dp), allocatable, private :: vectors(:, :)   !! (k, k) on the basis, as eigenvalues
       integer, private :: next_check = first_check
       real(dp), allocatable, private :: basis(:, :)      !! (n, products) orthonormal
       real(dp), allocatable, private :: projected(:, :)  !! (products, products) the matrix on it

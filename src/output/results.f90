@@ -18,9 +18,9 @@ module results
    use kinds, only: dp, long
    use model, only: model_type
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
-      needs_heat, needs_mechanics, &
-      needs_nothing, needs_stability, needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, &
-      of_interface, of_passes, quantity_type
+      needs_heat, needs_mechanics, needs_nothing, needs_stability, needs_storage, &
+      needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes, &
+      quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy

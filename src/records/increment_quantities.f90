@@ -159,8 +159,8 @@ contains
       if (.not. allocated(record%stability)) return
       associate (found => record%stability)
          if (found%is_known) words = motion_words(found)
-         if (.not. allocated(found%doubt) .or. (record%is_unstable .and. .not. found%is_known)) &
-            return
+         if (.not. allocated(found%doubt)) return
+         if (record%is_unstable .and. .not. found%is_known) return
          if (words == '') then
             words = 'uncertain: '//found%doubt
          else

@@ -54,8 +54,8 @@ contains
          rates = rates_of(modes%value, response%sigma)
          is_sharp = modes%residual <= sharp*abs(modes%value)
          if (.not. any(is_sharp)) cycle
-         if (all(is_sharp .or. real(rates) <= min(0.0_dp, maxval(real(rates), mask=is_sharp)))) &
-            exit
+         fastest = maxloc(real(rates), mask=is_sharp, dim=1)
+         if (all(is_sharp .or. real(rates) <= min(0.0_dp, real(rates(fastest))))) exit
       end do
       fastest = maxloc(real(rates), mask=is_sharp, dim=1)
       if (fastest == 0) then
@@ -70,8 +70,9 @@ contains
             found%doubt = 'the projected bodies have '//counted(found%unstable_modes, &
                'growing motion')//', Arnoldi''s method finds '//to_text(growing)
          else if (growing > 0) then
-            if (minval(abs(projected - rates(fastest))) > alike*abs(rates(fastest))) &
+            if (minval(abs(projected - rates(fastest))) > alike*abs(rates(fastest))) then
                found%doubt = 'the rate of the projected bodies is another one'
+            end if
          end if
       end associate
    end subroutine find_fastest

@@ -1,5 +1,5 @@
-!> Responses of the bodies to unit changes at the contact points that grow at a rate, and the answers
-!> of the contact to them.
+!> Responses of the bodies to unit changes at the contact points that grow at a rate, and the
+!> answers of the contact to them.
 module motion_responses
    use dense, only: product_of
    use errors, only: error_type

@@ -22,7 +22,7 @@ module projected_motions
 
    !> Part of the largest eigenvalue of the energy A'/sigma + E below which a motion is rounding.
    real(dp), parameter :: rounding = 1.0e-10_dp
-   real(dp), parameter :: beyond = 3.0_dp   !! times the largest sigma from it: rates that are not known
+   real(dp), parameter :: beyond = 3.0_dp   !! times the largest sigma: no rates farther from it
 
    !> The projection, rate by rate.
    type :: projected_motions_type

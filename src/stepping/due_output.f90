@@ -54,7 +54,7 @@ contains
          record, model)
    end function restart_is_due
 
-   !> Whether the stability of the state is analysed: at every n-th increment of a step and its last.
+   !> Whether the stability of a state is analysed: at every n-th increment of a step and its last.
    pure logical function stability_is_due(record, model)
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
