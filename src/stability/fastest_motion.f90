@@ -49,7 +49,7 @@ contains
       rates = [complex(dp) ::]
       is_sharp = [logical ::]
       do while (modes%wants_product .and. .not. singular)
-         call modes%take(product(simulation, motion, response, coupling, modes%vector))
+         call modes%take(inverse_product(simulation, motion, response, coupling, modes%vector))
          if (.not. modes%is_checked) cycle
          rates = rates_of(modes%value, response%sigma)
          is_sharp = modes%residual <= sharp*abs(modes%value)
@@ -126,7 +126,7 @@ contains
    end subroutine take_motion
 
    !> A product with the inverse.
-   function product(simulation, motion, response, coupling, vector) result(temperature)
+   function inverse_product(simulation, motion, response, coupling, vector) result(temperature)
       type(simulation_type), intent(in) :: simulation
       type(small_motion_type), intent(in) :: motion
       type(motion_response_type), intent(in) :: response
@@ -144,7 +144,7 @@ contains
          columns = columns + product_of(response%temperature, changes)
       end associate
       temperature = columns(:, 1)
-   end function product
+   end function inverse_product
 
    !> N' T.
    function by_rate(simulation, motion, vector) result(changes)

@@ -53,7 +53,7 @@ module increments
       type(loads_type) :: loads                     !! loads and supports
       type(solution_state_type) :: state            !! state at the end of the last increment
       !> What its solution left, where its stability is analysed
-      type(increment_workspace_type) :: solved
+      type(increment_workspace_type), allocatable :: solved
       type(solved_loads_type), allocatable :: known(:)  !! loads of earlier increments, solved
       type(increment_control_type) :: control       !! position in the steps, size of increments
       type(run_seconds_type) :: seconds             !! where the time went
