@@ -31,6 +31,7 @@ ONE_VALUE = {
     "ELCOPY": "no data", "CLEARANCE": "no data", "FIXED POINT": "no data", "INCLUDE": "no data",
     "MATERIAL": "no data", "OPTIONS": "no data", "PHYSICAL CONSTANTS": "no data",
     "REFINE": "no data", "RESTART": "no data", "SOLVER": "no data",
+    "STABILITY": "no data",
     "STEP": "no data", "SURFACE INTERACTION": "its thickness is not needed",
 }
 
