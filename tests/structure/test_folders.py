@@ -10,7 +10,8 @@ SOURCES = Path(__file__).resolve().parents[2] / "src"
 ORDER = (
     ("core",), ("linalg",), ("laws",), ("model",), ("division",), ("fem",),
     ("deck/reading",), ("deck/checking",), ("deck/building",),
-    ("contact",), ("bodies",), ("coupling",), ("records",), ("stepping",), ("accuracy",), ("stability",),
+    ("contact",), ("bodies",), ("coupling",), ("records",), ("stepping",), ("accuracy",),
+    ("stability",),
     ("adaptivity",), ("output",), ("run",), ("trade",), ("driver",), (".",),
 )
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
