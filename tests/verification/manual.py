@@ -79,7 +79,8 @@ class Check:
     def ordered(self):
         """Return whether its errors fall with a power of the mesh: those of edges change sign as
         an edge moves between two nodes, and resultants are those of the loads on any mesh."""
-        return not self.quantity.startswith("edge") and self.quantity not in RESULTANTS
+        return not (self.quantity.startswith("edge") or self.quantity == "unstable_modes"
+                    or self.quantity in RESULTANTS)
 
     def card(self):
         """Return the data card."""
@@ -257,8 +258,9 @@ def errors_panel(axes, runs, title, label="fineness of the mesh"):
     """Draw the errors of all quantities of a case over its meshes, each twice as fine."""
     sizes = [2**k for k in range(len(runs))]
     for k, check in enumerate(runs[0].checks):
-        axes.semilogy(sizes, [solved.verdicts[k].error for solved in runs], marker="o",
-                      label=check.name)
+        if check.quantity != "unstable_modes":   # a number
+            axes.semilogy(sizes, [solved.verdicts[k].error for solved in runs], marker="o",
+                          label=check.name)
     axes.set_title(title)
     axes.set_ylabel("error")
     if len(runs[0].checks) == 1:
