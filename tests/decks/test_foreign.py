@@ -211,3 +211,25 @@ def test_a_reflected_mesh_is_the_one_that_is_written_out(tmp_path):
     note_changes(halves[4:5], halves[5:6])
     assert_same_tables(tmp_path, quarter(fill, reflected[:2] + halves + ends),
                        quarter(fill, given + ends))
+
+
+@pytest.mark.changes("NGEN, LINE")
+@pytest.mark.parametrize("center", ["400", ", 0., 0., 0.", ", 0., 0., 0., 0., 0., 1."])
+def test_nodes_on_a_circle_are_those_that_are_written_out(tmp_path, center):
+    """Half a turn goes anticlockwise about the normal z; elsewhere the shorter way."""
+    half = "0., 0., 1." in center
+    places, given = ring_nodes((1.0, 1.5, 2.0)), []
+    if not half:   # the same nodes, from a quarter each
+        spans = [(1, 201), (201, 401)]
+    else:
+        spans = [(1, 401)]
+    nodes = [n for n in places if n % 100 in (1, 3) and any(n - i in span for i in (0, 2)
+                                                           for span in spans)]
+    given = ["*NODE", "400, 0., 0.", *(f"{n}, {places[n][0]!r}, {places[n][1]!r}" for n in nodes),
+             "*NGEN, LINE=C, NSET=INNER", *(f"{a}, {b}, 100, {center}" for a, b in spans),
+             "*NGEN, LINE=C, NSET=OUTER", *(f"{a + 2}, {b + 2}, 100, {center}" for a, b in spans),
+             "*NFILL", "INNER, OUTER, 2"]
+    note_changes(given, [card.replace(", LINE=C", "") for card in given])
+    elements = written_ring((1.0, 1.5, 2.0))
+    elements = elements[elements.index("*ELEMENT, TYPE=CPE4, ELSET=RING"):]
+    assert_same_tables(tmp_path, quarter(given, elements), quarter(written_ring((1.0, 1.5, 2.0)), []))

@@ -3,7 +3,7 @@ module card_lines
    use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
    use card_parameters, only: parameter_text
-   use card_slips, only: cut_at_blanks, is_number, lacks_star, mend_commas
+   use card_slips, only: cut_at_blanks, lacks_star, mend_commas
    use cards, only: add_data, add_keyword, add_note, cards_type, extend_data, field_type, &
       keyword_card_type
    use deck_parameters, only: deck_parameters_type
@@ -272,8 +272,7 @@ contains
          deallocate(self%refusal_of_data)
       end if
       if (self%skips_data) return
-      if (self%keyword == 'STEP' .and. .not. is_number(line(first_text(line): &
-         first_text(line) + scan(line(first_text(line):)//',', ', ') - 2))) then
+      if (self%keyword == 'STEP' .and. verify(line, '0123456789+-.eEdD, ') > 0) then
          call add_note(cards%notes, '*STEP: its title is ignored')
          return
       end if

@@ -7,12 +7,14 @@ module copied_cards
    use cards, only: cards_type, data_card_type, field_place, field_text, keyword_card_type
    use deck_report, only: deck_report_type
    use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
-      given_type, keep_last, members_of, node_place, position_of
+      given_type, keep_last, members_of, node_place, position_of, rotation
    use kinds, only: dp
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
    public :: fill_nodes, copy_nodes, copy_elements
+
+   integer, parameter :: most_intervals = 10000   !! of *NFILL
 
    real(dp), parameter :: same_place = 1.0e-6_dp   !! distance, by the largest coordinate
    real(dp), parameter :: degree = acos(-1.0_dp)/180.0_dp
@@ -46,7 +48,8 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
       integer, allocatable :: from(:), to(:)
-      real(dp) :: parts(0:10000), x(2, 2)
+      real(dp) :: x(2, 2)
+      real(dp), allocatable :: parts(:)
       integer :: i, intervals, k, step
       logical :: valid
 
@@ -58,9 +61,9 @@ contains
       call need_field(data, 3, 'number of intervals', report, intervals, valid)
       call take_field(data, 4, 'increment', report, step, valid)
       call check_extra(data, 4, 'two sets or nodes, number of intervals, increment', report)
-      if (valid .and. (intervals < 1 .or. intervals > ubound(parts, 1) .or. step < 1)) then
+      if (valid .and. (intervals < 1 .or. intervals > most_intervals .or. step < 1)) then
          call report%error(field_place(data, 3), 'the number of intervals is from 1 to '// &
-            to_text(ubound(parts, 1))//', the increment from 1')
+            to_text(most_intervals)//', the increment from 1')
          valid = .false.
       else if (valid .and. size(from) /= size(to)) then
          call report%error(field_place(data, 2), 'the two ends have '//to_text(size(from))// &
@@ -73,7 +76,7 @@ contains
       end if
       call add_set(card, 'NSET', data, [from, to], all)
       call add_generated(card, 'NODE', '', all)
-      parts(0) = 0.0_dp
+      allocate (parts(0:intervals), source=0.0_dp)
       do k = 1, intervals
          parts(k) = parts(k - 1) + bias**(1 - k)
       end do
@@ -205,7 +208,7 @@ contains
             call take_from(1, card, 'MULTIPLE', report, times)
             angle = sign(1.0_dp, points(3, 2) - points(3, 1))*angle*times*degree
          end if
-         turn = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
+         turn = rotation(angle)
       end if
       center = points(:2, 1)
    end subroutine read_motion

@@ -1,13 +1,13 @@
 !> *NGEN, *NFILL, *NCOPY, *ELGEN and *ELCOPY -> the *NODE and *ELEMENT cards that they stand for.
 module generated_cards
-   use card_parameters, only: parameter_text
+   use card_parameters, only: choose, has_parameter, parameter_text
    use card_values, only: check_extra, need_field, take_field
    use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, &
-      keyword_card_type, replace_cards
+      has_field, keyword_card_type, replace_cards
    use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
    use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
-      given_type, keep_last, node_place, position_of
+      given_type, keep_last, node_place, position_of, rotation
    use kinds, only: dp
    use text, only: to_text
    implicit none
@@ -71,34 +71,31 @@ contains
          any(card%name == [character(5) :: 'NGEN', 'ELGEN', 'NFILL', 'NCOPY'])
    end function generates
 
-   !> First and last node, increment: the nodes between the two, at equal distances on a line.
+   !> First and last node, increment: the nodes between the two, at equal distances on a line or,
+   !> with LINE=C, on a circle.
    subroutine generate_nodes(card, data, nodes, report, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       type(given_type), intent(inout) :: nodes
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
-      real(dp) :: x(2, 2)
-      integer :: ends(2), at, step, i, n
+      real(dp) :: angle, center(2), from(2), x(2, 2)
+      integer :: ends(2), step, i, n
       logical :: valid
 
       valid = .true.
       step = 1
-      call need_field(data, 1, 'first node', report, ends(1), valid)
-      call need_field(data, 2, 'last node', report, ends(2), valid)
-      call take_field(data, 3, 'increment', report, step, valid)
-      call check_extra(data, 3, 'first node, last node, increment', report)
       do i = 1, 2
-         if (.not. valid) exit
-         at = position_of(ends(i), nodes)
-         valid = at > 0
-         if (valid) then
-            x(:, i) = node_place(all, nodes, at)
-         else
-            call report%error(field_place(data, i), 'no *NODE before this card has node '// &
-               to_text(ends(i)))
-         end if
+         call need_given_node(data, i, trim(merge('first node', 'last node ', i == 1)), nodes, &
+            all, report, ends(i), x(:, i), valid)
       end do
+      call take_field(data, 3, 'increment', report, step, valid)
+      angle = 0.0_dp
+      if (has_parameter(card, 'LINE')) then
+         call read_circle(card, data, x, nodes, all, report, center, angle, valid)
+      else
+         call check_extra(data, 3, 'first node, last node, increment', report)
+      end if
       if (valid) call check_range(data, ends, step, report, valid)
       if (.not. valid) then
          call report%lose('node')
@@ -108,9 +105,86 @@ contains
       n = (ends(2) - ends(1))/step
       if (n > 1) call add_generated(card, 'NODE', '', all)
       do i = 1, n - 1
-         call add_node_card(data, ends(1) + i*step, x(:, 1) + (x(:, 2) - x(:, 1))*i/n, all, nodes)
+         if (has_parameter(card, 'LINE')) then
+            from = matmul(rotation(angle*i/n), x(:, 1) - center)
+            from = center + from*(1 + (norm2(x(:, 2) - center)/norm2(from) - 1)*i/n)
+         else
+            from = x(:, 1) + (x(:, 2) - x(:, 1))*i/n
+         end if
+         call add_node_card(data, ends(1) + i*step, from, all, nodes)
       end do
    end subroutine generate_nodes
+
+   !> A node of the cards so far, and its place.
+   subroutine need_given_node(data, i, what, nodes, all, report, number, x, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                ! position of the field
+      character(*), intent(in) :: what
+      type(given_type), intent(in) :: nodes
+      type(cards_type), intent(in) :: all
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(out) :: number
+      real(dp), intent(out) :: x(2)
+      logical, intent(inout) :: valid
+      logical :: is_number
+      integer :: at
+
+      x = 0.0_dp
+      is_number = .true.
+      call need_field(data, i, what, report, number, is_number)
+      valid = valid .and. is_number
+      if (.not. is_number) return
+      at = position_of(number, nodes)
+      if (at > 0) then
+         x = node_place(all, nodes, at)
+      else
+         call report%error(field_place(data, i), 'no *NODE before this card has node '// &
+            to_text(number))
+         valid = .false.
+      end if
+   end subroutine need_given_node
+
+   !> Center of the circle of *NGEN, LINE=C, a node or a place, and the angle from the first node to
+   !> the last: the smaller one, or the one anticlockwise about the normal that the card gives.
+   subroutine read_circle(card, data, x, nodes, all, report, center, angle, valid)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: x(2, 2)         ! the two ends
+      type(given_type), intent(in) :: nodes
+      type(cards_type), intent(in) :: all
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(out) :: center(2)
+      real(dp), intent(out) :: angle          ! [rad]
+      logical, intent(inout) :: valid
+      real(dp), parameter :: whole = 2*acos(-1.0_dp)
+      character(:), allocatable :: kind
+      real(dp) :: normal, radii(2, 2)
+      integer :: number
+
+      center = 0.0_dp
+      normal = 0.0_dp
+      kind = ''
+      call choose(card, 'LINE', 'C', report, kind)
+      valid = valid .and. kind == 'C'
+      if (.not. valid) return
+      if (has_field(data, 4)) then
+         call need_given_node(data, 4, 'center', nodes, all, report, number, center, valid)
+      else
+         call need_field(data, 5, 'x of the center', report, center(1), valid)
+         call need_field(data, 6, 'y of the center', report, center(2), valid)
+      end if
+      call take_field(data, 10, 'z of the normal', report, normal, valid)
+      call check_extra(data, 10, 'first node, last node, increment, center: node or x, y, z, '// &
+         'normal: x, y, z', report)
+      radii = x - spread(center, 2, 2)
+      angle = atan2(radii(1, 1)*radii(2, 2) - radii(2, 1)*radii(1, 2), &
+         dot_product(radii(:, 1), radii(:, 2)))
+      if (normal > 0.0_dp) angle = modulo(angle, whole)
+      if (normal < 0.0_dp) angle = -modulo(-angle, whole)
+      if (.not. valid .or. minval(norm2(radii, dim=1)) > 0.0_dp) return
+      call report%error(field_place(data, 4), 'the center of the circle is one of its nodes')
+      valid = .false.
+   end subroutine read_circle
 
    !> The increment leads from the first number to the last.
    subroutine check_range(data, ends, step, report, valid)

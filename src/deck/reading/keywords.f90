@@ -76,7 +76,7 @@ module keywords
       keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
       keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
       keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
-      keyword_type('NGEN', built, in_model, 1, many, 'NSET='), &
+      keyword_type('NGEN', built, in_model, 1, many, 'NSET=/LINE='), &
       keyword_type('NFILL', built, in_model, 1, many, 'NSET=/BIAS='), &
       keyword_type('NCOPY', built, in_model, 1, 2, &
          'OLD SET=/CHANGE NUMBER=/NEW SET=/SHIFT/REFLECT=/MULTIPLE='), &
@@ -166,7 +166,7 @@ module keywords
       keyword_type('ELEMENT OUTPUT', built, in_step, 0, many, file_parameters), &
       keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
       keyword_type('RESTART', built, in_both, 0, 0, &
-         'READ/STEP=/INC=/WRITE/FREQUENCY=/OVERLAY'), &
+         'READ/STEP=/INC=/WRITE/FREQUENCY=/OVERLAY/~NUMBER INTERVAL=/~TIME MARKS?'), &
       keyword_type('NODE PRINT', built, in_step, 0, many, &
          'NSET=/FREQUENCY=/TIME POINTS=/TOTALS=/GLOBAL=/~FREQUENCYF='), &
       keyword_type('EL PRINT', built, in_step, 0, many, &
@@ -177,7 +177,7 @@ module keywords
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(84) = [ &
+   type(advice_type), parameter :: advice(82) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -236,8 +236,6 @@ module keywords
       advice_type(of_parameter, 'INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &
       advice_type(of_parameter, 'COUPLING', 'ORIENTATION', 'faces follow along x and y'), &
       advice_type(of_parameter, 'COUPLING', 'ALPHA', 'small rotations need no penalty'), &
-      advice_type(of_parameter, 'NGEN', 'LINE', &
-         'nodes are generated on straight lines; give those of a curve'), &
       advice_type(of_parameter, 'GAP CONDUCTANCE', 'USER', &
          'no routine of the user is called; give the table'), &
       advice_type(of_parameter, 'MODEL CHANGE', 'MECHSTRAINTORESIDUAL', &
@@ -257,8 +255,6 @@ module keywords
       advice_type(of_parameter, 'AMPLITUDE', 'SHIFTX', 'add the shift to the times'), &
       advice_type(of_parameter, 'AMPLITUDE', 'SHIFTY', 'add the shift to the factors'), &
       advice_type(of_parameter, 'RESTART', 'END STEP', 'a step goes on to its end; leave it out'), &
-      advice_type(of_parameter, 'RESTART', 'NUMBER INTERVAL/TIME MARKS', &
-         'FREQUENCY=n writes at every n-th increment of a step'), &
       advice_type(of_parameter, 'STEP', 'PERTURBATION', &
          'steps go on from the one before; leave it out'), &
       advice_type(of_parameter, '', 'TIME DELAY/FILM TIME DELAY', &
