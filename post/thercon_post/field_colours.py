@@ -6,7 +6,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.ticker import MaxNLocator
 
 PRINCIPAL = ("principal_1", "principal_2", "principal_3")
-SIGNED = ("xx", "yy", "zz", "xy", *PRINCIPAL, "radial", "hoop", "flux_x", "flux_y")
+SIGNED = ("xx", "yy", "zz", "xy", *PRINCIPAL, "radial", "hoop", "flux_x", "flux_y",
+          "mode_temperature")
 ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are the same
 UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
 WIDE = 1.8  # width over height of models whose panels are one below the other

@@ -21,7 +21,7 @@ from .field_colours import (
     settle,
 )
 from .fine_mesh import refine
-from .result import CELL_FIELDS, FIELD_SOURCES, OPEN
+from .result import CELL_FIELDS, FIELD_SOURCES, MODE, OPEN
 from .style import plt
 
 USUAL = {False: ("temperature", "von_mises", "yy"), True: ("temperature", "radial", "hoop")}
@@ -41,7 +41,9 @@ TITLES = {
     "flux_y": ("Heat flux $q_y$", "flux"),
     "stress_error": ("Estimated error of stress", "stress"),
     "heat_flux_error": ("Estimated error of heat flux", "flux"),
+    MODE: ("Temperature of the fastest motion", None),
 }
+AMPLITUDE = 0.05  # of the size of the model: displacement of a motion that is drawn
 COLUMNS = 3  # of panels
 FINE_CELLS = 60000  # about as many parts as a page can show
 
@@ -58,10 +60,11 @@ def draw_row(result, row, options):
     """Draw one picture: a panel for each quantity, at the increment in `row` of /history."""
     step = result.field_row(row)
     fields = read_fields(result, step, options.quantity)
-    displacement = result.point_data("displacement", step)
+    displacement = result.point_data("mode_displacement" if MODE in fields else "displacement", step)
+    factor = options.scale * (mode_factor(result.cells, displacement) if MODE in fields else 1.0)
     moved = result.cells.points.copy()
     if displacement is not None:
-        moved += options.scale * displacement[:, :2]
+        moved += factor * displacement[:, :2]
     pieces = int(np.clip(np.sqrt(FINE_CELLS / result.cells.count), 2, 12))
     fine = refine(result.cells, pieces)
     at = fine.values(moved)
@@ -87,7 +90,7 @@ def draw_row(result, row, options):
             title = re.sub(r" (?=[$(]|of )", "\n", title, count=1)
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
     share_labels(panels)
-    figure.supxlabel(words_below(result, row, options.scale), fontsize=8.5)
+    figure.supxlabel(words_below(result, row, factor, MODE in fields), fontsize=8.5)
     return style.write(
         figure,
         table(result, moved, displacement, fields),
@@ -96,9 +99,17 @@ def draw_row(result, row, options):
     )
 
 
-def words_below(result, row, factor):
+def mode_factor(cells, displacement):
+    """Return a round factor that makes a motion visible: its size is arbitrary."""
+    size = np.ptp(cells.points[cells.used], axis=0).max()
+    largest = np.abs(displacement[cells.used]).max()
+    return float(f"{AMPLITUDE * size / largest:.1g}") if largest > 0.0 else 1.0
+
+
+def words_below(result, row, factor, is_mode=False):
     """Return load, time and what a magnification does."""
     words = result.load_words(row)
+    words += ";\nsmall motion, its largest temperature 1" if is_mode else ""
     words += f"; displacements $\\times$ {factor:g}" if factor != 1.0 else ""
     if result.given_gaps:
         return f"{words},\n{apart_words(result, factor)}"
@@ -155,6 +166,8 @@ def read_fields(result, step, quantities):
         raise UserError(
             f"{' and '.join(CELL_FIELDS)} are fields of elements: draw them apart from those of nodes"
         )
+    if MODE in (quantities or ()) and len(quantities) > 1:
+        raise UserError(f"{MODE} is drawn on the shape of its motion: draw it apart from other fields")
     chosen = quantities or [q for q in USUAL[result.is_axisymmetric] if q in there]
     if not quantities and len(chosen) > 1 and tells_nothing(result, there, step):
         chosen.remove("temperature")

@@ -20,6 +20,7 @@ OPEN, SLIP, STICK = 0, 1, 2
 # Columns of the VTKHDF arrays with several components: picture quantity -> array, component.
 # Those of CELL_FIELDS have one number an element, the others one a point.
 CELL_FIELDS = ("stress_error", "heat_flux_error")
+MODE = "mode_temperature"  # of the fastest small motion, with mode_displacement
 FIELD_SOURCES = {
     "temperature": ("temperature", None),
     "von_mises": ("von_mises", None),
@@ -36,6 +37,7 @@ FIELD_SOURCES = {
     "flux_y": ("heat_flux", 1),
     "stress_error": ("stress_error", None),
     "heat_flux_error": ("heat_flux_error", None),
+    MODE: (MODE, None),
 }
 
 
@@ -46,8 +48,10 @@ STATES = ("pressure", "status")
 EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
 UNJUDGED = "inside a step: the mesh is not refined for this time"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
+ANALYSIS = ("time", "unstable_modes", "growth_rate", "period")
 ITERATION = ("increment", "iteration", "residual", "g_min", "g_max")
-COMPONENTS = {"displacement": 3, "stress": 4, "principal_stress": 3, "heat_flux": 3}
+COMPONENTS = {"displacement": 3, "mode_displacement": 3, "stress": 4, "principal_stress": 3,
+              "heat_flux": 3}
 
 
 def words_of(name):
@@ -217,6 +221,15 @@ class Result:
         if self.accuracy is None:
             return np.ones(self.increments, dtype=bool)
         return np.isin(self.history["time"], numbers(self.file, "errors/time", like=(None,)))
+
+    @cached_property
+    def stability(self):
+        """Datasets of /stability by name: one value an analysis; None where there was none."""
+        group = self.file.get("stability")
+        if group is None:
+            return None
+        count = len(numbers(group, "time", like=(None,), finite=True))
+        return {key: numbers(group, key, like=(count,)) for key in ANALYSIS}
 
     def error_bounds(self, contact, key):
         """Return value, bound and its parts of a quantity of a contact at the last increment; None

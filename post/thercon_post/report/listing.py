@@ -10,6 +10,7 @@ CHECK = re.compile(
 )
 REMARK = re.compile(r"^ {8}(source|failed): (.*)$")
 ITEM = re.compile(r"^   - (.*)$")
+ANALYSIS = re.compile(r"^   stability: (\w+)")
 POINTER = re.compile(r"(;[^;]*)?, (?:or )?see ENDED EARLY.*$")
 
 
@@ -41,6 +42,7 @@ class Listing:
     accuracy: list = field(default_factory=list)  # whether a requested one is reached, and its targets
     checks: list = field(default_factory=list)
     warnings: list = field(default_factory=list)
+    stability: dict = field(default_factory=dict)  # increment -> whether its state lasts
 
 
 def read_listing(path, cards):
@@ -65,8 +67,20 @@ def read_listing(path, cards):
         elif remark and found.checks:
             setattr(found.checks[-1], *remark.groups())
     found.warnings = items(section(lines, "WARNINGS"))
+    found.stability = analyses(lines)
     # The table of rounds is set off from the targets.
     found.accuracy = items(takewhile(str.strip, section(lines, "REQUESTED ACCURACY")))
+    return found
+
+
+def analyses(lines):
+    """Return whether states last, each in a word such as stable, by the numbers of increments."""
+    found, number = {}, 0
+    for line in lines:
+        increment, words = re.match(r"^INCREMENT (\d+) ", line), ANALYSIS.match(line)
+        number = int(increment[1]) if increment else number
+        if words:
+            found[number] = words[1]
     return found
 
 

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from ..result import text, words_of
+from ..result import ANALYSIS, text, words_of
 from .data import contacts_of, plain
 from .html import html, joined
 
@@ -107,6 +107,30 @@ def bound_row(result, contact, key, value):
         share = f" ({number(100.0 * bound / abs(value), 2)} %)" if value else ""
         row[2] = f"± {number(bound, 2)}{share}"
     return row
+
+
+def stability(result, listing):
+    """Return the analyses of stability: the fastest small motion of each state. Whether an answer is
+    uncertain is in the listing alone."""
+    found = result.stability
+    if found is None:
+        return ""
+    rows = []
+    for time, modes, rate, period in zip(*(found[key] for key in ANALYSIS)):
+        row = int(np.argmin(np.abs(result.history["time"] - time)))
+        said = listing.stability.get(row + 1, "–") if listing else "–"
+        lasts = "neither grows nor decays" if rate == 0.0 else "–"
+        if rate > 0.0:
+            lasts = f"doubles in {number(np.log(2.0) / rate, 4)}"
+        elif rate < 0.0:
+            lasts = f"falls to 1/e in {number(-1.0 / rate, 4)}"
+        swing = "none" if period == 0.0 else number(period, 4)
+        growing = "–" if np.isnan(rate) else modes
+        rows.append([number(time), said, growing, number(rate, 4), lasts, swing])
+    head = ["time", "state", "growing motions", "rate of the fastest motion", "which",
+            "period of its oscillation"]
+    told = table("Stability in time", head, rows, (2, 3))
+    return told if listing else joined([told, missing(result)])
 
 
 def accuracy_words(group):

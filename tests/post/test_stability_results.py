@@ -1,0 +1,93 @@
+"""Results with *STABILITY: the page tells of every analysis, the picture has the motion."""
+
+import csv
+import re
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TESTS.parent / "post")]
+
+import rod_modes  # noqa: E402
+from comparing import coarse_pictures  # noqa: E402, F401  a fixture
+from test_stability import BRANCHES, MIDDLE, middle, solved, stability_of  # noqa: E402
+
+from thercon_post.cli import main as plot  # noqa: E402
+from thercon_post.report.cli import main as report  # noqa: E402
+
+MODE = ["--quantity", "mode_temperature"]
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    """Return the result of rods in their unstable state, analysed at every other increment."""
+    cards = [line.replace("1., 1.", "0.25, 1.") for line in middle(
+        stability="*STABILITY, FREQUENCY=2")]
+    return solved(tmp_path_factory.mktemp("rods"), cards)[0]
+
+
+def page(result):
+    """Return the rows of the analyses on the page of a result: lists of cells."""
+    assert report([str(result), "--out", str(result.parent)]) == 0
+    text = result.with_suffix(".html").read_text()
+    tables = re.findall("<caption>Stability in time</caption>.*?</table>", text)
+    rows = re.findall("<tr>(.*?)</tr>", tables[0].split("<tbody>")[1]) if tables else []
+    return [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in rows]
+
+
+def number(cell):
+    """Return a number of the page."""
+    return float(cell.replace("\N{MINUS SIGN}", "-"))
+
+
+def test_the_page_tells_of_every_analysis(result):
+    rate = rod_modes.rates(MIDDLE, (3.6e6, 3.6e6), BRANCHES[1])[0].real
+    half, full = page(result)
+    assert half[:3] == ["0.5", "stable", "0"] and half[4].startswith("falls to 1/e in ")
+    assert full[:3] == ["1", "unstable", "1"] and full[5] == "none"
+    assert number(full[3]) == pytest.approx(rate, rel=1e-3)
+    assert number(full[4].removeprefix("doubles in ")) == pytest.approx(np.log(2) / rate, rel=1e-3)
+
+
+def test_the_page_tells_what_decays_is_uncertain_or_not_known(tmp_path):
+    stable, _ = solved(tmp_path, middle(branch=0), name="stable")
+    rate = stability_of(stable)["growth_rate"][0]
+    assert page(stable)[0][1] == "stable"
+    assert number(page(stable)[0][4].removeprefix("falls to 1/e in ")) == pytest.approx(
+        -1 / rate, rel=1e-3)
+    stable.with_suffix(".lst").unlink()
+    assert page(stable)[0][1] == "–"
+    unknown, _ = solved(tmp_path, middle(capacities=None, branch=0), name="unknown")
+    assert page(unknown) == [["1", "uncertain", *("–" * 4)]]
+    without, _ = solved(tmp_path, middle(stability="**"), name="without")
+    assert page(without) == []
+
+
+def test_a_motion_is_drawn_on_its_shape(result, tmp_path, capsys):
+    assert plot(["fields", str(result), *MODE, "--scale", "0.5", "--csv", "--out", str(tmp_path)]) == 0
+    with open(tmp_path / "deck.fields-mode_temperature-scale-0.5.csv", newline="") as file:
+        drawn = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(file)]
+    with h5py.File(result) as file:
+        grid = file["VTKHDF"]
+        count = len(grid["Points"])
+        mode = grid["PointData/mode_temperature"][-count:]
+        moved = grid["PointData/mode_displacement"][-count:, 1]
+        places = grid["Points"][:, 1]
+    np.testing.assert_array_equal([row["mode_temperature"] for row in drawn], mode)
+    shift = np.array([row["y_drawn"] for row in drawn]) - places
+    most = abs(moved).argmax()
+    np.testing.assert_allclose(shift, shift[most] / moved[most] * moved, atol=1e-9)
+    # One digit of the factor that makes a twentieth of the rods, 0.2 long; half of that is asked for.
+    assert shift[most] / moved[most] == pytest.approx(
+        0.5 * float(f"{0.05 * 0.2 / abs(moved[most]):.1g}"))
+
+
+def test_a_motion_is_drawn_alone_and_where_there_is_one(result, tmp_path, capsys):
+    assert plot(["fields", str(result), *MODE, "yy", "--out", str(tmp_path)]) == 2
+    assert "draw it apart from other fields" in capsys.readouterr().err
+    assert plot(["fields", str(result), *MODE, "--increment", "3", "--out", str(tmp_path)]) == 2
+    assert "no field 'mode_temperature' at this load" in capsys.readouterr().err
