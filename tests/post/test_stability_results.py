@@ -68,7 +68,8 @@ def test_the_page_tells_what_decays_is_uncertain_or_not_known(tmp_path):
 
 
 def test_a_motion_is_drawn_on_its_shape(result, tmp_path, capsys):
-    assert plot(["fields", str(result), *MODE, "--scale", "0.5", "--csv", "--out", str(tmp_path)]) == 0
+    options = ["--scale", "0.5", "--csv", "--out", str(tmp_path)]
+    assert plot(["fields", str(result), *MODE, *options]) == 0
     with open(tmp_path / "deck.fields-mode_temperature-scale-0.5.csv", newline="") as file:
         drawn = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(file)]
     with h5py.File(result) as file:
@@ -81,7 +82,7 @@ def test_a_motion_is_drawn_on_its_shape(result, tmp_path, capsys):
     shift = np.array([row["y_drawn"] for row in drawn]) - places
     most = abs(moved).argmax()
     np.testing.assert_allclose(shift, shift[most] / moved[most] * moved, atol=1e-9)
-    # One digit of the factor that makes a twentieth of the rods, 0.2 long; half of that is asked for.
+    # One digit of the factor that makes a twentieth of the rods, 0.2 long; half of it is asked for.
     assert shift[most] / moved[most] == pytest.approx(
         0.5 * float(f"{0.05 * 0.2 / abs(moved[most]):.1g}"))
 
