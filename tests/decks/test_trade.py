@@ -411,9 +411,9 @@ REFUSED = {
     "trade takes one deck": ["trade", HERTZ, CYLINDER],
     "--jobs needs a whole number of at least 1, not 0": ["trade", HERTZ, "--jobs", "0"],
     "--jobs needs a whole number of at least 1, not two": ["trade", HERTZ, "--jobs", "two"],
-    "--limit needs a number of seconds above 0, not -1": ["trade", HERTZ, "--limit", "-1"],
+    "--limit needs a number of seconds above 0, such as 60s, not -1": ["trade", HERTZ, "--limit", "-1"],
     "option --limit needs a value": ["trade", HERTZ, "--limit"],
-    "option --limit does not go with run": ["run", HERTZ, "--limit", "1"],
+    "option --limit does not go with check": ["check", HERTZ, "--limit", "1"],
     "option --jobs does not go with check": ["check", HERTZ, "--jobs", "2"],
     "unknown option --job": ["trade", HERTZ, "--job", "2"],
 }
