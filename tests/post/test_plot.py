@@ -344,6 +344,17 @@ def test_the_legend_of_further_edges_has_a_line_where_one_is_drawn(kept, result,
     assert "further edge of contact" not in found
 
 
+def test_the_left_edge_of_a_symmetric_contact_is_an_edge(kept, result):
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        contact["edges_contact"][:, 1] = contact["edge_contact"][()]
+        contact["edges_contact"][:, 0] = left = 0.2 * contact["edge_contact"][()]
+    (figure,) = kept("zones", result, "--along", "s")
+    assert "further edge of contact" not in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert any(len(line.get_ydata()) == 15 and np.allclose(line.get_ydata(), left, rtol=1e-6)
+               for line in figure.axes[0].lines)
+
+
 def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(kept, tmp_path):
     path = tmp_path / "late.vtkhdf"
     write_result(path, loads=(300.0, 450.0, 600.0, 750.0, 900.0))
