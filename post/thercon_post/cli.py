@@ -4,7 +4,7 @@ import argparse
 from contextlib import ExitStack
 from itertools import chain
 
-from . import accuracy, convergence, courses, fields, mesh, profiles, style, trade, zones
+from . import accuracy, branch, convergence, courses, fields, mesh, profiles, style, trade, zones
 from .errors import UserError, program
 from .result import FIELD_SOURCES, Result
 
@@ -42,6 +42,7 @@ def parser():
         "zones": ("open, slip and stick against the load", WITH_ZONES),
         "fields": ("temperature and stress on the deformed mesh", None),
         "courses": ("pressure, gap, temperatures and heat over time", None),
+        "branch": ("a quantity over the load factor of *CONTINUATION, unstable parts dashed", None),
         "accuracy": ("bounds of a requested accuracy against the cost of its rounds", None),
     }
     added = {}
@@ -65,6 +66,12 @@ def parser():
     )
     add_fields(added["fields"])
     add_name(added["courses"])
+    add_name(added["branch"])
+    added["branch"].add_argument(
+        "--quantity",
+        metavar="QUANTITY",
+        help="of /contact/NAME, or peak_pressure (default: heat_rate)",
+    )
     added["courses"].add_argument("--log", action="store_true", help="logarithmic time")
     return top
 
@@ -208,7 +215,7 @@ def run(arguments):
         if options.picture in ("convergence", "zones"):
             return {"convergence": convergence, "zones": zones}[options.picture].draw(results, options)
         picture = {"mesh": mesh, "profiles": profiles, "fields": fields}
-        picture |= {"accuracy": accuracy, "courses": courses}
+        picture |= {"accuracy": accuracy, "courses": courses, "branch": branch}
         return picture[options.picture].draw(results[0], options)
 
 

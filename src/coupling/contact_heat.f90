@@ -293,8 +293,9 @@ contains
          by_omega%of_tail, by_omega%made)
    end function derivative_by_temperature
 
-   !> dW with the unknowns of the thermal tail, and with the heat of friction.
-   function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, made) &
+   !> dW with the unknowns of the thermal tail, with the heat of friction, and with the means of the
+   !> faces without jumps.
+   function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, made, mean) &
       result(change)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
@@ -302,6 +303,7 @@ contains
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       real(dp), intent(in) :: of_tail(:, :)                    !! (thermal tail, n)
       real(dp), intent(in), optional :: made(:, :)             !! (heats, n)
+      real(dp), intent(in), optional :: mean(:)                !! (m) [temperature]
       real(dp) :: change(size(coordinate), size(of_tail, 2))   !! (m, n)
       real(dp) :: jump(size(coordinate), size(of_tail, 2))
       integer :: k
@@ -309,6 +311,7 @@ contains
       change = product_of(heat%jump_mean, of_tail)
       if (present(made)) change = change + product_of(heat%friction_mean, &
          workspace%friction%entering_part(made))
+      if (present(mean)) change = change + spread(mean, 2, size(change, 2))
       jump = 0.0_dp
       do k = 1, size(coordinate)
          if (bodies%jump_index(k) > 0) jump(k, :) = of_tail(bodies%jump_index(k), :)

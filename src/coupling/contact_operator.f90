@@ -9,8 +9,8 @@ module contact_operator
    use closing_instant, only: contact_change_type, contact_response, make_tangent, solve_increment
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance, conductance_derivative, conductance_law_type
-   use contact_heat, only: jump_derivatives_type, settle_conductance, take_temperatures, &
-      temperature_jumps
+   use contact_heat, only: changes_by_temperature, jump_derivatives_type, settle_conductance, &
+      take_temperatures, temperature_jumps
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip, contact_state_type
    use contact_tractions, only: pressures
@@ -28,7 +28,8 @@ module contact_operator
    implicit none
    private
    public :: contact_operator_pass, law_conductance, law_pressure, kept_contact, residual_floor, &
-      unstrained_forces, make_graph, openings, opening_derivative, opening_changes
+      unstrained_forces, make_graph, openings, opening_derivative, opening_changes, &
+      load_derivative
 
    !> Smallest stiffness of a contact point, of the largest one, that scales its overlap: a contact
    !> point alone that holds a body has none.
@@ -353,6 +354,42 @@ contains
          end if
       end associate
    end subroutine opening_derivative
+
+   !> Derivative of the openings by the load factor at constant coordinates, for the state that the
+   !> last pass found, with its derivative by the conductances.
+   subroutine load_derivative(bodies, heat, data, state, workspace)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(contact_state_type), intent(in) :: state
+      type(increment_workspace_type), intent(inout) :: workspace !! receives the derivative
+      type(jump_derivatives_type) :: by_factor
+      type(contact_workspace_type) :: tangent
+      real(dp) :: change(size(state%gap), 1)
+      real(dp), allocatable :: load(:, :)
+      logical :: sound
+
+      by_factor%of_tail = reshape(data%rate%heat, [size(data%rate%heat), 1])
+      call workspace%tail%solve_columns(by_factor%of_tail)
+      load = reshape(data%rate%force, [size(data%rate%force), 1]) + &
+         product_of(heat%jump_load, by_factor%of_tail)
+      call make_tangent(bodies%equilibrium%contact, workspace%contact, state, tangent, &
+         sound)
+      if (sound .and. allocated(workspace%friction%made)) call follow_friction(bodies, heat, &
+         workspace, state, by_factor, load, sound)
+      associate (pass => workspace%pass)
+         if (.not. sound) then
+            deallocate (pass%derivative)
+            return
+         end if
+         call opening_changes(bodies, pass%graph, tangent, state, load, change)
+         pass%by_factor = change(:, 1)
+         if (.not. bodies%points%vary_with_temperature()) return
+         change = changes_by_temperature(bodies, heat, workspace, pass%coordinates(), &
+            by_factor%of_tail, by_factor%made, data%rate%mean)
+         pass%by_factor = pass%by_factor + matmul(pass%derivative, change(:, 1))
+      end associate
+   end subroutine load_derivative
 
    !> Adds to the changes with the conductances what the heat of friction makes that follows them.
    subroutine follow_friction(bodies, heat, workspace, state, by_omega, load, exists)

@@ -27,7 +27,7 @@ module coupled_increment
    use text, only: append
    implicit none
    private
-   public :: solve_coupled, find_gains, is_one_of_several
+   public :: solve_coupled, contact_scales, differ, find_gains, is_one_of_several
 
    real(dp), parameter :: end_conductance(2) = [1.0e-8_dp, 1.0e8_dp] !! of the starts open and
    !! closed, in the conductance of the bodies about the contact point
@@ -53,8 +53,9 @@ contains
 
       data%scales = contact_scales(bodies, data)
       workspace%pass%graph = make_graph(bodies, heat, data%scales%length)
+      ! Where the edge goes over a contact point U jumps, and there is no branch.
       workspace%resolves_edge = any(bodies%points%resolves_edge) .and. &
-         .not. data%equation%takes_past_conductance()
+         .not. (data%equation%takes_past_conductance() .or. data%follows_branch)
       next%omega_before = data%equation%omega_old
       if (allocated(data%omega_start)) then
          next%omega = data%omega_start
@@ -158,7 +159,7 @@ contains
       if (.not. found(3) .and. any(found)) call try_start(findloc(found, .true., dim=1))
       if (allocated(fresh%record%notes)) workspace%record%notes = fresh%record%notes
       call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, workspace%record)
-      if (has_other) has_other = differ(turned, omega(:, findloc(found, .true., dim=1)))
+      if (has_other) has_other = any(differ(turned, omega(:, findloc(found, .true., dim=1))))
       if (has_other) call workspace%record%warn('a start with conductances turned over '// &
          'leads to a different solution; this is one of several')
    contains
@@ -206,11 +207,11 @@ contains
       logical, intent(in) :: found(:)
       type(solution_report_type), intent(inout) :: record
 
-      if (found(1) .and. found(2) .and. differ(from_open, from_closed)) then
+      if (found(1) .and. found(2) .and. any(differ(from_open, from_closed))) then
          call record%warn('the starts from OPEN and from CLOSED lead to different solutions; '// &
             'this is one of several')
-      else if (found(3) .and. ((found(1) .and. differ(from_open, from_previous)) .or. &
-         (found(2) .and. differ(from_closed, from_previous)))) then
+      else if (found(3) .and. ((found(1) .and. any(differ(from_open, from_previous))) .or. &
+         (found(2) .and. any(differ(from_closed, from_previous))))) then
          call record%warn('PREVIOUS leads to a different solution than OPEN and CLOSED; this '// &
             'is one of several')
       else if (found(1) .and. found(2)) then
@@ -219,10 +220,10 @@ contains
    end subroutine compare
 
    !> Whether two conductances belong to different solutions.
-   pure logical function differ(a, b)
-      real(dp), intent(in) :: a(:), b(:)
+   elemental logical function differ(a, b)
+      real(dp), intent(in) :: a, b
 
-      differ = any(abs(a - b) > different*max(a, b))
+      differ = abs(a - b) > different*max(a, b)
    end function differ
 
    !> The gain of the coupling, and what follows from it.
@@ -234,6 +235,7 @@ contains
       logical, intent(in) :: is_plain                            !! whether the iteration is (4.1)
       type(increment_workspace_type), intent(inout) :: workspace
       type(arnoldi_type) :: gains
+      logical :: is_negative                                     ! det(I - U')
 
       workspace%record%coupling_gain = 0.0_dp
       workspace%record%coupling_gain_max = 0.0_dp
@@ -252,6 +254,12 @@ contains
             gains%largest_real
       end if
       associate (record => workspace%record)
+         ! Where all gains are below 1 in modulus, det(I - U') is positive.
+         is_negative = any(next%resting) .or. abs(gains%largest) >= 1.0_dp
+         if (is_negative) is_negative = is_unstable(bodies, heat, data, workspace, next)
+         record%is_unstable = is_negative .and. data%equation%duration <= 0.0_dp
+         ! The points of a branch say so themselves.
+         if (data%follows_branch) return
          if (record%coupling_gain < -1.0_dp .and. is_plain) call record%warn( &
             'the coupling gain is ', record%coupling_gain, &
             ', below -1: plain iteration (4.1) would diverge')
@@ -264,9 +272,8 @@ contains
          if (alternates(bodies, next)) call record%warn('closed and open contact points '// &
             'alternate in a uniform face: a pattern, which is not the only solution; *START, '// &
             'FROM=BOTH tries others, *STABILITY says which of them last')
-         ! Where all gains are below 1 in modulus, det(I - U') is positive.
          if (any(next%resting) .or. abs(gains%largest) >= 1.0_dp) then
-            if (.not. is_unstable(bodies, heat, data, workspace, next)) then
+            if (.not. is_negative) then
                if (record%coupling_gain_max > 1.0_dp + near_turning_point) call record%warn( &
                   'the largest real gain is ', record%coupling_gain_max, ', above 1: the '// &
                   'solution may be one of several; *START, FROM=BOTH tries others')
@@ -275,11 +282,9 @@ contains
                   call record%warn('det(I - U'') is negative: the increment is too long to '// &
                      'show a mode that grows, the state does not last; take shorter increments')
                else if (allocated(workspace%friction%made)) then
-                  record%is_unstable = .true.
                   ! Heat of friction has no bound: the other solutions may be at infinity.
                   call record%warn('det(I - U'') is negative: the branch is unstable')
                else
-                  record%is_unstable = .true.
                   call record%warn('det(I - U'') is negative: the branch is unstable, and '// &
                      'there are at least two other solutions')
                end if

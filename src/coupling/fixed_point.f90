@@ -30,6 +30,8 @@ module fixed_point
       !> (m) conductance that the bodies put in series with each contact point; set with the
       !> derivative
       real(dp), allocatable :: body(:)
+      !> (m) derivative of the openings by the load factor at constant coordinates, on a branch
+      real(dp), allocatable :: by_factor(:)
    contains
       procedure :: coordinates
    end type pass_type

@@ -17,8 +17,8 @@
 !> omega/(omega + body), in which steep laws and contact points at rest are as long as flat ones.
 module homotopy
    use conductance_graph, only: conductance_graph_type
-   use dense, only: lu_type
    use kinds, only: dp
+   use path_steps, only: coordinate_rate, moved_along, path_step_type, solve_on_path
    implicit none
    private
    public :: homotopy_type
@@ -58,13 +58,6 @@ module homotopy
       procedure :: next
       procedure :: retreat
    end type homotopy_type
-
-   !> Newton's correction of a trial, and the way that the path goes on.
-   type :: path_step_type
-      logical :: sound = .false.               !! whether there is one
-      real(dp), allocatable :: change(:)       !! (m + 1) the correction
-      real(dp), allocatable :: tangent(:)      !! (m + 1) of the path, of length 1
-   end type path_step_type
 
 contains
 
@@ -220,18 +213,14 @@ contains
       type(conductance_graph_type), intent(in) :: graph(:)
       real(dp), intent(in) :: body(:), opening(:), derivative(:, :)
       type(path_step_type), intent(out) :: step
-      real(dp) :: matrix(size(opening) + 1, size(opening) + 1), x(size(opening) + 1, 2), rate
-      type(lu_type) :: lu
-      logical :: singular
+      real(dp) :: matrix(size(opening) + 1, size(opening) + 1), rate
       integer :: k, n
 
       n = size(opening)
       do k = 1, n
-         associate (omega => graph(k)%omega(self%trial(k)), advance => graph(k)%advance( &
-            self%trial(k)), slope => graph(k)%derivative(self%trial(k)))
-            ! Change of the coordinate for the length along the graph.
-            rate = 1.0_dp/(advance/self%length + body(k)/(omega + body(k))*abs(slope)/ &
-               (omega + body(k)))
+         associate (advance => graph(k)%advance(self%trial(k)), &
+            slope => graph(k)%derivative(self%trial(k)))
+            rate = coordinate_rate(graph(k), self%trial(k), body(k), self%length)
             matrix(:n, k) = -self%trial_t*rate*slope*derivative(:, k)
             matrix(k, k) = matrix(k, k) + rate*advance
          end associate
@@ -239,61 +228,12 @@ contains
       matrix(:n, n + 1) = self%first - opening
       matrix(n + 1, :) = self%tangent
       if (self%trial_t >= 1.0_dp) matrix(n + 1, :) = [(0.0_dp, k=1, n), 1.0_dp]
-      x = 0.0_dp
-      x(:n, 1) = -(graph%opening(self%trial) - (1.0_dp - self%trial_t)*self%first - &
-         self%trial_t*opening)
-      x(n + 1, 2) = 1.0_dp
-      call lu%factor(matrix, singular)
-      step%sound = .not. singular
-      if (singular) return
-      call lu%solve(x)
-      step%tangent = x(:, 2)/norm2(x(:, 2))
-      if (lu%negative_determinant()) step%tangent = -step%tangent
-      step%change = x(:, 1)
+      call solve_on_path(matrix, -(graph%opening(self%trial) - (1.0_dp - self%trial_t)* &
+         self%first - self%trial_t*opening), step)
+      if (.not. step%sound) return
+      if (step%is_reversed) step%tangent = -step%tangent
       if (self%trial_t < 1.0_dp) step%change = step%change - &
          dot_product(step%change, step%tangent)*step%tangent
    end subroutine find_step
-
-   !> Coordinates at the ends of walks along the graphs, of given lengths.
-   elemental function moved_along(graph, from, walk, body, length) result(coordinate)
-      type(conductance_graph_type), intent(in) :: graph
-      real(dp), intent(in) :: from     !! [length]
-      real(dp), intent(in) :: walk     !! towards open where it is positive [-]
-      real(dp), intent(in) :: body     !! [as omega]
-      real(dp), intent(in) :: length   !! [length]
-      real(dp) :: coordinate           !! [length]
-      real(dp) :: near, far
-      integer :: i
-
-      near = from
-      far = from + walk*length + sign(graph%width, walk)
-      do i = 1, 200
-         coordinate = 0.5_dp*(near + far)
-         if (abs(far - near) <= 2*epsilon(1.0_dp)*abs(coordinate)) exit
-         if (distance(graph, min(from, coordinate), max(from, coordinate), body, &
-            length) > abs(walk)) then
-            far = coordinate
-         else
-            near = coordinate
-         end if
-      end do
-   end function moved_along
-
-   !> Length along the graph between two coordinates: the opening's change and the variation of the
-   !> share, which may turn at the rows of tables and at the ends of a rest.
-   pure function distance(graph, low, high, body, length)
-      type(conductance_graph_type), intent(in) :: graph
-      real(dp), intent(in) :: low, high, body, length
-      real(dp) :: distance
-      real(dp), allocatable :: coordinate(:), share(:)
-
-      associate (kinks => graph%kinks())
-         coordinate = [low, pack(kinks, kinks > low .and. kinks < high), high]
-      end associate
-      share = graph%omega(coordinate)
-      share = share/(share + body)
-      distance = (graph%opening(high) - graph%opening(low))/length + &
-         sum(abs(share(2:) - share(:size(share) - 1)))
-   end function distance
 
 end module homotopy

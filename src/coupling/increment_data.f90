@@ -16,13 +16,22 @@ module increment_data
    use thermal_matrix, only: heat_equation_type
    implicit none
    private
-   public :: contact_scales_type, increment_data_type, increment_workspace_type, stage_type
+   public :: contact_scales_type, increment_data_type, increment_workspace_type, load_rate_type, &
+      stage_type
 
    !> Largest values of an increment, by which gaps and pressures are small.
    type :: contact_scales_type
       real(dp) :: length = 0.0_dp   !! gap or displacement [length]
       real(dp) :: force = 0.0_dp    !! nodal force at its start [force]
    end type contact_scales_type
+
+   !> Changes of loads with the load factor, to which loads of a branch are proportional.
+   type :: load_rate_type
+      real(dp), allocatable :: heat(:)    !! (thermal tail) condensed load of (3.4) [power]
+      real(dp), allocatable :: force(:)   !! (mechanical tail) condensed load without jumps [force]
+      !> (m) mean temperature of the faces without jumps, where laws vary with it
+      real(dp), allocatable :: mean(:)
+   end type load_rate_type
 
    !> Data that stay fixed while the increment is solved.
    type :: increment_data_type
@@ -46,6 +55,8 @@ module increment_data
       !> (m) mean temperature of the faces without jumps, where conductance laws vary with it
       real(dp), allocatable :: welded_mean(:)
       type(contact_scales_type) :: scales            !! set where heat and mechanics are coupled
+      logical :: follows_branch = .false.            !! whether it is a point of a branch
+      type(load_rate_type) :: rate                   !! set for passes on a branch
    end type increment_data_type
 
    !> A stage of an increment.

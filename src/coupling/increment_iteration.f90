@@ -5,7 +5,8 @@
 module increment_iteration
    use contact_heat, only: at_own_temperatures, derivative_by_temperature, jump_derivatives, &
       jump_derivatives_type
-   use contact_operator, only: contact_operator_pass, opening_derivative, openings, residual_floor
+   use contact_operator, only: contact_operator_pass, load_derivative, opening_derivative, &
+      openings, residual_floor
    use contact_system, only: closing_law_type, contact_open, contact_slip, contact_state_type
    use controls, only: fixed_point_type, method_anderson, method_newton, method_picard, &
       method_zaitsev
@@ -24,7 +25,7 @@ module increment_iteration
    use text, only: append, counted, to_text
    implicit none
    private
-   public :: iterate, make_accelerator
+   public :: iterate, make_accelerator, pass_on_branch
 
    integer, parameter :: most_turns = 4  !! openings and closings of a contact point whose law jumps
    integer, parameter :: on_path = 10     !! passes with a path, over those of the method itself
@@ -300,23 +301,59 @@ contains
       class(accelerator_type), intent(inout) :: accelerator
       type(increment_workspace_type), intent(inout) :: workspace
 
-      type(jump_derivatives_type) :: by_omega
-
       associate (pass => workspace%pass)
          if (allocated(pass%derivative)) deallocate (pass%derivative)
-         if (accelerator%asks_derivative(pass)) then
-            call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
-            call opening_derivative(bodies, heat, workspace, by_omega, next%contact, &
-               pass%derivative, pass%body)
-            if (bodies%points%vary_with_temperature() .and. allocated(pass%derivative)) then
-               call at_own_temperatures(derivative_by_temperature(bodies, heat, workspace, &
-                  pass%coordinates(), by_omega), pass%derivative)
-            end if
-         end if
+         if (accelerator%asks_derivative(pass)) call find_derivative(bodies, heat, data, next, &
+            workspace)
          call accelerator%next(pass)
          next%omega = pass%omega
       end associate
    end subroutine take_step
+
+   !> Derivative of the openings that the last pass found by the conductances.
+   subroutine find_derivative(bodies, heat, data, next, workspace)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(solution_state_type), intent(in) :: next
+      type(increment_workspace_type), intent(inout) :: workspace
+      type(jump_derivatives_type) :: by_omega
+
+      associate (pass => workspace%pass)
+         call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
+         call opening_derivative(bodies, heat, workspace, by_omega, next%contact, &
+            pass%derivative, pass%body)
+         if (bodies%points%vary_with_temperature() .and. allocated(pass%derivative)) then
+            call at_own_temperatures(derivative_by_temperature(bodies, heat, workspace, &
+               pass%coordinates(), by_omega), pass%derivative)
+         end if
+      end associate
+   end subroutine find_derivative
+
+   !> One pass at coordinates of a branch, workspace%pass%coordinate, with its derivatives; they are
+   !> unallocated where they do not exist.
+   !> Errors: as contact_operator_pass.
+   subroutine pass_on_branch(bodies, heat, data, workspace, next, residual, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(inout) :: workspace !! loads, graphs, coordinates in
+      type(solution_state_type), intent(inout) :: next           !! guess of the contact in
+      real(dp), intent(out) :: residual                          !! over the one wanted
+      type(error_type), allocatable, intent(out) :: error
+      real(dp), allocatable :: coordinate(:)
+
+      coordinate = workspace%pass%coordinate
+      call begin_passes(bodies, data, workspace%pass%graph%omega(coordinate), workspace)
+      workspace%pass%coordinate = coordinate
+      call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, error)
+      if (allocated(error)) return
+      call measure_pass(bodies, data, workspace, next, residual)
+      residual = residual/max(data%fixed_point%tolerance, workspace%record%residual_floor)
+      call find_derivative(bodies, heat, data, next, workspace)
+      if (allocated(workspace%pass%derivative)) call load_derivative(bodies, heat, data, &
+         next%contact, workspace)
+   end subroutine pass_on_branch
 
    !> The accelerator that the deck asks for.
    subroutine make_accelerator(controls, points, accelerator)

@@ -28,7 +28,7 @@ module increment_solution
    use thermal_matrix, only: heat_equation_type
    implicit none
    private
-   public :: begin_increment, solve_points, recover_fields
+   public :: begin_increment, load_points, solve_points, recover_fields
 
    integer, parameter :: of_heat = 1, of_mechanics = 2   !! places of known loads
 
@@ -55,17 +55,7 @@ contains
       workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
       workspace%record%coupling_gain_max = workspace%record%coupling_gain
       if (solves_heat(data%analysis)) then
-         associate (given => loads%temperature%value)
-            workspace%heat = heat%load_of(bodies%thermal, history_of_heat(bodies, data), given)
-            call heat%condense_load(bodies%thermal, workspace%heat, workspace%known(of_heat), &
-               next%temperature)
-            data%held_jump = bodies%points%jumps(given)
-         end associate
-         where (bodies%jump_index > 0) data%held_jump = 0.0_dp
-         if (bodies%points%vary_with_temperature()) data%welded_mean = &
-            bodies%points%means(next%temperature)
-         call check_finite([workspace%heat%condensed, next%temperature], &
-            'heat and temperatures', status_no_convergence, error)
+         call load_heat(bodies, heat, loads, data, workspace, next, error)
          if (allocated(error)) return
          if (size(next%omega) > 0 .and. .not. bodies%is_coupled) then
             call conduct(bodies, heat, data, workspace, next, error)
@@ -81,6 +71,51 @@ contains
       if (allocated(data%friction%made)) next%friction_heat = data%friction%made
       next%carrying = data%equation%carrying(joined_conductance(next%omega, next%edge))
    end subroutine solve_points
+
+   !> Loads of an increment in which heat and mechanics are coupled, as solve_points has them.
+   !> Error: they overflow.
+   subroutine load_points(bodies, heat, loads, data, workspace, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(in) :: loads                      !! loads at the end
+      type(increment_data_type), intent(inout) :: data           !! as begun
+      type(increment_workspace_type), intent(inout) :: workspace !! with places for known loads
+      type(solution_state_type), intent(inout) :: next
+      type(error_type), allocatable, intent(out) :: error
+
+      call adapt_contact(bodies, next%contact)
+      call load_heat(bodies, heat, loads, data, workspace, next, error)
+      if (allocated(error)) return
+      workspace%friction = data%friction
+      next%contact%reference = data%before%contact%tangential
+      call load_mechanics(bodies, loads, next, workspace, data%welded_load)
+      call check_finite([workspace%force%rhs(:, 1), data%welded_load], 'forces', &
+         status_no_convergence, error)
+   end subroutine load_points
+
+   !> Heat load of an increment, condensed, and the temperatures that belong to welded contacts.
+   !> Error: they overflow.
+   subroutine load_heat(bodies, heat, loads, data, workspace, next, error)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(in) :: loads
+      type(increment_data_type), intent(inout) :: data
+      type(increment_workspace_type), intent(inout) :: workspace
+      type(solution_state_type), intent(inout) :: next
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (given => loads%temperature%value)
+         workspace%heat = heat%load_of(bodies%thermal, history_of_heat(bodies, data), given)
+         call heat%condense_load(bodies%thermal, workspace%heat, workspace%known(of_heat), &
+            next%temperature)
+         data%held_jump = bodies%points%jumps(given)
+      end associate
+      where (bodies%jump_index > 0) data%held_jump = 0.0_dp
+      if (bodies%points%vary_with_temperature()) data%welded_mean = &
+         bodies%points%means(next%temperature)
+      call check_finite([workspace%heat%condensed, next%temperature], 'heat and temperatures', &
+         status_no_convergence, error)
+   end subroutine load_heat
 
    !> Right-hand side of (3.4) divided by a1, with the heat of friction that is known before.
    pure function history_of_heat(bodies, data) result(rhs)
@@ -145,6 +180,7 @@ contains
       data%analysis = step%analysis
       data%start = step%start
       data%fixed_point = step%fixed_point
+      data%follows_branch = step%continuation%is_on
       data%before = previous
       data%displacement_scale = maxval(abs(previous%displacement))
       data%previous = previous%contact

@@ -3,7 +3,7 @@ module controls
    use kinds, only: dp
    implicit none
    private
-   public :: fixed_point_type, start_type, thermal_scheme_type
+   public :: continuation_type, fixed_point_type, start_type, thermal_scheme_type
    public :: start_previous, start_open, start_closed, start_both, start_given
    public :: implicit_scheme, galerkin_scheme, crank_nicolson_scheme, explicit_scheme
    public :: l_stable_scheme, stage_part
@@ -44,6 +44,15 @@ module controls
       integer :: constant = 3                 !! number of iterations with the constant g
       logical :: finds_gain = .true.          !! whether the gain at the solution is found
    end type fixed_point_type
+
+   !> *CONTINUATION.
+   type :: continuation_type
+      logical :: is_on = .false.
+      integer :: most_points = 200             !! POINTS=
+      real(dp) :: range(2) = [0.0_dp, 1.0_dp]  !! LOWEST=, HIGHEST=: of the load factor [-]
+      real(dp) :: longest_step = 0.05_dp       !! ARC=: between points [-]
+      logical :: rises = .true.                !! DIRECTION=UP: the load factor at first
+   end type continuation_type
 
    !> Coefficients of eq. (3.4), with a1 + b1 = 1.
    type :: thermal_scheme_type

@@ -115,6 +115,7 @@ contains
       words = ''
       if (follows_temperatures(model)) words = 'properties over temperature'
       if (any(model%steps%is_transient)) words = 'steps that store heat'
+      if (any(model%steps%continuation%is_on)) words = 'branches'
    end function unbounded
 
 end module model

@@ -9,7 +9,7 @@ module quantity_types
    public :: of_history, of_bodies, of_passes, of_interface, of_contact_points, of_nodes, &
       of_points, of_elements
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
-   public :: needs_storage, needs_dilatation, needs_friction_heat, needs_stability
+   public :: needs_storage, needs_dilatation, needs_friction_heat, needs_stability, needs_branch
 
    integer, parameter :: name_length = 24
 
@@ -34,6 +34,7 @@ module quantity_types
    integer, parameter :: needs_dilatation = 6    !! DILATATION=YES
    integer, parameter :: needs_friction_heat = 7 !! heat, and *GAP HEAT GENERATION
    integer, parameter :: needs_stability = 8     !! *STABILITY: /stability in place of /history
+   integer, parameter :: needs_branch = 9        !! *CONTINUATION
 
    type :: quantity_type
       character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors

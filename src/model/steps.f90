@@ -1,7 +1,8 @@
 !> Steps of a model: analysis, increments, loads and supports, output requests.
 module steps
    use contact_definitions, only: contact_changes_type
-   use controls, only: fixed_point_type, start_type, thermal_scheme_type, implicit_scheme
+   use controls, only: continuation_type, fixed_point_type, implicit_scheme, start_type, &
+      thermal_scheme_type
    use kinds, only: dp
    use print_requests, only: print_request_type
    use time_points, only: time_points_type
@@ -87,6 +88,7 @@ module steps
       !> *STABILITY at every n-th increment and the last; 0 never
       integer :: stability_frequency = 0
       real(dp) :: largest_change = huge(1.0_dp)      !! DELTMX=, of a temperature in an increment
+      type(continuation_type) :: continuation = continuation_type()
       integer :: max_increments = 100                !! INC=
       logical :: ramped = .true.                     !! loads ramp over the step; else whole at once
       logical :: direct = .false.                    !! DIRECT

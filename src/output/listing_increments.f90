@@ -11,7 +11,7 @@ module listing_increments
    use listing_text, only: column, page_width, print_wrapped
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_heat, needs_mechanics, &
-      needs_nothing, needs_storage, &
+      needs_branch, needs_nothing, needs_storage, &
       of_bodies, of_history, of_interface, quantity_type
    use records, only: attempt_record_type, contact_record_type, increment_record_type, &
       interface_errors_type
@@ -164,6 +164,7 @@ contains
          write (unit, '(a)') history_line(needs_friction_heat, record)
       end if
       if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
+      if (allocated(record%load_factor)) write (unit, '(a)') history_line(needs_branch, record)
       if (stability_words(record) /= '') call print_wrapped(unit, '   ', 'stability: '// &
          stability_words(record))
       associate (work => record%work)

@@ -18,9 +18,9 @@ module results
    use kinds, only: dp, long
    use model, only: model_type
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
-      needs_heat, needs_mechanics, needs_nothing, needs_stability, needs_storage, &
-      needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes, &
-      quantity_type
+      needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_stability, &
+      needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
+      of_passes, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
@@ -134,7 +134,7 @@ contains
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(quantity_type), allocatable :: of_history_alone(:), of_stability(:)
-      logical :: has(0:needs_stability), has_errors
+      logical :: has(0:needs_branch), has_errors
       integer :: i, expected, n
 
       call start_hdf5(error)
@@ -353,7 +353,7 @@ contains
    pure function what_is_solved(model, has_contact) result(has)
       type(model_type), intent(in) :: model
       logical, intent(in) :: has_contact
-      logical :: has(0:needs_stability)
+      logical :: has(0:needs_branch)
 
       associate (analysis => model%steps%analysis)
          has(needs_nothing) = .true.
@@ -363,6 +363,7 @@ contains
          has(needs_storage) = any(model%steps%is_transient)
          has(needs_dilatation) = any(model%steps%dilates)
          has(needs_stability) = any(model%steps%stability_frequency > 0)
+         has(needs_branch) = any(model%steps%continuation%is_on)
          has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
             model%interactions, model%contacts)
          has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &

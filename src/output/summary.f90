@@ -18,6 +18,7 @@ module summary
    private
    public :: summary_type, words_of
 
+   integer, parameter :: most_folds = 8     !! that are listed
    integer, parameter :: name_width = 17    !! columns of the name of a quantity
    integer, parameter :: value_width = 13   !! of its value
    integer, parameter :: bound_width = 25   !! and of its bound
@@ -47,6 +48,7 @@ module summary
       real(dp), allocatable :: displacement
       type(string_type), allocatable :: steps(:)   !! a line for each step and interface
       character(:), allocatable :: stability                       !! whether it lasts; or empty
+      real(dp), allocatable :: folds(:)   !! load factors of the folds so far; unallocated for none
    contains
       procedure :: take
       procedure :: add_lines
@@ -72,6 +74,10 @@ contains
       self%load = record%load
       self%contacts = record%contacts
       self%stability = stability_words(record)
+      if (record%is_fold) then
+         if (.not. allocated(self%folds)) allocate (self%folds(0))
+         self%folds = [self%folds, record%load_factor]
+      end if
       if (allocated(self%errors)) deallocate (self%errors)
       if (allocated(record%errors)) self%errors = record%errors
       if (allocated(self%heat)) deallocate (self%heat)
@@ -116,8 +122,9 @@ contains
       if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
    end function most_lines
 
-   !> Adds when that increment was, then each interface with a line for each quantity that it has;
-   !> none before the first increment. Without an interface the ranges of the fields are there.
+   !> Adds when that increment was and where a branch turned, then each interface with a line for
+   !> each quantity that it has; none before the first increment. Without an interface the ranges of
+   !> the fields are there.
    subroutine add_lines(self, model, interfaces, lines)
       class(summary_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -136,6 +143,8 @@ contains
          line = line//', inside a step (errors are bounded at the end of steps)'
       end if
       call append(lines, line//':')
+      if (allocated(self%folds)) call append(lines, 'the branch turns at load factors '// &
+         listed(self%folds))
       do i = 1, size(interfaces)
          call append(lines, interfaces(i)%name)
          call add_quantities(self, model, interfaces(i), i, lines)
@@ -143,6 +152,21 @@ contains
       if (size(interfaces) == 0) call add_fields(self, model, lines)
       if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines
+
+   !> The first numbers of a list, in words.
+   pure function listed(values) result(words)
+      real(dp), intent(in) :: values(:)
+      character(:), allocatable :: words
+      integer :: i
+
+      words = ''
+      do i = 1, min(size(values), most_folds)
+         if (i > 1) words = words//', '
+         words = words//to_text(values(i))
+      end do
+      if (size(values) > most_folds) words = words//' and '//to_text(size(values) - most_folds)// &
+         ' more'
+   end function listed
 
    !> The temperatures, the heat and the displacement of a deck without contact.
    subroutine add_fields(self, model, lines)

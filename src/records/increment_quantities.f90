@@ -2,7 +2,7 @@
 module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
-   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
+   use quantity_types, only: needs_branch, needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_heat, needs_mechanics, &
       needs_stability, needs_storage, of_bodies, of_elements, &
       of_history, of_passes, quantity_type
@@ -54,6 +54,12 @@ module increment_quantities
       description='rate of the fastest one, of the slowest to decay where none grows'), &
       quantity_type('period', of_history, 'time', needs_stability, &
       description='period of its oscillation, 0 without one'), &
+      quantity_type('load_factor', of_history, '-', needs_branch, label='load factor', &
+      description='load factor of a point of a branch, which may fall'), &
+      quantity_type('fold', of_history, '-', needs_branch, is_integer=.true., label='fold', &
+      description='1 where the load factor of a branch turns, else 0'), &
+      quantity_type('unstable', of_history, '-', needs_branch, is_integer=.true., &
+      label='unstable', description='1 where det(I - U'') < 0: an odd number of modes grows'), &
       quantity_type('stress_error', of_bodies, '-', needs_mechanics, label='stress', &
       description='estimated error of the stress by the mesh, relative; one column per body'), &
       quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
@@ -124,6 +130,13 @@ contains
          value = record%coupling_gain_max
       case ('unstable_modes', 'growth_rate', 'period')
          value = stability_value(name, record)
+      case ('load_factor')
+         value = ieee_value(value, ieee_quiet_nan)
+         if (allocated(record%load_factor)) value = record%load_factor
+      case ('fold')
+         value = merge(1.0_dp, 0.0_dp, record%is_fold)
+      case ('unstable')
+         value = merge(1.0_dp, 0.0_dp, record%is_unstable)
       case default
          value = ieee_value(value, ieee_quiet_nan)
       end select

@@ -110,6 +110,8 @@ module records
       logical :: last_of_step = .false.      !! whether the step ends here
       real(dp) :: time = 0.0_dp              !! total time [time]
       real(dp) :: load = 0.0_dp              !! value on the load axis
+      real(dp), allocatable :: load_factor   !! of a point of a branch; else unallocated [-]
+      logical :: is_fold = .false.           !! whether the load factor turns there
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       !> Of a transient: error in time over the range of temperatures, and largest change of one.

@@ -28,6 +28,7 @@ module increment_control
       integer :: increments = 0               !! increments so far, over all steps
       integer :: increments_of_step = 0       !! increments of the present step so far
       integer :: cut_backs = 0                !! cut-backs of the next increment so far
+      logical :: branch_ended = .false.       !! whether the branch of the step was followed
       real(dp) :: step_start = 0.0_dp         !! total time at the start of the step [time]
       real(dp) :: step_time = 0.0_dp          !! time since then [time]
       real(dp) :: largest = 0.0_dp            !! largest size of the next increment [time]
@@ -67,6 +68,7 @@ contains
       self%step = self%step + 1
       self%step_time = 0.0_dp
       self%increments_of_step = 0
+      self%branch_ended = .false.
       self%cut_backs = 0
       self%useful = 0.0_dp
       self%largest = model%steps(self%step)%first_increment
@@ -108,6 +110,7 @@ contains
       type(model_type), intent(in) :: model
 
       step_is_over = self%step_time >= model%steps(self%step)%period
+      if (model%steps(self%step)%continuation%is_on) step_is_over = self%branch_ended
    end function step_is_over
 
    !> The end of the next increment.

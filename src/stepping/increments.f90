@@ -1,10 +1,12 @@
 !> Load stepping: the state before the first increment, and increments, of which one call of advance
 !> solves one.
 module increments
+   use branch_steps, only: branch_type
    use clock, only: wall_seconds
    use contact_operator, only: kept_contact, law_conductance
    use contact_system, only: contact_open
-   use controls, only: stage_part
+   use controls, only: method_newton, stage_part
+   use coupled_increment, only: differ
    use discretisation_errors, only: recovery_type
    use due_output, only: stability_is_due
    use errors, only: error_type, set_error, status_no_convergence
@@ -30,7 +32,7 @@ module increments
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: adapts_increments, solves_heat, solves_mechanics
-   use text, only: counted, to_text
+   use text, only: append, counted, to_text
    use thermal_matrix, only: heat_equation_type
    use touch_instants, only: touch_search_type
    use constraint_checks, only: check_prescribed_ties
@@ -56,6 +58,7 @@ module increments
       type(increment_workspace_type), allocatable :: solved
       type(solved_loads_type), allocatable :: known(:)  !! loads of earlier increments, solved
       type(increment_control_type) :: control       !! position in the steps, size of increments
+      type(branch_type) :: branch                   !! of *CONTINUATION of the step
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
       character(:), allocatable :: undecided        !! what was last warned of
@@ -113,6 +116,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call self%control%enter_step(model)
+      call self%branch%begin_step(self%control%step, self%control%start_of_step(model))
       call self%loads%begin_step(model%steps(self%control%step), self%state%displacement, &
          self%state%temperature)
       call self%bodies%enter_step(model, self%control%step, self%loads, error)
@@ -196,6 +200,7 @@ contains
       type(step_clock_type) :: clock
       type(touch_search_type) :: touch
       real(dp) :: increment_size
+      logical :: can_shorten
 
       if (self%control%step_is_over(model)) then
          call enter_step(self, model, error)
@@ -203,7 +208,8 @@ contains
       end if
       associate (control => self%control, step => model%steps(self%control%step))
          ! Attempts that failed do not count.
-         if (control%increments_of_step >= step%max_increments) call set_error(error, &
+         if (control%increments_of_step >= step%max_increments .and. .not. &
+            step%continuation%is_on) call set_error(error, &
             status_no_convergence, 'step '//to_text(control%step)//' is not finished after INC='// &
             counted(step%max_increments, 'increment')//', at '//to_text(control%step_time)// &
             ' of its period '//to_text(step%period))
@@ -213,9 +219,15 @@ contains
       if (allocated(error)) return
       do
          clock = self%control%next_instant(model)
+         if (self%branch%points > 0) then
+            call begin_record(self, model, clock, record)
+            call self%branch%find_point(model, self%bodies, self%heats(self%in_use), self%loads, &
+               self%state, error)
+            if (.not. allocated(error)) clock = self%branch%clock_at(self%branch%point%factor)
+         end if
          if (touch%interface > 0) call self%control%end_at(touch%ending, clock)
          increment_size = clock%step_time - self%control%step_time
-         call attempt(self, model, clock, next, record, error)
+         if (.not. allocated(error)) call attempt(self, model, clock, next, record, error)
          call add_attempts(before, record)
          if (.not. allocated(error)) then
             if (keeps(self, model, clock, next, touch, record)) exit
@@ -229,13 +241,18 @@ contains
                self%runaway = record%runaway
                self%runaway_time = record%time
             end if
-            if (self%control%can_cut_back(model, increment_size)) then
-               call self%control%cut_back(model, increment_size)
+            if (self%branch%points > 0) then
+               call self%branch%shorten(can_shorten)
+            else
+               can_shorten = self%control%can_cut_back(model, increment_size)
+               if (can_shorten) call self%control%cut_back(model, increment_size)
+            end if
+            if (can_shorten) then
                deallocate (error)
                before = record
                cycle
             end if
-            error%message = error%message//'; '// &
+            if (self%branch%points == 0) error%message = error%message//'; '// &
                self%control%why_not_again(model, increment_size)//runaway_ahead(self, record)
          end if
          error%message = 'increment '//to_text(record%increment)//' (time '// &
@@ -247,6 +264,11 @@ contains
       self%sizes%most_corrections = max(self%sizes%most_corrections, record%corrections)
       call accept_increment(next, model, self%state, record)
       call self%control%accept(model, clock, record)
+      if (.not. model%steps(self%control%step)%continuation%is_on) return
+      call self%branch%accept(model, record%load_factor)
+      self%control%branch_ended = self%branch%is_last
+      if (self%branch%is_last) call append(record%notes, 'the branch ends here: '// &
+         self%branch%ending)
    end subroutine advance
 
    !> Whether an attempt that was solved is the increment: in a transient whose increments are free
@@ -348,6 +370,10 @@ contains
          next = last%next
          record = last%record
          if (first%record%increment > 0) call add_attempts(first%record, record)
+         if (self%branch%is_followed .and. .not. allocated(error)) then
+            if (any(differ(next%omega, self%branch%point%omega))) call set_error(error, &
+               status_no_convergence, 'the increment leads to another branch')
+         end if
          if (.not. step%is_transient .or. allocated(error)) return
          if (first%record%increment > 0) before%temperature = self%state%temperature + stage%jump
          call measure_changes(model, self%bodies, self%heats(self%in_use), &
@@ -526,6 +552,10 @@ contains
          end if
          if (self%corrections%corrects) call self%corrections%give(data%equation, next)
          if (allocated(trial%omega_start)) data%omega_start = trial%omega_start
+         if (self%branch%is_followed) then
+            data%omega_start = self%branch%point%omega
+            data%fixed_point%method = method_newton
+         end if
          if (solves_heat(step%analysis)) then
             call reduce_heat(self, model, data%equation%left_film(bodies%capacity), error)
             if (allocated(error)) return
@@ -599,6 +629,15 @@ contains
       record%cut_backs = self%control%cut_backs
       record%time = clock%total_time
       record%load = self%loads%axis_value(model, record%time)
+      associate (continuation => model%steps(self%control%step)%continuation)
+         if (.not. continuation%is_on) return
+         record%last_of_step = self%branch%is_last
+         record%load_factor = clock%step_time/clock%period
+         record%is_fold = self%branch%is_fold
+         ! The load factor may fall, time does not.
+         record%time = self%control%step_start + clock%period*record%increment_in_step/ &
+            continuation%most_points
+      end associate
    end subroutine begin_record
 
    !> Frees the factors.

@@ -409,13 +409,17 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     shutil.copy(EXAMPLES / "press_fit.mesh", tmp_path)
     status, said = run(tmp_path / "press_fit.inp", "--accuracy", "1%")
     assert status == 0, said
-    for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED)):
+    rods = EXAMPLES.parent / "rods"
+    branch = (rods / "r1.inp").read_text().replace("INPUT=", f"INPUT={rods}/").split("*VERIFY")[0]
+    branch = "*OPTIONS, WIDTH=300\n" + branch.replace(", DIRECT\n1., 1.", "\n0.5, 1.\n*CONTINUATION")
+    for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED), ("branch", branch)):
         (tmp_path / f"{name}.inp").write_text(deck)
         status, said = run(tmp_path / f"{name}.inp")
         assert status == 0, said
     names = set()
     for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
-                 *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "stretched", "rubbed"))):
+                 *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "stretched", "rubbed",
+                                                      "branch"))):
         with h5py.File(path) as file:
             names |= {name.rpartition("/")[2] for name in every_dataset(file)}
             names |= set(file["run"].attrs) if "run" in file else set()

@@ -4,7 +4,7 @@ import base64
 
 import numpy as np
 
-from .. import mesh
+from .. import branch, mesh
 from ..courses import HEAT
 from ..field_colours import PRINCIPAL, SIGNED
 from ..cells import CORNERS
@@ -29,6 +29,7 @@ def page_data(result):
         "units": {key: plain(unit) for key, unit in result.units.names.items()},
         "contacts": [contact_data(result, contact) for contact in contacts_of(result)],
         "history": histories(result),
+        "branch": branch_data(result),
         "fields": fields_data(result),
         "colours": {name: shades(name) for name in COLOURS},
     }
@@ -152,6 +153,16 @@ def histories(result):
     for kind, size in zip(kinds, sizes):
         peaks[kind] = max(peaks.get(kind, 0.0), size)
     return [each for each, kind, size in zip(found, kinds, sizes) if size > NOISE * peaks[kind]]
+
+
+def branch_data(result):
+    """Return load factors and which points are unstable; None without a branch."""
+    found = branch.of_branch(result)
+    if found is None or len(found[0]) < result.increments:
+        return None
+    _, factor, unstable = found
+    return {"factor": factor.tolist(), "unstable": [bool(u) for u in unstable],
+            "labels": branch.labels(result)}
 
 
 def fields_data(result):

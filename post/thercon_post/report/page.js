@@ -252,18 +252,37 @@ function drawContact() {
 }
 
 // ---- history ----
+// Lines over the load factor of a branch: its unstable parts are dashed.
+function branchLines(y) {
+   const {factor, unstable} = data.branch, lines = [], seen = new Set();
+   for (let first = 0; first < count;) {
+      let behind = first + 1;
+      while (behind < count && unstable[behind] === unstable[first]) behind++;
+      const end = Math.min(behind + 1, count), name = data.branch.labels[Number(unstable[first])];
+      lines.push({x: factor.slice(first, end), y: y.slice(first, end), colour: BLUE,
+         dash: unstable[first] ? '5 3' : '', name: seen.has(name) ? '' : name});
+      seen.add(name);
+      first = behind;
+   }
+   lines.push({x: [factor[row]], y: [y[row]], colour: INK, mark: true});
+   return lines;
+}
 function drawHistories() {
-   const low = Math.min(...abscissa), high = Math.max(...abscissa), room = 0.03 * (high - low) || 0.5;
+   const along = data.branch ? data.branch.factor : abscissa;
+   const low = Math.min(...along), high = Math.max(...along), room = 0.03 * (high - low) || 0.5;
    const box = $('histories');
    if (!box.childElementCount)
       put(box, html`${data.history.map((_, k) => html`<figure id="history-${k}"></figure>`)}`);
-   data.history.forEach((each, k) => chart($(`history-${k}`), {
-      width: 360, height: 200, title: `${each.label} over the load`,
-      xLabel: data.load.axis, xRange: [low - room, high + room], yLabel: each.unit,
-      yRange: rangeOf(each.values.map(v => v === null ? NaN : v), true), uprights: [abscissa[row]],
-      lines: [{x: abscissa, y: each.values.map(v => v === null ? NaN : v), colour: BLUE, mark: count <= 60}],
-      caption: html`${each.label}: <b>${show(each.values[row] === null ? NaN : each.values[row])}</b> ${each.unit}`,
-   }));
+   data.history.forEach((each, k) => {
+      const y = each.values.map(v => v === null ? NaN : v);
+      chart($(`history-${k}`), {
+         width: 360, height: 200, title: `${each.label} over the load`,
+         xLabel: data.branch ? 'Load factor' : data.load.axis, xRange: [low - room, high + room],
+         yLabel: each.unit, yRange: rangeOf(y, true), uprights: [along[row]],
+         lines: data.branch ? branchLines(y) : [{x: abscissa, y, colour: BLUE, mark: count <= 60}],
+         caption: html`${each.label}: <b>${show(y[row])}</b> ${each.unit}`,
+      });
+   });
 }
 
 // ---- the rest of the page ----

@@ -3,6 +3,7 @@
 module deck_builder
    use mesh_bodies, only: find_bodies
    use cards, only: cards_type
+   use continuation_checks, only: check_continuations
    use controls, only: method_names
    use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities, &
       heatless
@@ -154,6 +155,7 @@ contains
       call check_amplitudes(context, model, report)
       call check_starts(context, model, report)
       if (context%analyses_sound) call check_storage(context, model, report)
+      if (context%analyses_sound) call check_continuations(cards, model, report)
       if (.not. report%has_errors()) then
          call check_usage(cards, context, model, report)
          call check_heat_paths(cards, model, report)

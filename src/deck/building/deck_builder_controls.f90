@@ -6,9 +6,10 @@ module deck_builder_controls
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
-   use controls, only: crank_nicolson_scheme, explicit_scheme, fixed_point_type, galerkin_scheme, &
-      implicit_scheme, l_stable_scheme, method_names, start_both, start_closed, start_given, &
-      start_open, start_previous, start_type, thermal_scheme_type
+   use controls, only: continuation_type, crank_nicolson_scheme, explicit_scheme, &
+      fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
+      start_both, start_closed, start_given, start_open, start_previous, start_type, &
+      thermal_scheme_type
    use deck_context, only: deck_context_type, need_element_set, need_named, report_unknown, &
       take_named
    use deck_report, only: deck_report_type
@@ -24,8 +25,8 @@ module deck_builder_controls
    use time_points, only: time_points_type
    implicit none
    private
-   public :: build_fixed_point, build_restart, build_thermal_scheme, build_start, build_print, &
-      read_frequency
+   public :: build_continuation, build_fixed_point, build_restart, build_thermal_scheme, &
+      build_start, build_print, read_frequency
 
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
    character(2), parameter :: coefficient_names(8) = &
@@ -178,6 +179,27 @@ contains
          scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), given(7:8)/sums(1))
       end if
    end subroutine build_free_scheme
+
+   !> Reads one *CONTINUATION.
+   subroutine build_continuation(card, report, continuation)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report              !! receives errors
+      type(continuation_type), intent(out) :: continuation
+      character(:), allocatable :: direction
+
+      continuation%is_on = .true.
+      call take_from(2, card, 'POINTS', report, continuation%most_points)
+      call take_parameter(card, 'LOWEST', report, continuation%range(1))
+      call take_parameter(card, 'HIGHEST', report, continuation%range(2))
+      call take_positive(card, 'ARC', report, continuation%longest_step)
+      direction = 'UP'
+      call choose(card, 'DIRECTION', 'UP/DOWN', report, direction)
+      continuation%rises = direction == 'UP'
+      if (continuation%range(1) < continuation%range(2)) return
+      call report%error(parameter_place(card, 'HIGHEST'), 'LOWEST='// &
+         to_text(continuation%range(1))//' must be below HIGHEST='// &
+         to_text(continuation%range(2))//': the range of load factors')
+   end subroutine build_continuation
 
    !> Reads one *START; after an error the start stays as it was.
    subroutine build_start(cards, card, model, report, start)

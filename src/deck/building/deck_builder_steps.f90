@@ -6,8 +6,8 @@ module deck_builder_steps
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
    use deck_builder_contact, only: build_contact_change
-   use deck_builder_controls, only: build_fixed_point, build_print, build_restart, build_start, &
-      build_thermal_scheme, read_frequency
+   use deck_builder_controls, only: build_continuation, build_fixed_point, build_print, &
+      build_restart, build_start, build_thermal_scheme, read_frequency
    use deck_builder_loads, only: build_load_card
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -79,6 +79,8 @@ contains
             case ('FIXED POINT', 'RESTART', 'START', 'THERMAL SCHEME')
                has_scheme = has_scheme .or. card%name == 'THERMAL SCHEME'
                call build_control(cards, card, model, report, controls)
+            case ('CONTINUATION')
+               if (n > 0) call build_continuation(card, report, model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
                'SFILM', 'TEMPERATURE')
                call build_load_card(cards, card, n, model, context, report)

@@ -68,7 +68,7 @@ module keywords
 
    integer, parameter :: shortest = 3   !! letters of an abbreviation
 
-   type(keyword_type), parameter :: known_keywords(84) = [ &
+   type(keyword_type), parameter :: known_keywords(85) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -126,6 +126,8 @@ module keywords
       keyword_type('FIXED POINT', built, in_both, 0, 0, 'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
       keyword_type('START', built, in_both, 0, many, 'FROM='), &
       keyword_type('THERMAL SCHEME', built, in_both, 0, 1, 'TYPE='), &
+      keyword_type('CONTINUATION', built, in_step, 0, 0, &
+         'POINTS=/LOWEST=/HIGHEST=/ARC=/DIRECTION='), &
       keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
       keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS=/SURFACE=/ELSET=/DISTANCE='), &
       keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &

@@ -1,0 +1,100 @@
+!> Steps on a path of solutions of n equations in n + 1 unknowns, of which n are the coordinates of
+!> the contact points on the graphs of their laws (conductance_graph) and the last is a parameter.
+!> Lengths are measured along the graphs, in opening/length and in the share omega/(omega + body),
+!> in which steep laws and contact points at rest are as long as flat ones.
+module path_steps
+   use conductance_graph, only: conductance_graph_type
+   use dense, only: lu_type
+   use kinds, only: dp
+   implicit none
+   private
+   public :: path_step_type, coordinate_rate, solve_on_path, moved_along, distance
+
+   !> Newton's correction of a trial, and the way that the path goes on.
+   type :: path_step_type
+      logical :: sound = .false.               !! whether there is one
+      real(dp), allocatable :: change(:)       !! (n + 1) the correction
+      real(dp), allocatable :: tangent(:)      !! (n + 1) of the path, of length 1
+      logical :: is_reversed = .false.         !! whether det [F_z F_t; border] is negative
+   end type path_step_type
+
+contains
+
+   !> Change of the coordinate for the length along the graph.
+   pure function coordinate_rate(graph, coordinate, body, length) result(rate)
+      type(conductance_graph_type), intent(in) :: graph
+      real(dp), intent(in) :: coordinate    !! [length]
+      real(dp), intent(in) :: body          !! of the bodies about the contact point [as omega]
+      real(dp), intent(in) :: length        !! scale of openings [length]
+      real(dp) :: rate                      !! [length]
+
+      associate (omega => graph%omega(coordinate), advance => graph%advance(coordinate), &
+         slope => graph%derivative(coordinate))
+         rate = 1.0_dp/(advance/length + body/(omega + body)*abs(slope)/(omega + body))
+      end associate
+   end function coordinate_rate
+
+   !> Correction and tangent, whose product with the border is positive.
+   subroutine solve_on_path(matrix, rest, step)
+      real(dp), intent(in) :: matrix(:, :)   !! (n + 1, n + 1) derivatives; the last row: a border
+      real(dp), intent(in) :: rest(:)        !! (n) what the equations lack
+      type(path_step_type), intent(out) :: step
+      real(dp) :: x(size(rest) + 1, 2)
+      type(lu_type) :: lu
+      logical :: singular
+
+      x = 0.0_dp
+      x(:size(rest), 1) = rest
+      x(size(rest) + 1, 2) = 1.0_dp
+      call lu%factor(matrix, singular)
+      step%sound = .not. singular
+      if (singular) return
+      call lu%solve(x)
+      step%tangent = x(:, 2)/norm2(x(:, 2))
+      step%change = x(:, 1)
+      step%is_reversed = lu%negative_determinant()
+   end subroutine solve_on_path
+
+   !> Coordinates at the ends of walks along the graphs, of given lengths.
+   elemental function moved_along(graph, from, walk, body, length) result(coordinate)
+      type(conductance_graph_type), intent(in) :: graph
+      real(dp), intent(in) :: from     !! [length]
+      real(dp), intent(in) :: walk     !! towards open where it is positive [-]
+      real(dp), intent(in) :: body     !! [as omega]
+      real(dp), intent(in) :: length   !! [length]
+      real(dp) :: coordinate           !! [length]
+      real(dp) :: near, far
+      integer :: i
+
+      near = from
+      far = from + walk*length + sign(graph%width, walk)
+      do i = 1, 200
+         coordinate = 0.5_dp*(near + far)
+         if (abs(far - near) <= 2*epsilon(1.0_dp)*abs(coordinate)) exit
+         if (distance(graph, min(from, coordinate), max(from, coordinate), body, &
+            length) > abs(walk)) then
+            far = coordinate
+         else
+            near = coordinate
+         end if
+      end do
+   end function moved_along
+
+   !> Length along the graph between two coordinates: the opening's change and the variation of the
+   !> share, which may turn at the rows of tables and at the ends of a rest.
+   pure function distance(graph, low, high, body, length)
+      type(conductance_graph_type), intent(in) :: graph
+      real(dp), intent(in) :: low, high, body, length
+      real(dp) :: distance
+      real(dp), allocatable :: coordinate(:), share(:)
+
+      associate (kinks => graph%kinks())
+         coordinate = [low, pack(kinks, kinks > low .and. kinks < high), high]
+      end associate
+      share = graph%omega(coordinate)
+      share = share/(share + body)
+      distance = (graph%opening(high) - graph%opening(low))/length + &
+         sum(abs(share(2:) - share(:size(share) - 1)))
+   end function distance
+
+end module path_steps

@@ -1,0 +1,268 @@
+!> Steps along a branch of steady solutions over the load factor: along the tangent, and by Newton's
+!> corrections normal to it back to the branch (Allgower & Georg 1990; branch_path).
+module branch_trials
+   use branch_path, only: branch_measure_type, branch_point_type
+   use contact_operator, only: make_graph, openings
+   use contact_system, only: contact_state_type
+   use coupled_increment, only: contact_scales
+   use errors, only: error_type, set_error, status_no_convergence
+   use field_problem, only: solved_loads_type
+   use fixed_point, only: pass_type
+   use heat_reduction, only: heat_reduction_type
+   use increment_data, only: increment_data_type, increment_workspace_type, load_rate_type
+   use increment_iteration, only: pass_on_branch
+   use increment_solution, only: begin_increment, load_points
+   use kinds, only: dp
+   use load_histories, only: step_clock_type
+   use loads, only: loads_type
+   use model, only: model_type
+   use path_steps, only: path_step_type
+   use reduced_bodies, only: reduced_bodies_type
+   use solution_state, only: solution_state_type
+   implicit none
+   private
+   public :: branch_trial_type, is_found, is_sharp, is_lost, straight
+
+   integer, parameter :: most_corrections = 12
+   real(dp), parameter :: wanted_part = 0.5_dp       !! of the residual that an increment may leave
+   real(dp), parameter :: nearest = 1.0e-10_dp       !! correction that is none, in lengths
+   real(dp), parameter :: most_correction = 0.5_dp   !! over the step
+   real(dp), parameter :: straight = 0.7_dp !! cosine below which a tangent turns too far in a step
+
+   integer, parameter :: is_found = 1   !! a step leads to the branch
+   integer, parameter :: is_sharp = 2   !! the branch turns too far, maybe in a kink
+   integer, parameter :: is_lost = 3    !! the corrections fail
+
+   !> Steps from a point of the branch.
+   type :: branch_trial_type
+      integer :: step = 0                      !! number of the step of the deck
+      type(step_clock_type) :: start           !! its start
+      type(branch_measure_type) :: measure     !! of lengths along the branch
+      type(branch_point_type) :: from          !! where steps begin
+      type(branch_point_type) :: point         !! where the last one ended, on the branch if found
+      integer :: held = 0                      !! what corrections leave: a contact point, or m + 1
+      integer :: outcome = is_lost             !! of the last step
+      logical :: has_converged = .false.       !! whether it led to the branch
+      type(contact_state_type) :: contact      !! of the last pass
+      type(solution_state_type), private :: before   !! state at the last point of the branch
+      type(load_rate_type), private :: rate
+      type(solved_loads_type), allocatable, private :: known(:)
+      type(pass_type), private :: pass
+      real(dp), private :: residual = 0.0_dp   !! of the last pass, over the one wanted
+      real(dp), private :: near = nearest      !! correction that is none after it
+   contains
+      procedure :: clock_at
+      procedure :: begin
+      procedure :: renew
+      procedure :: try_step
+   end type branch_trial_type
+
+   !> An increment whose loads are taken.
+   type :: loaded_type
+      type(increment_data_type) :: data
+      type(increment_workspace_type) :: workspace
+      type(solution_state_type) :: next
+   end type loaded_type
+
+contains
+
+   !> The instant at which loads have a load factor.
+   pure function clock_at(self, factor) result(clock)
+      class(branch_trial_type), intent(in) :: self
+      real(dp), intent(in) :: factor               !! [-]
+      type(step_clock_type) :: clock
+
+      clock = self%start
+      clock%step_time = factor*clock%period
+      clock%total_time = clock%total_time + clock%step_time
+   end function clock_at
+
+   !> Loads of an increment.
+   pure subroutine take_loads(loads, next)
+      type(loads_type), intent(in) :: loads
+      type(solution_state_type), intent(inout) :: next   !! receives them
+
+      next%sources%load = loads%heat_load()
+      next%sources%film = loads%film_matrix()
+      next%force_load = loads%nodal_forces()
+   end subroutine take_loads
+
+   !> Steps begin at another solution.
+   subroutine renew(self, state)
+      class(branch_trial_type), intent(inout) :: self
+      type(solution_state_type), intent(in) :: state   !! the solution
+
+      self%before = state
+      self%contact = state%contact
+   end subroutine renew
+
+   !> Begins at a solution, the first point: measures lengths and finds the way of the branch.
+   !> Errors: as a pass; there is no way.
+   subroutine begin(self, model, bodies, heat, loads, factor, error)
+      class(branch_trial_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(inout) :: loads         !! moved along
+      real(dp), intent(in) :: factor                   !! load factor of the solution
+      type(error_type), allocatable, intent(out) :: error
+      type(loaded_type) :: none, whole
+      type(path_step_type) :: step
+      integer :: k, m
+
+      allocate (self%known(2))
+      call load_increment(self, model, bodies, heat, loads, none, error)
+      self%point%factor = 1.0_dp
+      if (allocated(error)) return
+      call load_increment(self, model, bodies, heat, loads, whole, error)
+      if (allocated(error)) return
+      self%rate%heat = whole%workspace%heat%condensed - none%workspace%heat%condensed
+      self%rate%force = whole%data%welded_load - none%data%welded_load
+      if (allocated(whole%data%welded_mean)) self%rate%mean = whole%data%welded_mean - &
+         none%data%welded_mean
+      whole%data%scales = contact_scales(bodies, whole%data)
+      m = size(self%before%omega)
+      associate (measure => self%measure, weight => max(bodies%points%weight, 0.0_dp))
+         measure%length = whole%data%scales%length
+         measure%graph = make_graph(bodies, heat, measure%length)
+         measure%part = sqrt(weight/sum(weight))
+         allocate (measure%body(m), source=1.0_dp)
+         self%point%coordinate = measure%graph%coordinate_of_omega(self%before%omega, &
+            openings(bodies, measure%graph, self%before%contact))
+      end associate
+      self%point%factor = factor
+      self%point%tangent = [(0.0_dp, k=1, m), merge(1.0_dp, -1.0_dp, &
+         model%steps(self%step)%continuation%rises)]
+      self%from = self%point
+      call find_pass(self, model, bodies, heat, loads, error)
+      if (allocated(error)) return
+      if (allocated(self%pass%body)) self%measure%body = self%pass%body
+      call self%measure%correction(self%point, self%pass, 0, step)
+      if (.not. step%sound) then
+         call set_error(error, status_no_convergence, 'the first point of the branch has no '// &
+            'tangent; begin at another load')
+         return
+      end if
+      self%point%tangent = step%tangent
+      self%point%omega = self%before%omega
+      self%from = self%point
+   end subroutine begin
+
+   !> An increment with the load factor of the point.
+   !> Error: its loads overflow.
+   subroutine load_increment(self, model, bodies, heat, loads, loaded, error)
+      type(branch_trial_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(inout) :: loads
+      type(loaded_type), intent(out) :: loaded
+      type(error_type), allocatable, intent(out) :: error
+
+      call loads%move_to(self%clock_at(self%point%factor), model)
+      loaded%next = self%before
+      call take_loads(loads, loaded%next)
+      call begin_increment(bodies, model%steps(self%step), self%before, loaded%next, loaded%data)
+      call move_alloc(self%known, loaded%workspace%known)
+      call load_points(bodies, heat, loads, loaded%data, loaded%workspace, loaded%next, error)
+      call move_alloc(loaded%workspace%known, self%known)
+   end subroutine load_increment
+
+   !> The pass at the point, with its derivatives.
+   !> Errors: as a pass.
+   subroutine find_pass(self, model, bodies, heat, loads, error)
+      type(branch_trial_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(inout) :: loads
+      type(error_type), allocatable, intent(out) :: error
+      type(loaded_type) :: loaded
+
+      call load_increment(self, model, bodies, heat, loads, loaded, error)
+      if (allocated(error)) return
+      associate (data => loaded%data, workspace => loaded%workspace, next => loaded%next)
+         data%scales = contact_scales(bodies, data)
+         data%rate = self%rate
+         workspace%pass%graph = self%measure%graph
+         workspace%pass%coordinate = self%point%coordinate
+         self%contact%reference = next%contact%reference
+         next%contact = self%contact
+         call pass_on_branch(bodies, heat, data, workspace, next, self%residual, error)
+         if (allocated(error)) return
+         self%contact = next%contact
+         self%near = max(nearest, workspace%record%residual_floor)
+         self%point%omega = next%omega
+         self%pass = workspace%pass
+         self%measure%graph = self%pass%graph
+      end associate
+   end subroutine find_pass
+
+   !> A pass at the point, and the correction that it asks for; the tangent there is the point's.
+   !> Not sound where contact zones are not found or derivatives do not exist.
+   !> Error: status_interrupted.
+   subroutine correct_once(self, model, bodies, heat, loads, correction, error)
+      type(branch_trial_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(inout) :: loads
+      type(path_step_type), intent(out) :: correction
+      type(error_type), allocatable, intent(out) :: error
+
+      call find_pass(self, model, bodies, heat, loads, error)
+      if (allocated(error)) then
+         if (error%status == status_no_convergence) deallocate (error)
+         return
+      end if
+      self%point%tangent = self%from%tangent
+      call self%measure%correction(self%point, self%pass, self%held, correction)
+      if (.not. correction%sound) return
+      call self%measure%orient(self%from, self%point, correction%tangent)
+      self%point%tangent = correction%tangent
+   end subroutine correct_once
+
+   !> A step of a length along the tangent, and back to the branch. With the load factor held it
+   !> ends where that has the value of the point before.
+   !> Error: status_interrupted.
+   subroutine try_step(self, model, bodies, heat, loads, length, error)
+      class(branch_trial_type), intent(inout) :: self   !! receives point and outcome
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(inout) :: loads
+      real(dp), intent(in) :: length
+      type(error_type), allocatable, intent(out) :: error
+      type(branch_point_type) :: trial
+      type(path_step_type) :: correction
+      real(dp) :: factor
+      integer :: i
+
+      factor = self%point%factor
+      trial = self%measure%moved(self%from, length*self%from%tangent)
+      if (self%held == size(trial%tangent)) trial%factor = factor
+      self%point = trial
+      self%has_converged = .false.
+      do i = 1, most_corrections
+         call correct_once(self, model, bodies, heat, loads, correction, error)
+         if (allocated(error)) return
+         if (.not. correction%sound) exit
+         self%has_converged = self%residual <= wanted_part .and. norm2(correction%change) <= &
+            self%near
+         if (self%has_converged .or. (self%held == 0 .and. norm2(correction%change) > &
+            most_correction*length)) exit
+         self%point = self%measure%moved(self%point, correction%change)
+      end do
+      if (self%has_converged .and. self%held == 0 .and. self%measure%is_caught(self%from, trial, &
+         self%point)) then
+         self%has_converged = .false.
+         self%outcome = is_sharp
+      else if (self%has_converged) then
+         self%outcome = merge(is_found, is_sharp, dot_product(self%point%tangent, &
+            self%from%tangent) >= straight)
+      else
+         self%outcome = merge(is_sharp, is_lost, self%measure%kinked(self%from, trial) > 0)
+      end if
+   end subroutine try_step
+
+end module branch_trials
