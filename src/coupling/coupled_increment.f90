@@ -271,7 +271,7 @@ contains
          end if
          if (alternates(bodies, next)) call record%warn('closed and open contact points '// &
             'alternate in a uniform face: a pattern, which is not the only solution; *START, '// &
-            'FROM=BOTH tries others, *STABILITY says which of them last')
+            'FROM=BOTH or FROM=GIVEN may find others')
          if (any(next%resting) .or. abs(gains%largest) >= 1.0_dp) then
             if (.not. is_negative) then
                if (record%coupling_gain_max > 1.0_dp + near_turning_point) call record%warn( &

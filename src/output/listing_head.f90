@@ -4,7 +4,7 @@ module listing_head
    use contact_points, only: contact_points_type
    use deck_outcomes, only: counts_of_checks, end_of_run
    use interface_warnings, only: gap_range
-   use listing_text, only: page_width, print_title, print_wrapped
+   use listing_text, only: print_title, print_wrapped
    use model, only: model_type
    use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
       open_law_words, open_words, pairing_words, points_words
@@ -18,6 +18,8 @@ module listing_head
    public :: print_model, ending, checks, summary_block
 
    integer, parameter :: run_lines = 3   !! ending, checks, warnings
+
+   integer, parameter :: summary_width = 240   !! columns: bounds with their reasons, and zones
 
 contains
 
@@ -61,7 +63,7 @@ contains
       integer, intent(in) :: interfaces, steps        !! number of each
       character(:), allocatable :: block
       type(summary_type) :: summary
-      character(page_width) :: line
+      character(summary_width) :: line
       integer :: i
 
       block = ''

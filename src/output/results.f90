@@ -201,6 +201,9 @@ contains
       call self%file%open(is_new)
       associate (file => self%file%content)
          do i = 1, size(self%tables)
+            if (size(self%tables(i)%sets) == 0) cycle
+            ! Steps that are new may be the first to have such rows.
+            if (.not. file%has(self%tables(i)%group)) call file%create_group(self%tables(i)%group)
             do k = 1, size(self%tables(i)%sets)
                call self%tables(i)%sets(k)%go_on(file, rows(row_of(self, i)))
             end do

@@ -48,6 +48,7 @@ module summary
       real(dp), allocatable :: displacement
       type(string_type), allocatable :: steps(:)   !! a line for each step and interface
       character(:), allocatable :: stability                       !! whether it lasts; or empty
+      real(dp), allocatable :: load_factor   !! of a point of a branch
       real(dp), allocatable :: folds(:)   !! load factors of the folds so far; unallocated for none
    contains
       procedure :: take
@@ -74,6 +75,8 @@ contains
       self%load = record%load
       self%contacts = record%contacts
       self%stability = stability_words(record)
+      if (allocated(self%load_factor)) deallocate (self%load_factor)
+      if (allocated(record%load_factor)) self%load_factor = record%load_factor
       if (record%is_fold) then
          if (.not. allocated(self%folds)) allocate (self%folds(0))
          self%folds = [self%folds, record%load_factor]
@@ -143,8 +146,8 @@ contains
          line = line//', inside a step (errors are bounded at the end of steps)'
       end if
       call append(lines, line//':')
-      if (allocated(self%folds)) call append(lines, 'the branch turns at load factors '// &
-         listed(self%folds))
+      if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'// &
+         trim(merge('s', ' ', size(self%folds) > 1))//' '//listed(self%folds))
       do i = 1, size(interfaces)
          call append(lines, interfaces(i)%name)
          call add_quantities(self, model, interfaces(i), i, lines)
@@ -203,6 +206,7 @@ contains
       words = 'time '//to_text(self%time)//' (increment '//to_text(self%increment)//')'
       if (load_label /= '' .and. load_label /= 'time') words = words//', '//load_label//' '// &
          to_text(self%load)
+      if (allocated(self%load_factor)) words = words//', load factor '//to_text(self%load_factor)
    end function when
 
    subroutine add_quantities(self, model, points, i, lines)

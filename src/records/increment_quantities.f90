@@ -48,8 +48,10 @@ module increment_quantities
       description='real part of the eigenvalue of U'' that is largest in modulus'), &
       quantity_type('coupling_gain_max', of_history, '-', needs_coupling, &
       label='largest real eigenvalue', description='largest real eigenvalue of U'''), &
-      quantity_type('unstable_modes', of_history, '-', needs_stability, is_integer=.true., &
+      quantity_type('unstable_modes', of_history, '-', needs_stability, &
       description='small motions of the state that grow'), &
+      quantity_type('certain', of_history, '-', needs_stability, is_integer=.true., &
+      description='1 where both ways of counting agree and nothing is left out, else 0'), &
       quantity_type('growth_rate', of_history, '1/time', needs_stability, &
       description='rate of the fastest one, of the slowest to decay where none grows'), &
       quantity_type('period', of_history, 'time', needs_stability, &
@@ -128,7 +130,7 @@ contains
          value = record%coupling_gain
       case ('coupling_gain_max')
          value = record%coupling_gain_max
-      case ('unstable_modes', 'growth_rate', 'period')
+      case ('unstable_modes', 'certain', 'growth_rate', 'period')
          value = stability_value(name, record)
       case ('load_factor')
          value = ieee_value(value, ieee_quiet_nan)
@@ -150,7 +152,8 @@ contains
 
       value = ieee_value(value, ieee_quiet_nan)
       if (.not. allocated(record%stability)) return
-      if (.not. record%stability%is_known) return
+      if (name == 'certain') value = merge(0.0_dp, 1.0_dp, allocated(record%stability%doubt))
+      if (name == 'certain' .or. .not. record%stability%is_known) return
       select case (name)
       case ('unstable_modes')
          value = record%stability%unstable_modes

@@ -55,7 +55,8 @@ contains
          is_sharp = modes%residual <= sharp*abs(modes%value)
          if (.not. any(is_sharp)) cycle
          fastest = maxloc(real(rates), mask=is_sharp, dim=1)
-         if (all(is_sharp .or. real(rates) <= min(0.0_dp, real(rates(fastest))))) exit
+         if (count(is_sharp .and. real(rates) > neutral) >= record%stability%unstable_modes .and. &
+            all(is_sharp .or. real(rates) <= min(0.0_dp, real(rates(fastest))))) exit
       end do
       fastest = maxloc(real(rates), mask=is_sharp, dim=1)
       if (fastest == 0) then

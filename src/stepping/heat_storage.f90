@@ -28,6 +28,8 @@ module heat_storage
    public :: strain_rate, begin_storage, measure_changes
 
    real(dp), parameter :: own = 2.0_dp   !! growth of the range that an increment makes itself
+   !> Part of the largest temperature below which a range is that of rounding.
+   real(dp), parameter :: unresolved = 1.0e-8_dp
 
 contains
 
@@ -102,8 +104,8 @@ contains
       next%extremes = [min(before%extremes(1), here(1)), max(before%extremes(2), here(2))]
       record%makes_range = next%extremes(2) - next%extremes(1) > own*(before%extremes(2) - &
          before%extremes(1))
-      range = max(next%extremes(2) - next%extremes(1), &
-         epsilon(range)*maxval(abs(next%extremes)), tiny(range))
+      range = max(next%extremes(2) - next%extremes(1), unresolved*maxval(abs(next%extremes)), &
+         tiny(range))
       associate (scheme => model%steps(record%step)%scheme)
          part = merge(1.0_dp, 0.5_dp/scheme%a(1), scheme%stages == 2)
       end associate

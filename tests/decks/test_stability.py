@@ -180,6 +180,37 @@ def test_frequency_asks_for_increments_in_between(tmp_path):
         assert stability_of(result)["time"] == pytest.approx(times)
 
 
+def test_steps_behind_a_result_may_be_the_first_to_ask(tmp_path):
+    before, _ = solved(tmp_path, middle("*RESTART, WRITE", stability="**"), name="before")
+    cards = ["*RESTART, READ", "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT",
+             "1., 1.", "*STABILITY", "*END STEP"]
+    result, _ = solved(tmp_path, cards, "--restart", before, name="behind")
+    whole, _ = solved(tmp_path, middle(), name="whole")
+    assert stability_of(result)["time"] == pytest.approx([2.0])
+    assert stability_of(result)["growth_rate"] == pytest.approx(
+        stability_of(whole)["growth_rate"], rel=1e-6)
+
+
+def test_an_uncertain_answer_says_so_in_the_result(tmp_path):
+    certain, _ = solved(tmp_path, middle(), name="certain")
+    result, printed = solved(tmp_path, middle(capacities=None, branch=0))
+    assert stability_of(certain)["certain"] == 1
+    assert stability_of(result)["certain"] == 0
+    assert np.isnan(stability_of(result)["unstable_modes"]).all()
+    assert "uncertain" in printed
+
+
+def test_all_growing_modes_of_a_pattern_are_found(tmp_path):
+    """Contact points at both ends of the face grow alike, and each against the other."""
+    cards, _ = pattern("*START, FROM=CLOSED")
+    at = [i for i, line in enumerate(cards) if line == "*CONDUCTIVITY"]
+    for i in reversed(at):
+        cards[i:i] = ["*DENSITY", "1.", "*SPECIFIC HEAT", "3.6e6"]
+    cards[cards.index("**")] = "*STABILITY"
+    result, printed = solved(tmp_path, cards)
+    assert stability_of(result)["certain"] == 1, printed
+
+
 def test_steady_states_without_capacities_say_what_remains(tmp_path):
     _, printed = solved(tmp_path, middle(capacities=None, stability="**"))
     assert "unstable whatever the heat capacities are: det(I - U') is negative" in printed

@@ -240,3 +240,19 @@ def test_faces_that_loads_close_at_once_are_not_searched_for(tmp_path):
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
         # Strains of 0.04 over both heights, E 1000 and nu 0; heat that is stored changes it little.
         np.testing.assert_allclose(file["contact/FACE/pressure"][0], 20.0, rtol=1e-2)
+
+
+@pytest.mark.parametrize("start", [20.0, 293.15, -5.0])
+def test_bodies_of_one_temperature_have_no_range_to_err_by(tmp_path, start):
+    """Nothing heats them: they are pressed, and increments grow to the end."""
+    deck = write(tmp_path / "pressed.inp",
+                 mesh("BODY", [0.0, 1.0, 2.0], [0.0, 1.0, 2.0], "CPE8"),
+                 material("BODY", (1000.0, 0.3), 1e-5, 1.0, 1.0, 1.0),
+                 ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"BODY, {start!r}",
+                  "*STEP, INC=40, AMPLITUDE=RAMP", "*COUPLED TEMPERATURE-DISPLACEMENT",
+                  "1., 100.", "*BOUNDARY", "BODY.BOTTOM, 1, 2", f"BODY.BOTTOM, 11, 11, {start!r}",
+                  "*DSLOAD", "BODY.TOP, P, 1.", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        time = file["history/time"][()]
+    assert time[0] == pytest.approx(1.0)
+    assert len(time) < 12
