@@ -94,6 +94,19 @@ contains
       values = shift - 1.0_dp/pack(values, abs(values) > 1.0_dp/(beyond*shift))
    end subroutine rates
 
+   !> W_i^T C W_j.
+   pure function stored_between(self, i, j) result(block)
+      type(projected_motions_type), intent(in) :: self
+      integer, intent(in) :: i, j
+      real(dp) :: block(size(self%stored, 1), size(self%stored, 1))
+
+      if (i == j) then
+         block = self%stored(:, :, i)
+      else
+         block = (self%exchange(:, :, i) - self%exchange(:, :, j))/(self%sigma(j) - self%sigma(i))
+      end if
+   end function stored_between
+
    !> A' - G P, E and G P' on motions that are orthonormal in the energy A'/sigma + E at the
    !> smallest rate.
    subroutine project(self, conduction, capacity, by_rate, found)
@@ -129,18 +142,5 @@ contains
       capacity = product_of(transpose(vectors), product_of(capacity, vectors))
       by_rate = product_of(exchange, product_of(reshape(self%by_rate, [n, r]), vectors))
    end subroutine project
-
-   !> W_i^T C W_j.
-   pure function stored_between(self, i, j) result(block)
-      type(projected_motions_type), intent(in) :: self
-      integer, intent(in) :: i, j
-      real(dp) :: block(size(self%stored, 1), size(self%stored, 1))
-
-      if (i == j) then
-         block = self%stored(:, :, i)
-      else
-         block = (self%exchange(:, :, i) - self%exchange(:, :, j))/(self%sigma(j) - self%sigma(i))
-      end if
-   end function stored_between
 
 end module projected_motions
