@@ -4,22 +4,21 @@ module listing_head
    use contact_points, only: contact_points_type
    use deck_outcomes, only: counts_of_checks, end_of_run
    use interface_warnings, only: gap_range
-   use listing_text, only: print_title, print_wrapped
+   use listing_text, only: page_width, print_title, print_wrapped
    use model, only: model_type
    use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
       open_law_words, open_words, pairing_words, points_words
    use run_summaries, only: in_listing, or_blank, run_entries, run_entry_type, run_summary_type
    use steps, only: solves_heat
    use summary, only: summary_type
-   use text, only: counted, string_type, to_text
+   use text, only: append, counted, string_type, to_text
    use verification, only: verifier_type
    implicit none
    private
    public :: print_model, ending, checks, summary_block
 
    integer, parameter :: run_lines = 3   !! ending, checks, warnings
-
-   integer, parameter :: summary_width = 240   !! columns: bounds with their reasons, and zones
+   integer, parameter :: more_lines = 2  !! of an interface, for lines that go on in the next one
 
 contains
 
@@ -63,13 +62,26 @@ contains
       integer, intent(in) :: interfaces, steps        !! number of each
       character(:), allocatable :: block
       type(summary_type) :: summary
-      character(summary_width) :: line
-      integer :: i
+      type(string_type), allocatable :: wrapped(:)
+      character(page_width) :: line
+      character(:), allocatable :: rest
+      integer :: i, k
 
+      allocate (wrapped(0))
+      do i = 1, size(lines)
+         rest = '   '//lines(i)%value
+         do while (len(rest) > page_width)
+            k = index(rest(:page_width + 1), ' ', back=.true.)
+            if (k <= 10) exit   ! no blank to go on behind
+            call append(wrapped, rest(:k - 1))
+            rest = repeat(' ', 9)//rest(k + 1:)
+         end do
+         call append(wrapped, rest)
+      end do
       block = ''
-      do i = 1, run_lines + summary%most_lines(interfaces, steps)
+      do i = 1, run_lines + summary%most_lines(interfaces, steps) + more_lines*max(interfaces, 1)
          line = ''
-         if (i <= size(lines)) line = '   '//lines(i)%value
+         if (i <= size(wrapped)) line = wrapped(i)%value
          block = block//line//new_line('a')
       end do
    end function summary_block

@@ -259,15 +259,16 @@ def test_a_check_that_fails_is_exit_status_4(tmp_path):
         assert len(file["history/time"]) == INCREMENTS
 
 
-def test_a_run_without_an_increment_leaves_the_older_result(results, tmp_path):
+def test_a_run_without_an_increment_sets_the_older_result_aside(results, tmp_path):
     deck = write_deck(tmp_path / "cylinder.inp", ["*FIXED POINT, MAXITER=1, TOL=1E-14"])
     older = results / "cylinder.vtkhdf"
     shutil.copy(older, tmp_path)
     shutil.copy(results / "cylinder.sta", tmp_path)
     status, said = run(deck)
     assert status == 2, said
-    assert (tmp_path / "cylinder.vtkhdf").read_bytes() == older.read_bytes()
-    assert increments_in(tmp_path / "cylinder.sta") == list(range(1, INCREMENTS + 1))
+    assert not (tmp_path / "cylinder.vtkhdf").exists()
+    assert (tmp_path / "cylinder.earlier.vtkhdf").read_bytes() == older.read_bytes()
+    assert increments_in(tmp_path / "cylinder.earlier.sta") == list(range(1, INCREMENTS + 1))
     assert increments_in(tmp_path / "cylinder.cvg")
     assert set(increments_in(tmp_path / "cylinder.cvg")) == {1}
     assert "ENDED EARLY" in (tmp_path / "cylinder.lst").read_text()
