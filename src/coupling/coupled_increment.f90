@@ -293,8 +293,8 @@ contains
       end associate
    end subroutine judge
 
-   !> Whether closed contact points of a face whose gap is the same everywhere have open neighbours
-   !> on both sides, or the other way round.
+   !> Whether closed and open contact points alternate along a face whose gap is the same everywhere:
+   !> more than every other one differs from the one before.
    pure logical function alternates(bodies, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: next
@@ -311,8 +311,7 @@ contains
             end associate
             is_open = next%contact%contact_state(first:last) == contact_open
             associate (m => size(is_open))
-               alternates = alternates .or. any((is_open(2:m - 1) .neqv. is_open(:m - 2)) .and. &
-                  (is_open(2:m - 1) .neqv. is_open(3:)))
+               alternates = alternates .or. 2*count(is_open(2:) .neqv. is_open(:m - 1)) > m
             end associate
          end associate
       end do
