@@ -293,8 +293,8 @@ contains
       end associate
    end subroutine judge
 
-   !> Whether closed and open contact points alternate along a face whose gap is the same everywhere:
-   !> more than every other one differs from the one before.
+   !> Whether closed and open contact points alternate along a face whose gap is the same
+   !> everywhere: more than every other one differs from the one before.
    pure logical function alternates(bodies, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: next
