@@ -70,6 +70,8 @@ contains
          if (growing /= found%unstable_modes) then
             found%doubt = 'the projected bodies have '//counted(found%unstable_modes, &
                'growing motion')//', Arnoldi''s method finds '//to_text(growing)
+            ! Those that it finds are motions of the bodies themselves.
+            found%unstable_modes = max(growing, found%unstable_modes)
          else if (growing > 0) then
             if (minval(abs(projected - rates(fastest))) > alike*abs(rates(fastest))) then
                found%doubt = 'the rate of the projected bodies is another one'

@@ -82,15 +82,15 @@ def test_units_label_the_result(tmp_path):
 
 @pytest.mark.changes("OPTIONS, WIDTH")
 def test_width_of_a_card(tmp_path):
-    """81 columns are one too many for the least width."""
-    load = "BODY.TOP, P," + " " * 67 + "5."
-    assert len(load) == 81
+    """257 columns are one too many for the width of all decks."""
+    load = "BODY.TOP, P," + " " * 243 + "5."
+    assert len(load) == 257
     decks = [[f"*OPTIONS, WIDTH={width}", *block(*static("*DSLOAD", load)),
-              *verify(*stressed([0.0, -5.0, 0.0]))] for width in (81, 80)]
+              *verify(*stressed([0.0, -5.0, 0.0]))] for width in (257, 256)]
     for deck, status in zip(decks, (0, 1), strict=True):
         process = run("run", "--quiet", write(tmp_path / "deck.inp", deck), "--out", tmp_path)
         assert process.returncode == status, process.stderr
-        assert (":81: error: text past column 80" in process.stderr) == (status == 1)
+        assert (":257: error: text past column 256" in process.stderr) == (status == 1)
     note_changes(*decks)
 
 
