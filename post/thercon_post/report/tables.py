@@ -125,7 +125,7 @@ def stability(result, listing):
         elif rate < 0.0:
             lasts = f"falls to 1/e in {number(-1.0 / rate, 4)}"
         swing = "none" if period == 0.0 else number(period, 4)
-        growing = "–" if np.isnan(rate) else modes
+        growing = "–" if np.isnan(rate) else round(modes)
         rows.append([number(time), said, growing, number(rate, 4), lasts, swing])
     head = ["time", "state", "growing motions", "rate of the fastest motion", "which",
             "period of its oscillation"]
