@@ -69,17 +69,18 @@ contains
       type(motion_response_type) :: response
       type(projected_motions_type) :: projection
       complex(dp), allocatable :: rates(:)
-      real(dp) :: sigma
+      real(dp) :: sigma, slowest
       logical :: is_known
 
       call motion%begin(simulation%bodies, simulation%state, simulation%heats( &
          simulation%in_use), simulation%solved, error)
       if (allocated(error)) return
-      sigma = slowest_conduction(model)
+      slowest = slowest_conduction(model)
+      sigma = slowest
       rates = [complex(dp) ::]
       is_known = .true.
       if (size(motion%active) + motion%heated > 0) then
-         call project(model, simulation, motion, projection, error)
+         call project(model, simulation, motion, slowest, projection, error)
          if (allocated(error)) return
          call projection%rates(rates, is_known)
          if (size(rates) > 0) sigma = above*abs(rates(maxloc(real(rates), dim=1)))
@@ -87,37 +88,45 @@ contains
       call response%make(model, simulation, motion, sigma, error)
       if (allocated(error)) return
       if (size(rates) > 0) then
-         call projection%add(sigma, motion%heats(simulation%bodies, response%temperature), &
-            response%stored(simulation), response%answer, response%by_rate)
+         call sample(simulation, motion, response, projection)
          call projection%rates(rates, is_known)
       end if
-      record%stability%unstable_modes = count(real(rates) > neutral*slowest_conduction(model))
-      call find_fastest(simulation, motion, response, rates, neutral*slowest_conduction(model), &
-         record)
+      record%stability%unstable_modes = count(real(rates) > neutral*slowest)
+      call find_fastest(simulation, motion, response, rates, neutral*slowest, record)
       if (.not. is_known) record%stability%doubt = &
          'the projected bodies have no sound eigenvalues'
    end subroutine find_motions
 
    !> Projects the bodies on their responses.
    !> Errors: as motion_response_type's make.
-   subroutine project(model, simulation, motion, projection, error)
+   subroutine project(model, simulation, motion, slowest, projection, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(small_motion_type), intent(in) :: motion
+      real(dp), intent(in) :: slowest                        ! conduction of a body [1/time]
       type(projected_motions_type), intent(inout) :: projection
       type(error_type), allocatable, intent(out) :: error
       type(motion_response_type) :: response
       integer :: i
 
       do i = 1, most_rates
-         call response%make(model, simulation, motion, slower*ratio**(i - 1)* &
-            slowest_conduction(model), error)
+         call response%make(model, simulation, motion, slower*ratio**(i - 1)*slowest, error)
          if (allocated(error)) return
-         call projection%add(response%sigma, motion%heats(simulation%bodies, &
-            response%temperature), response%stored(simulation), response%answer, response%by_rate)
+         call sample(simulation, motion, response, projection)
          if (i >= least_rates .and. largest_modulus(response%gain()) <= small_gain) exit
       end do
    end subroutine project
+
+   !> Adds a response to the projection.
+   subroutine sample(simulation, motion, response, projection)
+      type(simulation_type), intent(in) :: simulation
+      type(small_motion_type), intent(in) :: motion
+      type(motion_response_type), intent(in) :: response
+      type(projected_motions_type), intent(inout) :: projection
+
+      call projection%add(response%sigma, motion%heats(simulation%bodies, response%temperature), &
+         response%stored(simulation), response%answer, response%by_rate)
+   end subroutine sample
 
    !> The largest modulus of the eigenvalues of a matrix.
    real(dp) function largest_modulus(matrix)

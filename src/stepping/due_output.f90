@@ -34,9 +34,7 @@ contains
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
 
-      table_is_due = frequency > 0
-      if (table_is_due) table_is_due = record%last_of_step .or. &
-         modulo(record%increment_in_step, frequency) == 0
+      table_is_due = is_nth(frequency, record)
       if (table_is_due .or. .not. allocated(points%times)) return
       associate (start => sum(model%steps(:record%step - 1)%period))
          table_is_due = any(abs(points%in_step(start) + start - record%time) <= &
@@ -48,21 +46,26 @@ contains
    pure logical function restart_is_due(record, model)
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
-      type(time_points_type) :: no_others
 
-      restart_is_due = table_is_due(model%steps(record%step)%restart_frequency, no_others, &
-         record, model)
+      restart_is_due = is_nth(model%steps(record%step)%restart_frequency, record)
    end function restart_is_due
 
    !> Whether the stability of a state is analysed: at every n-th increment of a step and its last.
    pure logical function stability_is_due(record, model)
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
-      type(time_points_type) :: no_others
 
-      stability_is_due = table_is_due(model%steps(record%step)%stability_frequency, no_others, &
-         record, model)
+      stability_is_due = is_nth(model%steps(record%step)%stability_frequency, record)
    end function stability_is_due
+
+   !> Whether an increment is an n-th one of its step, or the last; none is of n = 0.
+   pure logical function is_nth(n, record)
+      integer, intent(in) :: n
+      type(increment_record_type), intent(in) :: record
+
+      is_nth = n > 0
+      if (is_nth) is_nth = record%last_of_step .or. modulo(record%increment_in_step, n) == 0
+   end function is_nth
 
    !> How near the end of an increment meets an instant.
    pure real(dp) function tolerance(record, model)
