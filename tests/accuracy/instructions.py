@@ -84,15 +84,16 @@ def read(path):
     """Read a file of callgrind, whose names and lines are told by what stands before them."""
     names, own, calls, called = {}, {}, {}, {}
     total = line = often = 0
-    at = to = ""
+    home = at = to = ""  # the file of a function, of a line (it may be inlined) and of a call
     target = None
     for text in path.read_text().splitlines():
         if named := re.match(r"(fl|fi|fe|cfi|cfl)=(\(\d+\))(?: (.*))?", text):
             kind, key, name = named.groups()
             file = names.setdefault(key, name)
             at, to = (at, file) if kind.startswith("c") else (file, file)
+            home = file if kind == "fl" else home
         elif text.startswith("fn="):
-            to = at
+            at = to = home
         elif text.startswith("summary:"):
             total = int(text.split()[1])
         elif text.startswith("calls="):

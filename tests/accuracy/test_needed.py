@@ -169,6 +169,20 @@ def test_published_cylinder_takes_few_instructions(tmp_path):
     assert spent <= CYLINDER_ALLOWED
 
 
+def test_a_profile_that_names_a_file_once_is_of_that_file(tmp_path):
+    """Callgrind names the file of a function only where it is another than that of the function
+    before, whatever was inlined into that one."""
+    from instructions import SOURCES, read
+
+    inlined, home = (next(SOURCES.rglob(f"{name}.f90")) for name in ("clock", "deck_run"))
+    line = 1 + next(k for k, text in enumerate(home.read_text().splitlines())
+                    if "subroutine solve_deck" in text)
+    path = tmp_path / "profile"
+    path.write_text(f"fl=(1) {home}\nfn=(1) first\n{line} 2\nfi=(2) {inlined}\n+3 5\n\n"
+                    f"fn=(2) second\n{line} 7\nsummary: 14\n")
+    assert read(path).own[("deck_run", "solve_deck")] == 9
+
+
 def test_parts_name_what_the_program_has():
     """Every module and procedure of the parts is there, so that none is left out by a new name."""
     from instructions import SOURCES, procedures
