@@ -49,7 +49,7 @@ contains
       logical :: on_axis(mesh%body_count)      !! (bodies)
 
       on_axis = .false.
-      on_axis(mesh%element_body) = mesh%element_plane == axisymmetric
+      on_axis(pack(mesh%element_body, mesh%element_plane == axisymmetric)) = .true.
    end function bodies_on_axis
 
    !> How a body is named to the user, such as 'body 2 (of STEEL, first node 38)'.

@@ -4,7 +4,7 @@ module model_words
    use contact_definitions, only: pairing_by_faces, pairing_name, pairing_nodes
    use contact_points, only: contact_points_type
    use kinds, only: dp
-   use element_kinds, only: axisymmetric, plane_stress
+   use element_kinds, only: axisymmetric, plane_strain, plane_stress
    use friction_laws, only: friction_heat_type, friction_law_type, rough_coefficient, unlimited
    use materials, only: follows_temperature, material_type, of_expansion, thermal_strain
    use model, only: model_type
@@ -23,23 +23,25 @@ contains
       type(model_type), intent(in) :: model
       type(string_type), allocatable :: lines(:)
       character(:), allocatable :: words
-      integer :: i, elements
+      integer :: i, elements, plane
 
       allocate (lines(0))
       do i = 1, size(model%sections)
          associate (section => model%sections(i), mesh => model%mesh)
-            elements = count(mesh%element_section == i)
-            if (elements == 0) cycle
-            select case (mesh%element_plane(findloc(mesh%element_section, i, dim=1)))
-            case (axisymmetric)
-               words = 'axisymmetric, full circumference'
-            case (plane_stress)
-               words = 'plane stress, thickness '//to_text(section%thickness)
-            case default
-               words = 'plane strain, thickness '//to_text(section%thickness)
-            end select
-            call append(lines, 'material '//model%materials(section%material)%name//', '// &
-               words//', '//counted(elements, 'element'))
+            do plane = plane_strain, axisymmetric
+               elements = count(mesh%element_section == i .and. mesh%element_plane == plane)
+               if (elements == 0) cycle
+               select case (plane)
+               case (axisymmetric)
+                  words = 'axisymmetric, full circumference'
+               case (plane_stress)
+                  words = 'plane stress, thickness '//to_text(section%thickness)
+               case default
+                  words = 'plane strain, thickness '//to_text(section%thickness)
+               end select
+               call append(lines, 'material '//model%materials(section%material)%name//', '// &
+                  words//', '//counted(elements, 'element'))
+            end do
          end associate
       end do
    end function section_words

@@ -154,7 +154,7 @@ contains
       associate (mesh => model%mesh, contact => model%contacts(i))
          elements = [mesh%surfaces(contact%slave)%faces(1, :), &
             mesh%surfaces(contact%master)%faces(1, :)]
-         if (mesh%element_plane(elements(1)) == axisymmetric) return
+         if (any(mesh%element_plane(elements) == axisymmetric)) return
          thickness = model%sections(mesh%element_section(elements))%thickness
          f = findloc(abs(thickness - thickness(1)) > 0.0_dp, .true., dim=1)
          if (f == 0) return
@@ -167,13 +167,15 @@ contains
    end function thickness_warning
 
    !> Plane stress and plane strain meet where one body may be free to become thicker and the other
-   !> is not; empty where all elements at the interface are of one plane.
+   !> is not; areas beside axisymmetric elements are those of the slave. Empty where all elements at
+   !> the interface are of one plane.
    pure function plane_warning(model, definition) result(warning)
       type(model_type), intent(in) :: model
       type(contact_definition_type), intent(in) :: definition
       character(:), allocatable :: warning
       integer, allocatable :: elements(:)
       logical, allocatable :: is_stress(:)
+      integer :: other
 
       warning = ''
       associate (mesh => model%mesh)
@@ -181,11 +183,16 @@ contains
             mesh%surfaces(definition%master)%faces(1, :)]
          is_stress = mesh%element_plane(elements) == plane_stress
          if (all(is_stress .eqv. is_stress(1))) return
+         other = elements(findloc(is_stress, .false., dim=1))
          warning = definition%title()//': element '//to_text(mesh%element_number(elements( &
             findloc(is_stress, .true., dim=1))))//' is in plane stress and element '// &
-            to_text(mesh%element_number(elements(findloc(is_stress, .false., dim=1))))// &
-            ' in plane strain: one may become thicker where the other may not; give both '// &
-            'bodies elements of one kind, or *OPTIONS, PLANE='
+            to_text(mesh%element_number(other))
+         if (mesh%element_plane(other) == axisymmetric) then
+            warning = warning//' axisymmetric: pressure and flux are for the area of the slave'
+         else
+            warning = warning//' in plane strain: one may become thicker where the other may '// &
+               'not; give both bodies elements of one kind, or *OPTIONS, PLANE='
+         end if
       end associate
    end function plane_warning
 

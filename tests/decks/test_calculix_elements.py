@@ -205,3 +205,59 @@ def test_radial_forces_of_a_wedge_are_not_those_of_the_ring(tmp_path):
     theirs, = calculix(deck)[1.0, "RF1@BODY.LEFT"].values()
     ours, = thercon(deck)[1.0, "RF1@BODY.LEFT"].values()
     assert not math.isclose(180 * theirs, ours, rel_tol=0.01)
+
+
+RING_AND_BOLTS = """
+*NODE, NSET=ALL
+1, 10., 0.
+2, 11., 0.
+3, 11., 2.
+4, 10., 2.
+5, 10.5, 0.
+6, 11., 1.
+7, 10.5, 2.
+8, 10., 1.
+9, 11., 4.
+10, 10., 4.
+11, 11., 3.
+12, 10.5, 4.
+13, 10., 3.
+*ELEMENT, TYPE=CAX8, ELSET=RING
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*ELEMENT, TYPE=CPS8, ELSET=BOLTS
+2, 4, 3, 9, 10, 7, 11, 12, 13
+*NSET, NSET=BOTTOM
+1, 2, 5
+*NSET, NSET=TOP
+9, 10, 12
+*MATERIAL, NAME=STEEL
+*ELASTIC
+1000., 0.3
+*EXPANSION
+1.E-5
+*SOLID SECTION, ELSET=RING, MATERIAL=STEEL
+*SOLID SECTION, ELSET=BOLTS, MATERIAL=STEEL
+20.
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+ALL, 0.
+*STEP
+*STATIC
+*BOUNDARY
+BOTTOM, 2
+TOP, 1
+TOP, 2, 2, 0.01
+*TEMPERATURE
+ALL, 50.
+*NODE PRINT, NSET=ALL
+U, RF
+*EL PRINT, ELSET=RING
+S
+*EL PRINT, ELSET=BOLTS
+S
+*END STEP
+"""
+
+
+def test_bolts_in_plane_stress_on_a_ring_are_as_thick_as_all_of_them(tmp_path):
+    found = compared(tmp_path, RING_AND_BOLTS, rings=True)
+    assert_within(found, WEDGE)

@@ -8,7 +8,7 @@ module mesh_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_kinds, only: axisymmetric, element_corner_count, element_node_count, linear_kind, &
-      side_node_count, side_nodes
+      plane_strain, side_node_count, side_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
    use quadrature, only: integration_rule, most_points, point_count
@@ -42,28 +42,27 @@ module mesh_checks
 
 contains
 
-   !> Elements are all axisymmetric or none is; the radius is not negative.
+   !> Beside axisymmetric elements there are none in plane strain; the radius is not negative.
    subroutine check_planes(context, mesh, report)
       type(deck_context_type), intent(in) :: context       !! places for messages
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      integer :: e, q, first
+      integer :: e, q, round, strained
       logical :: turns(size(mesh%element_plane))
 
-      turns = mesh%element_plane == axisymmetric
-      first = findloc(context%element_valid, .true., dim=1)
+      turns = mesh%element_plane == axisymmetric .and. context%element_valid
+      round = findloc(turns, .true., dim=1)
+      strained = findloc(mesh%element_plane == plane_strain .and. context%element_valid, .true., &
+         dim=1)
+      if (round > 0 .and. strained > 0) then
+         call report%error(context%element_place(max(round, strained)), 'element '// &
+            to_text(mesh%element_number(round))//' is axisymmetric and element '// &
+            to_text(mesh%element_number(strained))//' in plane strain: plane elements beside '// &
+            'axisymmetric ones are in plane stress, such as CPS4')
+         return
+      end if
       do e = 1, size(turns)
-         if (.not. context%element_valid(e)) cycle
-         if (turns(e) .neqv. turns(first)) then
-            call report%error(context%element_place(e), 'element '// &
-               to_text(mesh%element_number(e))//' and element '// &
-               to_text(mesh%element_number(first))// &
-               ': a model cannot have both axisymmetric and plane elements')
-            return
-         end if
-      end do
-      do e = 1, size(turns)
-         if (.not. (turns(e) .and. context%element_valid(e))) cycle
+         if (.not. turns(e)) cycle
          do q = 1, element_node_count(mesh%element_kind(e))
             if (mesh%coordinates(1, mesh%element_nodes(q, e)) >= 0.0_dp) cycle
             call report%error(context%element_place(e), 'element '// &
