@@ -50,6 +50,7 @@ module connections
       type(tie_points_type) :: ties                           !! points of the ties, no part of m
       type(sum_list_type) :: hanging                          !! hanging nodes, as in hanging_nodes
       type(equation_type), allocatable :: equations(:)        !! equations of the deck
+      type(equation_type), allocatable :: elongations(:)      !! of springs and trusses
       type(partner_type), allocatable :: partners(:)          !! nodes with axes of their own
    contains
       procedure :: vary_with_temperature
@@ -167,6 +168,8 @@ contains
       allocate (row%equations(0), row%partners(0))
       if (allocated(model%partners)) row%partners = model%partners
       if (allocated(model%equations)) row%equations = model%equations
+      allocate (row%elongations(0))
+      if (allocated(model%bars)) row%elongations = model%bars%elongation
       row%mortar = interfaces%mortar
       call find_resolved_faces(model, row)
       do i = 1, size(interfaces)

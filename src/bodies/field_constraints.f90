@@ -60,7 +60,7 @@ contains
       end if
       rows = displacement_rows(held, points, slave_leads)
       rows%on_tail(2::2) = has_friction
-      call eliminate(rows, in_use(used, points%equations, .false.), constraints)
+      call eliminate(rows, in_use(used, points, .false.), constraints)
    end subroutine constrain_displacements
 
    !> The rows of the displacements.
@@ -99,7 +99,7 @@ contains
       type(linear_constraints_type), intent(out) :: constraints
 
       call eliminate(temperature_rows(held, points, slave_leads), &
-         in_use(used, points%equations, .true.), constraints)
+         in_use(used, points, .true.), constraints)
    end subroutine constrain_temperatures
 
    !> The rows of the temperatures.
@@ -123,10 +123,10 @@ contains
       end do
    end function temperature_rows
 
-   !> Degrees of freedom that elements or equations have.
-   pure function in_use(used, equations, thermal) result(dofs)
+   !> Degrees of freedom that elements, springs, trusses or equations have.
+   pure function in_use(used, points, thermal) result(dofs)
       logical, intent(in) :: used(:)
-      type(equation_type), intent(in) :: equations(:)
+      type(connections_type), intent(in) :: points
       logical, intent(in) :: thermal
       logical, allocatable :: dofs(:)
       integer :: i
@@ -136,8 +136,13 @@ contains
       else
          dofs = reshape(spread(used, 1, 2), [2*size(used)])
       end if
-      do i = 1, size(equations)
-         if (equations(i)%is_thermal() .eqv. thermal) dofs(equations(i)%places()) = .true.
+      do i = 1, size(points%equations)
+         if (points%equations(i)%is_thermal() .eqv. thermal) dofs(points%equations(i)%places()) = &
+            .true.
+      end do
+      if (thermal) return
+      do i = 1, size(points%elongations)
+         dofs(points%elongations(i)%places()) = .true.
       end do
    end function in_use
 

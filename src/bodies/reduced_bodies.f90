@@ -2,6 +2,7 @@
 !> the contact unknowns. Their heat is reduced for given films, by each run for itself
 !> (heat_reduction).
 module reduced_bodies
+   use bar_matrices, only: bar_stiffness, bar_thermal_load
    use field_constraints, only: constrain_displacements, constrain_temperatures
    use connections, only: connections_type, contact_laws_type, join_points, laws_of_step, &
       match_surfaces, match_tie
@@ -20,7 +21,7 @@ module reduced_bodies
    use point_materials, only: point_material_type, point_materials_type
    use point_rules, only: integration_rules
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
-   use sparse_matrix, only: sparse_matrix_type
+   use sparse_matrix, only: linear_combination, sparse_matrix_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
    use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_capacity, assemble_conduction
@@ -46,6 +47,8 @@ module reduced_bodies
       type(dilatation_type) :: dilatation                     !! heat that strains take up
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       real(dp), allocatable :: initial_force(:)               !! (2 nodes) of stresses, or none
+      ! What springs and trusses have of the matrices of equilibrium; without values for none.
+      type(sparse_matrix_type) :: bar_stiffness, bar_load
       type(equilibrium_reduction_type) :: equilibrium         !! the partial solution of (2.4)
       real(dp) :: largest_expansion = 0.0_dp !! of all bodies [1/temperature]
       ! Where properties follow temperatures: those that the operators were formed with.
@@ -171,13 +174,14 @@ contains
       logical, intent(in) :: heat                            !! whether temperatures are numbered
       type(error_type), allocatable, intent(out) :: error
       ! gfortran never frees the components of a function's result within an array constructor.
-      type(joint_type), allocatable :: of_equations(:), of_ties(:)
+      type(joint_type), allocatable :: of_bars(:), of_equations(:), of_ties(:)
 
       if (mechanics) then
          self%held_direction = held_directions(self%points, held)
          of_ties = joints_of(self%points%ties)
          of_equations = joints_of(self%points%equations)
-         call unsupported_motions(model%mesh, held, [of_ties, of_equations], self%rigid)
+         of_bars = joints_of(self%points%elongations)
+         call unsupported_motions(model%mesh, held, [of_ties, of_equations, of_bars], self%rigid)
       end if
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) then
@@ -291,6 +295,7 @@ contains
          if (with_mechanics) call self%mechanical%set_matrix(assemble_stiffness(mesh, sections, &
             points))
          if (with_strain) self%thermal_load = assemble_thermal_load(mesh, sections, points)
+         if (with_mechanics .and. allocated(model%bars)) call add_bars(self, model, with_strain)
          if (with_heat) call self%thermal%set_matrix(assemble_conduction(mesh, sections, points))
          if (any(model%steps%is_transient .or. model%steps%stability_frequency > 0)) then
             self%heat_capacity = capacities(model, temperature)
@@ -299,6 +304,23 @@ contains
          if (follows) call move_alloc(points%materials, self%materials)
       end associate
    end subroutine form_operators
+
+   !> Adds the springs and trusses to the matrices of the bodies.
+   subroutine add_bars(self, model, with_strain)
+      type(reduced_bodies_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: with_strain
+
+      if (size(model%bars) == 0) return
+      associate (nodes => size(model%mesh%node_number))
+         self%bar_stiffness = bar_stiffness(model%bars, nodes)
+         call self%mechanical%set_matrix(linear_combination(1.0_dp, self%mechanical%matrix, &
+            1.0_dp, self%bar_stiffness))
+         if (.not. with_strain) return
+         self%bar_load = bar_thermal_load(model%bars, nodes)
+         self%thermal_load = linear_combination(1.0_dp, self%thermal_load, 1.0_dp, self%bar_load)
+      end associate
+   end subroutine add_bars
 
    !> Forms the operators that there are at other temperatures.
    subroutine move_operators(self, model, temperature)

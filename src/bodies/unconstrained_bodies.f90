@@ -102,7 +102,7 @@ contains
       type(free_motion_type), allocatable, intent(out) :: motions(:)
       type(joint_type) :: joints(2*size(contact_state))
       ! gfortran never frees the components of a function's result within an array constructor.
-      type(joint_type), allocatable :: of_equations(:), of_ties(:)
+      type(joint_type), allocatable :: of_bars(:), of_equations(:), of_ties(:)
       integer :: k, n
 
       n = 0
@@ -116,7 +116,9 @@ contains
       end do
       of_ties = joints_of(points%ties)
       of_equations = joints_of(points%equations)
-      call find_free_motions(model%mesh, held, [joints(:n), of_ties, of_equations], motions)
+      of_bars = joints_of(points%elongations)
+      call find_free_motions(model%mesh, held, [joints(:n), of_ties, of_equations, of_bars], &
+         motions)
    end subroutine free_motions
 
    !> Condition of a contact point along a direction.

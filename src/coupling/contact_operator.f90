@@ -28,7 +28,7 @@ module contact_operator
    implicit none
    private
    public :: contact_operator_pass, law_conductance, law_pressure, kept_contact, residual_floor, &
-      unstrained_forces, make_graph, openings, opening_derivative, opening_changes, &
+      unstrained_forces, bar_forces, make_graph, openings, opening_derivative, opening_changes, &
       load_derivative
 
    !> Smallest stiffness of a contact point, of the largest one, that scales its overlap: a contact
@@ -239,6 +239,19 @@ contains
       if (allocated(bodies%initial_force)) forces = forces + bodies%initial_force
       if (allocated(excess)) forces = forces + excess
    end function unstrained_forces
+
+   !> Nodal forces that elongate the springs and trusses, as they are.
+   pure function bar_forces(bodies, displacement, warming) result(forces)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: displacement(:)    !! (2 nodes) [length]
+      real(dp), intent(in) :: warming(:)         !! (nodes) since the initial state [temperature]
+      real(dp) :: forces(size(displacement))     !! (2 nodes) [force]
+
+      forces = 0.0_dp
+      if (allocated(bodies%bar_stiffness%value)) forces = &
+         bodies%bar_stiffness%multiply(displacement)
+      if (allocated(bodies%bar_load%value)) forces = forces - bodies%bar_load%multiply(warming)
+   end function bar_forces
 
    !> Relative change of omega by a few units in the last place of the displacements, and at
    !> least the unit in its own last place: no residual can be smaller.

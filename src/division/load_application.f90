@@ -296,7 +296,7 @@ contains
       end do
    end function transform_of
 
-   !> Writes the equations of a sound deck along x and y.
+   !> Writes the equations and springs of a sound deck along x and y.
    subroutine turn_equations(model)
       type(model_type), intent(inout) :: model
       integer :: i, of_node(size(model%mesh%node_number))
@@ -305,6 +305,10 @@ contains
       of_node = transform_of(model)
       do i = 1, size(model%equations)
          model%equations(i) = along_axes(model%equations(i), model%mesh, model%transforms, of_node)
+      end do
+      do i = 1, size(model%bars)
+         if (model%bars(i)%follows_axes) model%bars(i)%elongation = along_axes( &
+            model%bars(i)%elongation, model%mesh, model%transforms, of_node)
       end do
    end subroutine turn_equations
 

@@ -45,6 +45,10 @@ contains
       do i = 1, model%deck_equations
          call model%equations(i)%replace(corners, new_index)
       end do
+      do i = 1, size(model%bars)
+         call model%bars(i)%elongation%replace(corners, new_index)
+         if (allocated(model%bars(i)%mean%node)) call model%bars(i)%mean%replace(corners, new_index)
+      end do
       model%couplings%reference = new_index(model%couplings%reference)
       model%couplings%rotation = new_index(model%couplings%rotation)
       if (model%load_node > 0) model%load_node = new_index(model%load_node)

@@ -8,7 +8,7 @@ module equations
    implicit none
    private
    public :: equation_type, equation_nodes, coupling_type, coupling_equations, constrained_nodes, &
-      surface_nodes
+      fill_equation, surface_nodes
 
    !> A sum of coefficient*degree of freedom that is zero, of displacements or of temperatures.
    type :: equation_type
@@ -128,12 +128,12 @@ contains
          do c = 1, 2
             if (.not. coupling%follows(c)) cycle
             n = n + 1
-            call fill([nodes(k), coupling%reference, coupling%rotation], [c, c, 1], &
+            call fill_equation([nodes(k), coupling%reference, coupling%rotation], [c, c, 1], &
                [1.0_dp, -1.0_dp, merge(arm(2), -arm(1), c == 1)], equations(n))
          end do
          if (.not. coupling%is_warm) cycle
          n = n + 1
-         call fill([nodes(k), coupling%reference], [dof_temperature, dof_temperature], &
+         call fill_equation([nodes(k), coupling%reference], [dof_temperature, dof_temperature], &
             [1.0_dp, -1.0_dp], equations(n))
       end do
       do k = 1, n
@@ -157,9 +157,9 @@ contains
    end function constrained_nodes
 
    !> Fills an equation, without the terms whose coefficient is zero.
-   pure subroutine fill(nodes, dofs, coefficients, equation)
-      integer, intent(in) :: nodes(:), dofs(:)
-      real(dp), intent(in) :: coefficients(:)
+   pure subroutine fill_equation(nodes, dofs, coefficients, equation)
+      integer, intent(in) :: nodes(:), dofs(:)         !! (n) of its terms
+      real(dp), intent(in) :: coefficients(:)          !! (n)
       type(equation_type), intent(inout) :: equation
 
       associate (there => abs(coefficients) > 0.0_dp)
@@ -167,7 +167,7 @@ contains
          equation%dof = pack(dofs, there)
          equation%coefficient = pack(coefficients, there)
       end associate
-   end subroutine fill
+   end subroutine fill_equation
 
    !> Nodes of a surface, each once.
    pure function surface_nodes(mesh, surface) result(nodes)

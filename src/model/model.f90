@@ -3,6 +3,7 @@
 module model
    use accuracy_targets, only: accuracy_request_type
    use amplitudes, only: amplitude_type
+   use bars, only: bar_type
    use card_places, only: place_type
    use contact_definitions, only: contact_definition_type, interaction_type, tie_definition_type
    use controls, only: solver_skyline
@@ -66,6 +67,7 @@ module model
       !> the deck's, then those of couplings and partners on the mesh
       type(equation_type), allocatable :: equations(:)
       integer :: deck_equations = 0                              !! how many are the deck's
+      type(bar_type), allocatable :: bars(:)                     !! springs and trusses
       type(transform_type), allocatable :: transforms(:)         !! axes of nodes
       type(partner_type), allocatable :: partners(:)             !! what stands for these nodes
       type(coupling_type), allocatable :: couplings(:)           !! kinematic couplings

@@ -5,6 +5,7 @@ module listing_tables
    use contact_quantities, only: contact_values, geometry_values
    use due_output, only: table_is_due
    use increment_quantities, only: pass_value
+   use equations, only: equation_nodes
    use kinds, only: dp
    use listing_text, only: column, in_columns, table_cell, table_head
    use model, only: model_type, verify_type
@@ -155,7 +156,7 @@ contains
       end associate
    end subroutine print_requested
 
-   !> Table of the nodes of a set that elements have, and sums over them.
+   !> Table of the nodes of a set that elements, springs or trusses have, and sums over them.
    subroutine print_nodes(unit, request, model, fields)
       integer, intent(in) :: unit
       type(print_request_type), intent(in) :: request
@@ -166,11 +167,12 @@ contains
       character(:), allocatable :: set_name
       integer, allocatable :: nodes(:)
       integer :: i, k
-      logical :: is_summed
+      logical :: is_held(size(model%mesh%node_body)), is_summed
 
       set_name = request%name_of_set(model%mesh%node_sets)
       nodes = request%members(model%mesh%node_sets, size(model%mesh%node_body))
-      nodes = pack(nodes, model%mesh%node_body(nodes) > 0)
+      is_held = model%mesh%node_body > 0 .or. equation_nodes(model%bars%elongation, size(is_held))
+      nodes = pack(nodes, is_held(nodes))
       allocate (columns(0, size(nodes)), sums(0, size(nodes)), heads(0), sum_heads(0))
       do i = 1, size(request%quantities)
          associate (quantity => request%quantities(i))

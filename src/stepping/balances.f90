@@ -4,7 +4,7 @@
 module balances
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use connections, only: connections_type
-   use contact_operator, only: unstrained_forces
+   use contact_operator, only: bar_forces, unstrained_forces
    use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick
    use edge_heat, only: edge_heat_type, joined_conductance, supplied_heat
    use element_kinds, only: axisymmetric
@@ -232,7 +232,8 @@ contains
             sum(next%contact%force), noise*stiffness*scales%length, &
             least*stiffness, tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
-         record%force_imbalance = imbalance(internal, residual, held, model%mesh%node_body, &
+         record%force_imbalance = imbalance(internal - bar_forces(bodies, next%displacement, &
+            next%temperature - model%initial_temperature), residual, held, model%mesh%node_body, &
             [along_x, .true.], scales%force)
          positions = bodies%points%relative(next%displacement)
          positions = reshape([loads%present_gaps(bodies%points) - sum(positions* &

@@ -8,6 +8,7 @@ module deck_builder
    use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities, &
       heatless
    use deck_builder_contact, only: build_contacts, build_ties
+   use deck_builder_bars, only: build_bars
    use deck_builder_equations, only: build_couplings, build_equations, build_transforms
    use deck_builder_gap_heat, only: check_friction_heat
    use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures, &
@@ -73,6 +74,7 @@ contains
       call build_interactions(cards, context, model, report)
       call build_contacts(cards, context, model, report)
       call build_ties(cards, context, model, report)
+      call build_bars(cards, context, model, report)
       call build_equations(cards, context, model, report)
       call build_couplings(cards, context, model, report)
       call build_transforms(cards, model, report)

@@ -10,7 +10,7 @@ module deck_builder_controls
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
       start_both, start_closed, start_given, start_open, start_previous, start_type, &
       thermal_scheme_type
-   use deck_context, only: deck_context_type, need_element_set, need_named, report_unknown, &
+   use deck_context, only: deck_context_type, need_named, report_unknown, &
       take_named
    use deck_report, only: deck_report_type
    use kinds, only: dp
@@ -297,9 +297,17 @@ contains
          request%totals = choice /= 'NO'
          choice = 'NO'
       else
-         if (names_set(card, 'ELSET', mesh%element_sets, context) .and. has_parameter(card, &
-            'ELSET')) call need_element_set(card, mesh%element_sets, report, request%set)
+         if (names_set(card, 'ELSET', mesh%element_sets, context)) call take_named(card, 'ELSET', &
+            'element set', mesh%element_sets, report, request%set)
          is_known = request%set > 0 .or. lacks_parameter(card, 'ELSET')
+         if (request%set > 0) then
+            if (mesh%element_sets(request%set)%of_lines) then
+               call report%warning(parameter_place(card, 'ELSET'), 'element set '// &
+                  mesh%element_sets(request%set)%name//' has only lines, springs or trusses: '// &
+                  'nothing is printed')
+               is_known = .false.
+            end if
+         end if
       end if
       call choose(card, 'GLOBAL', 'YES/NO', report, choice)
       request%local_axes = choice == 'NO'

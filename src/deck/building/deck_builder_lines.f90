@@ -8,7 +8,7 @@ module deck_builder_lines
    use deck_report, only: deck_report_type
    use deck_structure, only: cards_of, data_cards_behind
    use element_kinds, only: element_corner_count, side_node_count, side_nodes
-   use element_types, only: line_node_count
+   use element_types, only: drawn_line, line_kind, line_node_count
    use mesh, only: mesh_type, set_type
    use sorting, only: sort_order
    use text, only: to_text, to_upper
@@ -55,14 +55,16 @@ contains
 
       n = size(element_cards(cards, of_lines=.true.))
       allocate(context%line_number(n), context%line_nodes(nodes_per_line, n), source=0)
+      allocate(context%line_kind(n), source=drawn_line)
       n = 0
       do k = 1, size(cards%keywords)
          if (.not. is_line_card(cards%keywords(k))) cycle
          name = to_upper(parameter_text(cards%keywords(k), 'TYPE'))
-         call context%note('*ELEMENT, TYPE='//name// &
+         if (line_kind(name) == drawn_line) call context%note('*ELEMENT, TYPE='//name// &
             ': lines are ignored, except for sets and surfaces that are made of them')
          do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
             n = n + 1
+            context%line_kind(n) = line_kind(name)
             call read_line(cards%data(j), context, report, context%line_number(n), &
                context%line_nodes(:line_node_count(name), n))
          end do

@@ -12,6 +12,7 @@ module deck_builder_materials
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
       is_positive_definite, orthotropic_elasticity
    use element_kinds, only: axisymmetric
+   use element_types, only: truss
    use kinds, only: dp
    use materials, only: anisotropic, engineering, isotropic, material_type, orientation_type, &
       orthotropic, property_keywords, property_type, set_property
@@ -505,8 +506,7 @@ contains
                      'the thickness must be positive')
                end associate
             end if
-            call give_section(card, n, context%line_sets, model%mesh, report, &
-               context%sections_sound)
+            call give_section(card, n, context, model%mesh, report)
             if (card%last_data < card%first_data .and. any(model%mesh%element_section == n .and. &
                model%mesh%element_plane /= axisymmetric)) call context%note( &
                '*SOLID SECTION without a thickness: '//to_text(section%thickness))
@@ -514,22 +514,28 @@ contains
       end do
    end subroutine build_sections
 
-   !> Gives the elements of its set a section; sound becomes false where that set is not known.
-   subroutine give_section(card, section, line_sets, mesh, report, sound)
+   !> Gives the elements of its set a section; its trusses take it later. Sections are not sound
+   !> where that set is not known.
+   subroutine give_section(card, section, context, mesh, report)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: section
-      type(set_type), intent(in) :: line_sets(:)
+      type(deck_context_type), intent(inout) :: context
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: sound
-      integer :: set
+      integer :: lines, set
 
-      call need_element_set(card, mesh%element_sets, report, set)
-      sound = sound .and. set > 0
+      call need_named(card, 'ELSET', 'element set', mesh%element_sets, report, set)
+      if (set > 0) then
+         lines = find_named(context%line_sets, mesh%element_sets(set)%name)
+         if (lines > 0) then
+            if (all(context%line_kind(context%line_sets(lines)%members) /= truss)) lines = -lines
+         end if
+         if (lines <= 0) call need_element_set(card, mesh%element_sets, report, set)
+      end if
+      context%sections_sound = context%sections_sound .and. set > 0
       if (set == 0) return
-      if (find_named(line_sets, mesh%element_sets(set)%name) > 0) call report%warning( &
-         parameter_place(card, 'ELSET'), 'element set '//mesh%element_sets(set)%name// &
-         ' also has lines, which are ignored: bars are not modelled')
+      if (lines < 0) call report%warning(parameter_place(card, 'ELSET'), 'element set '// &
+         mesh%element_sets(set)%name//' also has lines, which are ignored')
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
             'this section replaces an earlier one; elements concerned: '// &

@@ -5,7 +5,7 @@ module deck_builder_verify
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
-   use equations, only: constrained_nodes
+   use equations, only: constrained_nodes, equation_nodes
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type
@@ -200,7 +200,7 @@ contains
       used = .false.
       used([model%mesh%element_nodes]) = .true.
       used(1:) = used(1:) .or. constrained_nodes(model%equations, &
-         model%couplings, size(used) - 1)
+         model%couplings, size(used) - 1) .or. equation_nodes(model%bars%elongation, size(used) - 1)
       nodes = [node]
       if (set > 0) nodes = model%mesh%node_sets(set)%members
       nodes = pack(nodes, used(nodes))

@@ -1,7 +1,7 @@
 !> Loads and supports once all cards are read: whether they act on something, and in a step that
 !> has use for them.
 module load_checks
-   use equations, only: constrained_nodes
+   use equations, only: constrained_nodes, equation_nodes
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_kinds, only: axisymmetric
@@ -32,7 +32,8 @@ contains
       ! Where an element is not known, no node is known to be without one.
       used = report%has_lost('element') .or. .not. all(context%element_valid)
       used([model%mesh%element_nodes]) = .true.
-      used(1:) = used(1:) .or. constrained_nodes(model%equations, model%couplings, size(used) - 1)
+      used(1:) = used(1:) .or. constrained_nodes(model%equations, model%couplings, size(used) - 1) &
+         .or. equation_nodes(model%bars%elongation, size(used) - 1)
       card = 0
       do i = 1, context%loads%count
          associate (request => context%loads%items(i))

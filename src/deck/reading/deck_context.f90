@@ -40,7 +40,8 @@ module deck_context
       !> numbers of elements and, behind them, of lines -> indexes
       type(number_index_type) :: member_index
       integer, allocatable :: line_number(:)              !! (lines) numbers of the lines
-      integer, allocatable :: line_nodes(:, :)            !! (3, lines) indexes, 0 where it has two
+      integer, allocatable :: line_nodes(:, :)            !! (3, lines) indexes, 0 behind the last
+      integer, allocatable :: line_kind(:)                !! (lines) drawn_line, ...
       type(set_type), allocatable :: line_sets(:)         !! the lines of the element sets
       type(place_type), allocatable :: element_place(:)   !! (elements) where the element is
       logical, allocatable :: element_valid(:)            !! (elements) whether its nodes are known
@@ -206,7 +207,7 @@ contains
       logical, intent(inout) :: valid                   !! becomes false
 
       call report%error(place, 'element set '//name// &
-         ' contains only lines, which are not elements; make a *SURFACE or an *NSET of it')
+         ' contains only lines, springs or trusses; make a *SURFACE or an *NSET of lines')
       valid = .false.
    end subroutine report_lines
 

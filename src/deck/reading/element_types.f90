@@ -6,7 +6,12 @@ module element_types
    use text, only: string_type, to_upper
    implicit none
    private
-   public :: take_element_type, element_type_fields, line_node_count
+   public :: take_element_type, element_type_fields, line_node_count, line_kind
+   public :: drawn_line, truss, axial_spring, ground_spring, relative_spring
+
+   ! Kinds of elements with the nodes of a line: curves of a drawing, trusses, springs.
+   integer, parameter :: drawn_line = 0, truss = 1, axial_spring = 2, ground_spring = 3, &
+      relative_spring = 4
 
    character(3), parameter :: plane_names(3) = ['CPE', 'CPS', 'CAX']
    integer, parameter :: planes(3) = [plane_strain, plane_stress, axisymmetric]
@@ -119,12 +124,26 @@ contains
       if (len(message) == 0) element_type_fields = element_node_count(kind) + 1
    end function element_type_fields
 
-   !> Nodes of a line element, such as gmsh writes for a physical curve; 0 for all other types.
+   !> What kind of line an element type names.
+   pure integer function line_kind(name)
+      character(*), intent(in) :: name   !! TYPE= in upper case, of a line
+
+      line_kind = drawn_line
+      if (name == 'T2D2') line_kind = truss
+      if (name == 'SPRINGA') line_kind = axial_spring
+      if (name == 'SPRING1') line_kind = ground_spring
+      if (name == 'SPRING2') line_kind = relative_spring
+   end function line_kind
+
+   !> Nodes of a spring, a truss, or a line element, such as gmsh writes for a physical curve; 0 for
+   !> all other types.
    pure integer function line_node_count(name)
       character(*), intent(in) :: name   !! TYPE= in upper case
 
       select case (name)
-      case ('T3D2')
+      case ('SPRING1')
+         line_node_count = 1
+      case ('T3D2', 'T2D2', 'SPRINGA', 'SPRING2')
          line_node_count = 2
       case ('T3D3')
          line_node_count = 3

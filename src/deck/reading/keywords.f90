@@ -68,7 +68,7 @@ module keywords
 
    integer, parameter :: shortest = 3   !! letters of an abbreviation
 
-   type(keyword_type), parameter :: known_keywords(85) = [ &
+   type(keyword_type), parameter :: known_keywords(86) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -97,6 +97,7 @@ module keywords
       keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
       keyword_type('SOLID SECTION', built, in_model, 0, 1, &
          'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
+      keyword_type('SPRING', built, in_model, 1, 2, 'ELSET='), &
       keyword_type('AMPLITUDE', built, in_model, 1, many, &
          'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH='), &
       keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
@@ -179,7 +180,7 @@ module keywords
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(82) = [ &
+   type(advice_type), parameter :: advice(83) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -222,7 +223,7 @@ module keywords
       advice_type(refused, 'CONTACT PAIR', 'CONTACT', &
          'there is no general contact; name the faces of each *CONTACT PAIR'), &
       advice_type(refused, '', 'KINEMATIC COUPLING/DISTRIBUTING/DISTRIBUTING COUPLING/CYCLIC '// &
-         'SYMMETRY MODEL/PRE-TENSION SECTION/SUBMODEL/SPRING/DASHPOT', &
+         'SYMMETRY MODEL/PRE-TENSION SECTION/SUBMODEL/DASHPOT', &
          'bodies are held by *BOUNDARY, contact, *TIE, *EQUATION and *COUPLING'), &
       advice_type(refused, '', 'MPC', 'give its relations by *EQUATION or *COUPLING'), &
       advice_type(refused, '', 'RIGID BODY', 'every body is elastic; give it a high modulus'), &
@@ -233,6 +234,8 @@ module keywords
       advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/MODAL DYNAMIC/'// &
          'STEADY STATE DYNAMICS/VISCO/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD', &
          'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
+      advice_type(of_parameter, 'SPRING', 'NONLINEAR/ORIENTATION/DEPENDENCIES/COMPLEX STIFFNESS', &
+         'springs have one constant'), &
       advice_type(of_parameter, 'EQUATION', 'REMOVE', 'equations hold in all steps'), &
       advice_type(of_parameter, 'EQUATION', 'INPUT', 'take *INCLUDE behind the keyword'), &
       advice_type(of_parameter, 'INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &

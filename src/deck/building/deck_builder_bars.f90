@@ -1,0 +1,210 @@
+!> *SPRING, and *SOLID SECTION of trusses -> springs and trusses.
+module deck_builder_bars
+   use bars, only: bar_type
+   use card_parameters, only: parameter_place
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, field_place, keyword_card_type
+   use deck_builder_lines, only: element_cards
+   use deck_context, only: deck_context_type, need_named
+   use deck_report, only: deck_report_type
+   use deck_structure, only: cards_of
+   use element_types, only: axial_spring, drawn_line, ground_spring, truss
+   use equations, only: fill_equation
+   use kinds, only: dp
+   use materials, only: follows_temperature, isotropic, material_type, of_expansion
+   use model, only: model_type
+   use named_items, only: find_named
+   use steps, only: dof_temperature
+   use text, only: to_text
+   implicit none
+   private
+   public :: build_bars
+
+contains
+
+   !> Builds all springs and trusses; sections are known.
+   subroutine build_bars(cards, context, model, report)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(in) :: context       !! the lines of the deck
+      type(model_type), intent(inout) :: model             !! receives the bars
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(bar_type) :: of_line(size(context%line_number))
+      integer :: places(size(context%line_number)), i
+      integer, allocatable :: card(:)
+
+      places = element_cards(cards, of_lines=.true.)
+      card = cards_of(cards, 'SPRING')
+      do i = 1, size(card)
+         call read_spring(cards, cards%keywords(card(i)), context, model, report, of_line)
+      end do
+      card = cards_of(cards, 'SOLID SECTION')
+      do i = 1, size(card)
+         call take_section(cards%keywords(card(i)), i, context, model, report, of_line)
+      end do
+      do i = 1, size(of_line)
+         if (context%line_kind(i) == drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle
+         if (.not. report%has_errors()) call report%error(field_place(cards%data(places(i)), 1), &
+            'element '//to_text(context%line_number(i))//' has no '//trim(merge('*SOLID SECTION', &
+            '*SPRING       ', context%line_kind(i) == truss)))
+      end do
+      model%bars = pack(of_line, [(allocated(of_line(i)%elongation%node), i=1, size(of_line))])
+   end subroutine build_bars
+
+   !> Reads one *SPRING: degrees of freedom where its elements have some, then the constant.
+   subroutine read_spring(cards, card, context, model, report, of_line)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(bar_type), intent(inout) :: of_line(:)
+      integer, allocatable :: members(:)
+      integer :: dof(2), i, k
+      real(dp) :: stiffness
+      logical :: has_dofs, valid
+
+      call take_lines(card, context, model, report, members)
+      if (.not. allocated(members)) return
+      valid = size(members) > 0 .and. all(context%line_kind(members) > truss)
+      if (.not. valid) call report%error(parameter_place(card, 'ELSET'), &
+         'this set has elements that are no springs')
+      has_dofs = any(context%line_kind(members) >= ground_spring)
+      dof = 0
+      if (has_dofs .and. valid) then
+         associate (data => cards%data(card%first_data))
+            do k = 1, maxval(context%line_kind(members)) - ground_spring + 1
+               call need_field(data, k, 'degree of freedom', report, dof(k), valid)
+               if (valid .and. (dof(k) < 1 .or. dof(k) > 2)) then
+                  call report%error(field_place(data, k), 'springs act along 1 or 2')
+                  valid = .false.
+               end if
+            end do
+         end associate
+      end if
+      if (card%last_data - card%first_data /= merge(1, 0, has_dofs) .and. valid) then
+         call report%error(card%place, '*SPRING has one constant, behind a card of degrees of '// &
+            'freedom for SPRING1 and SPRING2')
+         return
+      end if
+      associate (data => cards%data(card%last_data))
+         call need_field(data, 1, 'spring constant', report, stiffness, valid)
+         call check_extra(data, 1, 'spring constant', report)
+         if (.not. valid) return
+         if (stiffness <= 0.0_dp) then
+            call report%error(field_place(data, 1), 'the constant of a spring must be positive')
+            return
+         end if
+      end associate
+      do i = 1, size(members)
+         associate (bar => of_line(members(i)), nodes => context%line_nodes(:2, members(i)))
+            bar%stiffness = stiffness
+            bar%follows_axes = has_dofs
+            select case (context%line_kind(members(i)))
+            case (axial_spring)
+               call set_axial(model, nodes, card, report, bar)
+            case (ground_spring)
+               call fill_equation(nodes(:1), dof(:1), [1.0_dp], bar%elongation)
+            case default
+               call fill_equation(nodes, dof, [1.0_dp, -1.0_dp], bar%elongation)
+            end select
+         end associate
+      end do
+   end subroutine read_spring
+
+   !> Gives the trusses of a *SOLID SECTION their stiffness; its thickness is their area.
+   subroutine take_section(card, n, context, model, report, of_line)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: n                         ! index of the section
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(bar_type), intent(inout) :: of_line(:)
+      integer, allocatable :: members(:)
+      integer :: i
+
+      if (report%has_errors()) return
+      call take_lines(card, context, model, report, members)
+      members = pack(members, context%line_kind(members) == truss)
+      if (size(members) == 0) return
+      associate (material => model%materials(model%sections(n)%material), &
+         area => model%sections(n)%thickness)
+         if (.not. is_plain(material)) then
+            call report%error(parameter_place(card, 'MATERIAL'), 'trusses need *ELASTIC, '// &
+               'isotropic, and properties that are constant')
+            return
+         end if
+         do i = 1, size(members)
+            associate (bar => of_line(members(i)), nodes => context%line_nodes(:2, members(i)))
+               call set_axial(model, nodes, card, report, bar)
+               if (report%has_errors()) return
+               bar%stiffness = youngs_modulus(material%elasticity)*area/norm2( &
+                  model%mesh%coordinates(:, nodes(2)) - model%mesh%coordinates(:, nodes(1)))
+               if (.not. material%has_expansion) cycle
+               bar%warm_force = youngs_modulus(material%elasticity)*area*material%expansion(1)
+               call fill_equation(nodes, [dof_temperature, dof_temperature], [0.5_dp, 0.5_dp], &
+                  bar%mean)
+            end associate
+         end do
+      end associate
+   end subroutine take_section
+
+   !> The lines of the set that ELSET= names; unallocated where there is no such set.
+   subroutine take_lines(card, context, model, report, members)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable, intent(out) :: members(:)
+      integer :: lines, set
+
+      call need_named(card, 'ELSET', 'element set', model%mesh%element_sets, report, set)
+      if (set == 0) return
+      allocate (members(0))
+      lines = find_named(context%line_sets, model%mesh%element_sets(set)%name)
+      if (lines > 0) members = context%line_sets(lines)%members
+   end subroutine take_lines
+
+   !> Makes the distance of two nodes an elongation.
+   subroutine set_axial(model, nodes, card, report, bar)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: nodes(2)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      type(bar_type), intent(inout) :: bar
+      real(dp) :: along(2)
+
+      along = model%mesh%coordinates(:, nodes(2)) - model%mesh%coordinates(:, nodes(1))
+      if (all(abs(along) <= 0.0_dp)) then
+         call report%error(card%place, 'nodes '//to_text(model%mesh%node_number(nodes(1)))// &
+            ' and '//to_text(model%mesh%node_number(nodes(2)))//' of an element of this set '// &
+            'stand at one place: it has no direction; take SPRING2')
+         return
+      end if
+      along = along/norm2(along)
+      call fill_equation([nodes(1), nodes(1), nodes(2), nodes(2)], [1, 2, 1, 2], &
+         [-along, along], bar%elongation)
+   end subroutine set_axial
+
+   !> Whether a material is isotropic and does not follow the temperature.
+   pure logical function is_plain(material)
+      type(material_type), intent(in) :: material
+      integer :: i
+
+      is_plain = material%has_elasticity .and. .not. follows_temperature(material)
+      if (.not. allocated(material%given)) return
+      do i = 1, size(material%given)
+         is_plain = is_plain .and. material%given(i)%symmetry == isotropic .and. &
+            (material%given(i)%kind /= of_expansion .or. size(material%given(i)%values, 1) == 1)
+      end do
+   end function is_plain
+
+   !> Young's modulus of an isotropic elasticity.
+   pure real(dp) function youngs_modulus(elasticity) result(modulus)
+      real(dp), intent(in) :: elasticity(4, 4)         !! [stress]
+
+      associate (lambda => elasticity(1, 2), mu => elasticity(4, 4))
+         modulus = mu*(3*lambda + 2*mu)/(lambda + mu)
+      end associate
+   end function youngs_modulus
+
+end module deck_builder_bars

@@ -1,0 +1,107 @@
+"""Springs and trusses: CalculiX on the same deck where it runs, and closed forms.
+
+CalculiX 2.20 ends without a message where SPRINGA or T2D2 stand beside plane elements.
+"""
+
+import pytest
+from calculix import DIGITS, assert_within, compared
+from changes import note_changes
+from physics import judge, material, mesh, nodes_of
+
+EXACT = 1e-9
+STIFFNESS = 1000.0   # E A/L of the block, 2 x 0.5 and 1 high, along y; nu = 0
+HEATED = 30.0
+BLOCK = [*mesh("BODY", [0.0, 2.0], [0.0, 1.0], kind="CPS8"), *material("BODY", (1000.0, 0.0), 1e-4),
+         "0.5"]
+# The upper face moves with a node of no element, which springs and trusses pull.
+HANDLE = ["*NODE, NSET=HANDLE", "100, 1., 2.", "*COUPLING, REF NODE=HANDLE, SURFACE=BODY.TOP, "
+          "CONSTRAINT NAME=GRIP", "*KINEMATIC", "2"]
+COLD = ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", "HANDLE, 0.", "ANCHOR, 0."]
+HELD = ["*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "BODY.BOTTOM, 1, 2", "HANDLE, 1", "ANCHOR, 1"]
+BALANCED = ("force_imbalance", "", "LAST", 0.0, 1e-12, "ABS")
+
+
+def anchor(x, y):
+    """Return a node that pulls."""
+    return ["*NODE, NSET=ANCHOR", f"101, {x}, {y}"]
+
+
+def springs(kind, nodes, *values, name="SPRINGS", number=51):
+    """Return a spring element and its *SPRING."""
+    return [f"*ELEMENT, TYPE={kind}, ELSET={name}", f"{number}, {nodes}", f"*SPRING, ELSET={name}",
+            *values]
+
+
+@pytest.mark.changes("SPRING")
+@pytest.mark.parametrize("options", [[], ["*REFINE, LEVELS=1"], ["*OPTIONS, ORDER=1"]])
+def test_a_slanted_spring_pulls_along_its_line(tmp_path, options):
+    """Along (3, 4)/5: 16/25 of its constant along y; its other end is moved by 0.01."""
+    spring = springs("SPRINGA", "100, 101", "50.")
+    moved = 32.0 * 0.01 / (STIFFNESS + 32.0)
+    pull = 50.0 * 0.8 * (0.01 - moved)
+    judge(tmp_path, [*options, *BLOCK, *HANDLE, *anchor(4.0, 6.0), *spring, *HELD,
+                     "*BOUNDARY", "ANCHOR, 2, 2, 0.01", "*END STEP"],
+          [("U2", "100", "LAST", moved, EXACT), ("RF2", "101", "LAST", 0.8 * pull, EXACT),
+           ("RF1", "101", "LAST", 0.6 * pull, EXACT), BALANCED])
+    note_changes(springs("SPRINGA", "100, 101", "40."), spring)
+
+
+@pytest.mark.changes("SPRING, ELSET")
+def test_springs_of_two_sets_have_their_own_constants(tmp_path):
+    """One along x, which does not move the handle, and one along y."""
+    for upright, level in (("A", "B"), ("B", "A")):
+        both = [*springs("SPRINGA", "100, 101", "50.", name=upright),
+                *springs("SPRINGA", "100, 102", "20.", name=level, number=52)]
+        judge(tmp_path, [*BLOCK, *HANDLE, *anchor(1.0, 4.0), "*NODE, NSET=SIDE", "102, 5., 2.", *both,
+                         *HELD, "SIDE, 1, 2", "ANCHOR, 2, 2, 0.01", "*END STEP"],
+              [("U2", "100", "LAST", 50.0 * 0.01 / (STIFFNESS + 50.0), EXACT), BALANCED])
+    note_changes(springs("SPRINGA", "100, 101", "50.", name="A"),
+                 springs("SPRINGA", "100, 101", "50.", name="B"))
+
+
+@pytest.mark.parametrize("options", [[], ["*OPTIONS, ORDER=1"]])
+def test_a_spring_at_a_node_that_drops_out_pulls_its_neighbours(tmp_path, options):
+    """ORDER=1 leaves the corners of the upper face, whose middle is pulled by 0.01."""
+    top = next(number for number, place in nodes_of(BLOCK).items() if place == (1.0, 1.0))
+    judge(tmp_path, [*options, *BLOCK, *HANDLE, *anchor(1.0, 3.0),
+                     *springs("SPRINGA", f"{top}, 101", "50."), *HELD, "ANCHOR, 2, 2, 0.01",
+                     "*END STEP"],
+          [("U2", "BODY.TOP", "LAST", 50.0 * 0.01 / (STIFFNESS + 50.0), EXACT), BALANCED])
+
+
+def test_a_warm_truss_pushes(tmp_path):
+    """E A/L = 100; both become longer by alpha T."""
+    truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", "51, 100, 101",
+             "*SOLID SECTION, ELSET=BAR, MATERIAL=BODY", "0.2"]
+    free = 1e-4 * HEATED
+    judge(tmp_path, [*BLOCK, *HANDLE, *anchor(1.0, 4.0), *truss, *COLD, *HELD, "ANCHOR, 2",
+                     "*TEMPERATURE", "BODY, 30.", "HANDLE, 30.", "ANCHOR, 30.", "*END STEP"],
+          [("U2", "100", "LAST", (STIFFNESS * free - 100.0 * 2.0 * free) / (STIFFNESS + 100.0), EXACT),
+           BALANCED])
+
+
+def test_a_spring_holds_a_body_that_contact_stops(tmp_path):
+    """A block of one element is pushed by 5 over a gap of 0.01 against a spring of 100."""
+    gap, push, spring = 0.01, 5.0, 100.0
+    give = 2.0 / STIFFNESS
+    base = [*mesh("BASE", [0.0, 2.0], [-1.0, 0.0], kind="CPS8", first=201),
+            *material("BASE", (1000.0, 0.0), 1e-4), "0.5"]
+    joint = ["*SURFACE INTERACTION, NAME=DRY", "*CONTACT PAIR, INTERACTION=DRY, NAME=JOINT",
+             "BODY.BOTTOM, BASE.TOP", f"*CLEARANCE, SLAVE=BODY.BOTTOM, MASTER=BASE.TOP, VALUE={gap}"]
+    judge(tmp_path, [*BLOCK, *base, *HANDLE, *joint, *springs("SPRING1", "100", "2", str(spring)),
+                     "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "BASE.BOTTOM, 1, 2", "BODY.LEFT, 1",
+                     "HANDLE, 1", "*CLOAD", f"100, 2, {-push}", "*END STEP"],
+          [("normal_force", "JOINT", "LAST", (push - spring * gap) / (1.0 + spring * give), EXACT),
+           BALANCED])
+
+
+@pytest.mark.parametrize("spring", [springs("SPRING1", "4", "1", "200."),
+                                    springs("SPRING2", "2, 3", "2, 1", "300.")])
+def test_springs_along_degrees_of_freedom_as_in_calculix(tmp_path, spring):
+    """Forces of nodes are left out: those of CalculiX lack what springs exert."""
+    found = compared(
+        tmp_path, mesh("BODY", [0.0, 1.0, 2.0], [0.0, 1.0]), material("BODY", (1000.0, 0.3), 1e-4),
+        spring, ["*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "BODY.BOTTOM, 2", "1, 1", "*DSLOAD",
+                 "BODY.TOP, P, 20.", "*CLOAD", "3, 1, 4.", "*NODE PRINT, NSET=BODY", "U",
+                 "*EL PRINT, ELSET=BODY", "S", "*END STEP"])
+    assert_within(found, DIGITS)
