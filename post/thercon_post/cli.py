@@ -1,10 +1,12 @@
 """Command line of post/plot."""
 
 import argparse
+import sys
 from contextlib import ExitStack
 from itertools import chain
 
 from . import accuracy, branch, convergence, courses, fields, mesh, profiles, style, trade, zones
+from .deck_changes import changed
 from .errors import UserError, program
 from .result import FIELD_SOURCES, Result
 
@@ -207,11 +209,15 @@ SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": is_name}
 def run(arguments):
     """Draw what the arguments ask for; return the files written."""
     options = parser().parse_args(spread(arguments))
+    options.note = ""
     style.apply()
     if options.picture == "trade":
         return trade.draw(options.table, options)
     with ExitStack() as stack:
         results = [stack.enter_context(Result(path)) for path in options.results]
+        options.note = "\n".join(filter(None, map(changed, results)))
+        for line in options.note.splitlines():
+            print(f"plot: note: {line}", file=sys.stderr)
         if options.picture in ("convergence", "zones"):
             return {"convergence": convergence, "zones": zones}[options.picture].draw(results, options)
         picture = {"mesh": mesh, "profiles": profiles, "fields": fields}

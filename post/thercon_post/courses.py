@@ -4,6 +4,7 @@ import numpy as np
 
 from . import style
 from .errors import UserError
+from .result import MARKED
 from .style import plt
 
 LABELS = {
@@ -15,6 +16,7 @@ LABELS = {
 HEAT = {"heat_in": "into the model", "heat_friction": "of friction", "heat_out": "out of it",
         "heat_stored": "stored", "heat_dilatation": "taken up by strains"}
 FACES = {"slave_temperature": "slave", "master_temperature": "master"}
+BANDS = "Of a face: lines are means, bands reach from the smallest to the largest value"
 DECADES = 1e-3  # of the largest heat rate, the smallest that a logarithmic axis shows
 ORDER = {"master": 1, "out of it": 1, "stored": 2, "through the contact": 3,
          "taken up by strains": 4, "of friction": 5}
@@ -74,6 +76,7 @@ class Picture:
                 self.spread(axes, curves)
             words, quantity = LABELS[name]
             axes.set_ylabel(self.result.units.label(words, quantity))
+            style.mark_judged(axes, self.time, self.result.judged)
             style.panel_title(axes, "", letter)
         for axes in grid.flat[len(self.panels):]:
             axes.set_visible(False)
@@ -85,6 +88,7 @@ class Picture:
         if self.log and first < self.time[-1]:
             grid[0, 0].set(xscale="log", xlim=(first, self.time[-1]))
             style.log_ticks(grid[0, 0].xaxis, first, self.time[-1])
+        figure.supxlabel(BANDS if self.result.judged.all() else f"{BANDS}\n{MARKED}", fontsize=8.5)
         return figure
 
     def draw_panel(self, axes, curves):

@@ -3,7 +3,7 @@
 import matplotlib
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import Locator, MaxNLocator
 
 PRINCIPAL = ("principal_1", "principal_2", "principal_3")
 SIGNED = ("xx", "yy", "zz", "xy", *PRINCIPAL, "radial", "hoop", "flux_x", "flux_y",
@@ -83,6 +83,20 @@ def overflow(values, levels):
     return [["neither", "max"], ["min", "both"]][int(below)][int(above)]
 
 
+class LevelLocator(Locator):
+    """Ticks of a colour bar: every n-th level, as many as there is room for."""
+
+    def __init__(self, levels):
+        self.levels = levels
+
+    def __call__(self):
+        """Return the levels that have labels, those at whole multiples of their distance."""
+        count, steps = len(self.levels), np.rint(self.levels / np.diff(self.levels[:2]))
+        room = 1 + 1.5 * self.axis.get_tick_space()  # which leaves as much between labels
+        every = max(1, round(count / 7), int(np.ceil(count / room)))
+        return self.levels[steps % every == 0]
+
+
 def draw_bar(axes, filled, levels, extend, bodies):
     """Draw a colour bar of a panel beside it, below wide panels, with arrows at the ends that values
     run past; it names `bodies`."""
@@ -93,9 +107,7 @@ def draw_bar(axes, filled, levels, extend, bodies):
                                fraction=max(0.05, across), pad=0.02, aspect=30, shrink=0.9)
     bar.ax.tick_params(direction="out", width=0.4, length=2, labelsize=7)
     bar.outline.set_linewidth(0.4)
-    every = max(1, round(len(levels) / 7))
-    steps = np.rint(levels / (levels[1] - levels[0])).astype(int)
-    bar.set_ticks(levels[steps % every == 0])
+    bar.set_ticks(LevelLocator(levels))
     if len(levels) == 2:
         middle = 0.5 * (levels[0] + levels[1])
         bar.set_ticks([middle], labels=[f"{middle:.4g}".replace("-", "\N{MINUS SIGN}")])

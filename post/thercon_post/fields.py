@@ -112,7 +112,7 @@ def words_below(result, row, factor, is_mode=False):
     words += ";\nsmall motion, its largest temperature 1" if is_mode else ""
     words += f"; displacements $\\times$ {factor:g}" if factor != 1.0 else ""
     if result.given_gaps:
-        return f"{words},\n{apart_words(result, factor)}"
+        return f"{words};\n{apart_words(result, factor)}"
     if factor > 1.0 and touches_after_a_gap(result):
         words += ",\ninitial gaps are not magnified:\nbodies that touch seem to overlap"
     return words

@@ -75,8 +75,9 @@ class Picture:
         if len(self.rows) == 1:
             figure.supxlabel(self.result.load_words(self.rows[0]), fontsize=8.5)
         elif not self.result.judged[self.rows].all():
-            numbers = ", ".join(str(row + 1) for row in self.rows if not self.result.judged[row])
-            figure.supxlabel(f"increments {numbers}: {UNJUDGED}", fontsize=8.5)
+            times = profile_legends.load_texts(self)
+            late = ", ".join(t for t, row in zip(times, self.rows) if not self.result.judged[row])
+            figure.supxlabel(f"{late}:\n{UNJUDGED}", fontsize=8.5)
         return figure
 
     def panel_kinds(self):

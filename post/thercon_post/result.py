@@ -47,6 +47,7 @@ GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "weight")
 STATES = ("pressure", "status")
 EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
 UNJUDGED = "inside a step: the mesh is not refined for this time"
+MARKED = "dotted lines are ends of steps; the mesh is refined for these alone"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
 ANALYSIS = ("time", "unstable_modes", "growth_rate", "period")
 ITERATION = ("increment", "iteration", "residual", "g_min", "g_max")
@@ -223,6 +224,11 @@ class Result:
         return np.isin(self.history["time"], numbers(self.file, "errors/time", like=(None,)))
 
     @cached_property
+    def load_factors(self):
+        """The load factor of every increment; NaN where it is no point of a branch."""
+        return self.history.get("load_factor", np.full(self.increments, np.nan))
+
+    @cached_property
     def stability(self):
         """Datasets of /stability by name: one value an analysis; None where there was none."""
         group = self.file.get("stability")
@@ -317,6 +323,8 @@ class Result:
         words = self.units.load_value(self.load_label, float(self.history["load"][row]))
         if self.load_label != "time":
             words += f", time {float(self.history['time'][row]):g}"
+        factor = float(self.load_factors[row])
+        words += "" if np.isnan(factor) else f", load factor {factor:g}"
         return words if self.judged[row] else f"{words}\n({UNJUDGED})"
 
     def row_words(self, row):

@@ -72,6 +72,8 @@ def write(figure, columns, options, name):
     """Write figure and, where they are asked for and there are some, curves to the folder of the
     options as name.png, .svg and .csv; return what was written."""
     folder, is_told = Path(options.out), options.csv and columns is not None
+    if options.note:
+        figure.suptitle(plain(options.note), fontsize=7.5, color=VERMILION)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(folder / f"{name}.png")
@@ -139,6 +141,12 @@ def number_words(value):
     power = int(np.floor(np.log10(value) + 1e-9))
     factor = f"{value / 10.0**power:.3g}"
     return f"$10^{{{power}}}$" if factor == "1" else rf"${factor}\times10^{{{power}}}$"
+
+
+def mark_judged(axes, abscissa, judged):
+    """Mark the increments with the accuracy that was requested, unless all have it."""
+    for place in abscissa[judged] if not judged.all() else ():
+        axes.axvline(place, color=GREY, ls=":", lw=0.8, zorder=0.5)
 
 
 def panel_title(axes, words, letter=""):

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from . import style
 from .errors import UserError
 from .overlay import axis_words, file_parts, read_overlays
-from .result import OPEN, SLIP, STICK
+from .result import MARKED, OPEN, SLIP, STICK
 from .style import plt
 from .tables import stack_tables, write_table
 from .zone_names import CURVES, name_regions
@@ -131,6 +131,7 @@ class Picture:
                 f"{self.result.path}: the load turns: no digitised figure fits over time"
             )
         self.draw_zones(axes)
+        style.mark_judged(axes, self.abscissa, self.result.judged)
         self.draw_states(axes)
         for key in CURVES:
             self.draw_edges(axes, key)
@@ -140,7 +141,8 @@ class Picture:
         return np.concatenate([[], *drawn])
 
     def settle(self, axes, window):
-        """Set ranges and labels of the axes; return what the label says of the rest of the face."""
+        """Set ranges and labels of the axes; return what the label says of the rest of the face and
+        of the increments that are marked."""
         axes.set_ylabel(self.result.units.label(f"${self.along}$", "length"))
         axes.set_xlim(self.limits(self.abscissa))
         if len(self.abscissa) == 1:
@@ -148,6 +150,7 @@ class Picture:
         axes.set_ylim(window)
         unit = self.result.units.names.get("length", "")
         part = self.contact.part_words(self.coordinate, window, unit)
+        part += "" if self.result.judged.all() else f"\n{MARKED}"
         axes.set_xlabel(f"{self.abscissa_label}\n{part}".rstrip())
         return part
 

@@ -272,7 +272,7 @@ contains
          end associate
       end do
       counts = self%verifier%counts()
-      if (counts(3) > 0) call append(lines, self%run%deck_path//': error: '// &
+      if (counts(3) > 0) call append(lines, self%run%deck_path//': note: '// &
          counted(counts(3), '*VERIFY check')//' could not be judged: the run ended before '// &
          trim(merge('its time   ', 'their times', counts(3) == 1)))
    end function failed_checks

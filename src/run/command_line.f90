@@ -205,12 +205,13 @@ contains
    !> The file of a deck that is named with or without its ending, as with CalculiX.
    function deck_file(name) result(path)
       character(*), intent(in) :: name
-      character(:), allocatable :: path   !! name, or name.inp where only that is there
-      logical :: exists
+      character(:), allocatable :: path   !! name, or name.inp where only that is a file
+      logical :: exists, is_folder
 
       path = name
       inquire (file=name, exist=exists)
-      if (exists) return
+      inquire (file=name//'/.', exist=is_folder)
+      if (exists .and. .not. is_folder) return
       inquire (file=name//'.inp', exist=exists)
       if (exists) path = name//'.inp'
    end function deck_file

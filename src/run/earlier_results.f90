@@ -16,7 +16,7 @@ module earlier_results
    private
    public :: earlier_result_type, origin_type
 
-   real(dp), parameter :: same_time = 1.0e-6_dp   !! relative; times are printed with six digits
+   real(dp), parameter :: printed = 5.0e-6_dp   !! what six digits leave out of a time, relative
 
    !> Where a run goes on from.
    type :: origin_type
@@ -159,7 +159,7 @@ contains
       card = ''
    end subroutine next_card
 
-   !> The restart at a time, or the last one of all.
+   !> The restart nearest to a time, within the digits of the listing, or the last one of all.
    !> Error: status_deck, when there is none.
    subroutine find_time(self, time, restart, error)
       class(earlier_result_type), intent(in) :: self
@@ -173,18 +173,11 @@ contains
             'give *RESTART, WRITE in its deck')
       else if (allocated(time)) then
          restart = minloc(abs(self%places(at_time, :) - time), dim=1)
-         if (.not. is_of_time(self%places(at_time, restart), time)) call set_error(error, &
+         if (abs(self%places(at_time, restart) - time) > printed*abs(time)) call set_error(error, &
             status_deck, '"'//self%path//'" keeps no state at time '//to_text(time)//'; the '// &
             'nearest one is at time '//to_text(self%places(at_time, restart)))
       end if
    end subroutine find_time
-
-   !> Whether a time is meant that is given with the digits of the listing.
-   pure logical function is_of_time(time, given)
-      real(dp), intent(in) :: time, given   !! [time]
-
-      is_of_time = abs(time - given) <= same_time*abs(time)
-   end function is_of_time
 
    !> The restart at an increment of a step, or the last one of the step.
    !> Error: status_deck, when there is none.

@@ -628,16 +628,17 @@ contains
       record%last_of_step = clock%step_time >= clock%period
       record%cut_backs = self%control%cut_backs
       record%time = clock%total_time
-      record%load = self%loads%axis_value(model, record%time)
       associate (continuation => model%steps(self%control%step)%continuation)
-         if (.not. continuation%is_on) return
-         record%last_of_step = self%branch%is_last
-         record%load_factor = clock%step_time/clock%period
-         record%is_fold = self%branch%is_fold
-         ! The load factor may fall, time does not.
-         record%time = self%control%step_start + clock%period*record%increment_in_step/ &
-            continuation%most_points
+         if (continuation%is_on) then
+            record%last_of_step = self%branch%is_last
+            record%load_factor = clock%step_time/clock%period
+            record%is_fold = self%branch%is_fold
+            ! The load factor may fall, time does not.
+            record%time = self%control%step_start + clock%period*record%increment_in_step/ &
+               continuation%most_points
+         end if
       end associate
+      record%load = self%loads%axis_value(model, record%time)
    end subroutine begin_record
 
    !> Frees the factors.

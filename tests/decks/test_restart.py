@@ -273,6 +273,9 @@ def test_places_that_a_result_does_not_keep_are_refused(cycling, tmp_path):
     at = float(kept(result)[2])
     said = refused(deck, "--restart", f"{result}@{at + 0.01}", "--out", tmp_path)
     assert f"keeps no state at time {at + 0.01:.6g}; the nearest one is at time {at:.6g}" in said
+    # A time as it is printed, with six digits, is the nearest one.
+    assert run("run", deck, "--restart", f"{result}@{at * (1 + 3e-6)!r}", "--out",
+               tmp_path / "printed").returncode == 0
     assert "there is no result" in refused(deck, "--restart", tmp_path / "none", "--out", tmp_path)
     broken = tmp_path / "broken.vtkhdf"
     broken.write_text("no HDF5\n")

@@ -1,6 +1,7 @@
 """Pictures and page of a branch of solutions: stable parts are full lines, unstable ones dashed."""
 
 import csv
+import re
 import sys
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from deck_runs import INPUT, solve  # noqa: E402
 from thercon_post.branch import parts  # noqa: E402
 from thercon_post.cli import main as plot  # noqa: E402
 from thercon_post.report.cli import main as report  # noqa: E402
+from thercon_post.result import Result  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +58,21 @@ def test_picture_has_all_points_and_the_quantity_asked_for(result, tmp_path):
             np.testing.assert_allclose([float(row[key]) for row in rows],
                                        file[f"contact/FACE/{key}"][:], rtol=1e-12)
         assert (tmp_path / f"{name}.png").exists()
+
+
+def test_a_point_of_a_branch_has_one_time_and_its_load_factor(result, tmp_path):
+    """The load axis is the time, as nothing else is asked for; so all pictures and tables say."""
+    with Result(result) as opened:
+        last = opened.increments - 1
+        assert opened.load_words(last) == f"time {opened.history['time'][last]:g}, load factor 1.5"
+    listing = result.with_suffix(".lst").read_text()
+    times, loads = zip(*re.findall(r"^INCREMENT \d+ +STEP \d+ +TIME (\S+) +LOAD (\S+)", listing, re.M))
+    assert times == loads
+    assert report([str(result), "--out", str(tmp_path)]) == 0
+    with Browser() as browser:
+        browser.open(tmp_path / "r3.html")
+        assert browser.run("return document.getElementById('now').textContent").endswith(
+            ", load factor 1.5")
 
 
 def test_unknown_quantity_and_a_result_without_a_branch_are_errors(result, tmp_path, capsys):

@@ -535,7 +535,7 @@ def test_a_uniform_panel_has_one_colour_with_its_value(kept, result):
             if text.get_text()] == ["\N{MINUS SIGN}100"]
 
 
-@pytest.mark.parametrize("factors", [(1.0, 0.02), (0.02, 1.0), (1.0, 1.0)])
+@pytest.mark.parametrize("factors", [(1.0, 0.02), (0.02, 1.0), (1.0, 0.4), (1.0, 1.0)])
 @pytest.mark.parametrize("colours", ["panel", "body"])
 def test_colour_bars_of_thin_and_flat_bodies_overlap_nothing(kept, result, factors, colours):
     with h5py.File(result, "r+") as file:

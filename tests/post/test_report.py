@@ -19,6 +19,7 @@ from program import CYLINDER, run, write_deck  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
 from thercon_post import stresses  # noqa: E402
+from thercon_post.cli import main as plot  # noqa: E402
 from thercon_post.report.cli import main  # noqa: E402
 from thercon_post.report.data import kept_steps  # noqa: E402
 from thercon_post.report.listing import read_listing  # noqa: E402
@@ -457,9 +458,42 @@ def test_increments_that_no_bound_judges_say_so(synthetic, browser, tmp_path):
     assert browser.run(note) == ""
     browser.press("#load", "left")
     assert browser.run(note).startswith("Increment 14 is inside a step")
+    for picture, marked in (("zones", 1), ("courses", 2)):
+        assert plot([picture, str(tmp_path / "case.vtkhdf"), "--out", str(tmp_path)]) == 0
+        drawn = (tmp_path / f"case.{picture}.svg").read_text()
+        assert "dotted lines are ends of steps; the mesh is refined for these alone" in drawn
+        assert drawn.count("stroke: #8c8c8c") == marked
+    assert plot(["profiles", str(tmp_path / "case.vtkhdf"), "--increment", "14", "15", "--out",
+                 str(tmp_path)]) == 0
+    drawn = (tmp_path / "case.profiles-840-900.svg").read_text()
+    assert re.search(r"<!-- 840[^>]*: -->(?s:.)*<!-- inside a step: the mesh is not refined", drawn)
     with Result(tmp_path / "case.vtkhdf") as opened:
         assert opened.load_words(13).endswith("(inside a step: the mesh is not refined for this time)")
         assert "step" not in opened.load_words(14)
+
+
+def test_a_coupling_below_the_accuracy_of_its_gain_has_no_chart(synthetic, browser):
+    for size, charts in ((1e-7, 0), (0.1, 2)):
+        def couple(file, size=size):
+            for key in ("coupling_gain", "coupling_gain_max"):
+                file[f"history/{key}"] = np.full(15, size)
+
+        browser.open(synthetic(couple))
+        words = browser.run("return document.getElementById('histories').textContent")
+        assert words.count("Coupling gain") == charts
+
+
+def test_checks_of_an_earlier_round_are_told_without_a_table(tmp_path):
+    """With a requested accuracy the listing is that of the last round, the checks of the first."""
+    deck = tmp_path / "roller.inp"
+    for name in ("roller.inp", "roller.gmsh"):
+        shutil.copy(CYLINDER.parents[1] / "examples" / name, tmp_path)
+    status, said = run(deck, "--accuracy", "edge=1%")
+    assert status == 0, said
+    assert main([str(deck.with_suffix(".vtkhdf")), "--out", str(tmp_path)]) == 0
+    checks = (tmp_path / "roller.html").read_text().split('id="checks-title"')[1].split("<section")[0]
+    assert "They were judged in round 1, on the deck as written." in checks
+    assert "<table" not in checks
 
 
 def test_a_target_that_is_missed_by_little_shows_it():

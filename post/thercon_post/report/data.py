@@ -16,6 +16,7 @@ FIELD_NUMBERS = 1_400_000  # numbers of all fields together: at most 3.7 MB of t
 FINE = 20_000  # elements: nodes on sides cannot be seen
 DERIVED = (*PRINCIPAL, "radial", "hoop")  # left out of the pages of fine meshes
 NOISE = 1e-9  # of what it is beside: smaller values are rounding
+LEAST = {"gain": 1e-6}  # eigenvalues of the coupling are accurate to this
 PROFILES = ("pressure", "shear", "heat_flux", "gap")
 COLOURS = ("viridis", "inferno", "RdBu_r")
 SHADES = 64
@@ -71,6 +72,7 @@ def loads(result):
         "unit": plain(result.units.load_unit()),
         "values": load.tolist(),
         "times": result.history["time"].tolist(),
+        "factors": listed(result.load_factors),
         "judged": result.judged.tolist(),
         "unjudged": UNJUDGED,
         # A load that turns would draw loading and unloading over each other.
@@ -148,11 +150,13 @@ def histories(result):
             unit = plain(result.units.names.get("power", "")) if key in HEAT else ""
             found.append({"key": key, "label": words_of(key).capitalize(), "unit": unit,
                           "values": listed(values)})
-    kinds = ["heat" if "heat" in each["key"] else each["key"].split("_")[-1] for each in found]
+    kinds = [next((kind for kind in ("heat", "gain") if kind in each["key"]),
+                  each["key"].split("_")[-1]) for each in found]
     sizes = [largest([v or 0.0 for v in each["values"]]) for each in found]
     for kind, size in zip(kinds, sizes):
         peaks[kind] = max(peaks.get(kind, 0.0), size)
-    return [each for each, kind, size in zip(found, kinds, sizes) if size > NOISE * peaks[kind]]
+    return [each for each, kind, size in zip(found, kinds, sizes)
+            if size > max(NOISE * peaks[kind], LEAST.get(kind, 0.0))]
 
 
 def branch_data(result):

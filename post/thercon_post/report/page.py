@@ -1,5 +1,6 @@
 """The page: what does not change with the load, around the script that draws the rest."""
 
+from ..deck_changes import changed
 from ..result import text
 from . import tables
 from .data import FINE, contacts_of, page_data
@@ -26,6 +27,7 @@ PAGE = """<!DOCTYPE html>
 <header>
 <h1>{heading}</h1>
 <p>{file}, written by thercon {version}</p>
+{changed}
 <nav aria-label="Sections"><ul>{links}</ul></nav>
 </header>
 {bar}
@@ -70,6 +72,7 @@ def page(result):
         name=result.name,
         file=result.path.name,
         version=run_text(result, "version"),
+        changed=html('<p class="note">{}.</p>', words) if (words := changed(result)) else "",
         styles=own("page.css"),
         links=joined(html(LINK, **each) for each in named),
         bar=load_bar(result),

@@ -207,6 +207,8 @@ def checks(result, listing):
     told = html("<p>{} passed, {} failed.</p>", passed, failed)
     if listing is None:
         return joined([told, missing(result)])
+    if not listing.checks:  # the listing is that of a later round
+        return joined([told, html("<p>They were judged in round 1, on the deck as written.</p>")])
     head = ["card", "quantity", "where", "time", "expected", "found", "deviation", "allowed",
             "verdict", "kind and source"]
     rows = []

@@ -17,6 +17,18 @@ module generated_cards
    integer, parameter :: most_generated = 10000000   !! nodes or elements of one data card
    character(*), parameter :: too_many = 'a card generates at most 10000000 nodes or elements'
 
+   !> A node that a card names, or a place that it gives.
+   type :: given_point_type
+      integer :: number = 0            !! of the node
+      real(dp) :: x(2) = 0.0_dp        !! its place [length]
+      logical :: valid = .false.       !! whether it is known
+   end type given_point_type
+
+   !> The circle of *NGEN, LINE=C, about its center.
+   type, extends(given_point_type) :: given_circle_type
+      real(dp) :: angle = 0.0_dp       !! from the first node to the last [rad]
+   end type given_circle_type
+
 contains
 
    !> Replaces each card that generates nodes or elements by *NODE or *ELEMENT, with the data that
@@ -79,111 +91,107 @@ contains
       type(given_type), intent(inout) :: nodes
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
-      real(dp) :: angle, center(2), from(2), x(2, 2)
-      integer :: ends(2), step, i, n
+      type(given_point_type) :: ends(2)
+      type(given_circle_type) :: circle
+      real(dp) :: from(2)
+      integer :: step, i, n
       logical :: valid
 
-      valid = .true.
       step = 1
       do i = 1, 2
          call need_given_node(data, i, trim(merge('first node', 'last node ', i == 1)), nodes, &
-            all, report, ends(i), x(:, i), valid)
+            all, report, ends(i))
       end do
+      valid = ends(1)%valid .and. ends(2)%valid
       call take_field(data, 3, 'increment', report, step, valid)
-      angle = 0.0_dp
       if (has_parameter(card, 'LINE')) then
-         call read_circle(card, data, x, nodes, all, report, center, angle, valid)
+         call read_circle(card, data, ends, nodes, all, report, circle)
+         valid = valid .and. circle%valid
       else
          call check_extra(data, 3, 'first node, last node, increment', report)
       end if
-      if (valid) call check_range(data, ends, step, report, valid)
+      if (valid) call check_range(data, ends%number, step, report, valid)
       if (.not. valid) then
          call report%lose('node')
          return
       end if
-      call add_set(card, 'NSET', data, ends, all)
-      n = (ends(2) - ends(1))/step
+      call add_set(card, 'NSET', data, ends%number, all)
+      n = (ends(2)%number - ends(1)%number)/step
       if (n > 1) call add_generated(card, 'NODE', '', all)
       do i = 1, n - 1
          if (has_parameter(card, 'LINE')) then
-            from = matmul(rotation(angle*i/n), x(:, 1) - center)
-            from = center + from*(1 + (norm2(x(:, 2) - center)/norm2(from) - 1)*i/n)
+            from = matmul(rotation(circle%angle*i/n), ends(1)%x - circle%x)
+            from = circle%x + from*(1 + (norm2(ends(2)%x - circle%x)/norm2(from) - 1)*i/n)
          else
-            from = x(:, 1) + (x(:, 2) - x(:, 1))*i/n
+            from = ends(1)%x + (ends(2)%x - ends(1)%x)*i/n
          end if
-         call add_node_card(data, ends(1) + i*step, from, all, nodes)
+         call add_node_card(data, ends(1)%number + i*step, from, all, nodes)
       end do
    end subroutine generate_nodes
 
    !> A node of the cards so far, and its place.
-   subroutine need_given_node(data, i, what, nodes, all, report, number, x, valid)
+   subroutine need_given_node(data, i, what, nodes, all, report, node)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                ! position of the field
       character(*), intent(in) :: what
       type(given_type), intent(in) :: nodes
       type(cards_type), intent(in) :: all
       type(deck_report_type), intent(inout) :: report
-      integer, intent(out) :: number
-      real(dp), intent(out) :: x(2)
-      logical, intent(inout) :: valid
-      logical :: is_number
+      type(given_point_type), intent(out) :: node
       integer :: at
 
-      x = 0.0_dp
-      is_number = .true.
-      call need_field(data, i, what, report, number, is_number)
-      valid = valid .and. is_number
-      if (.not. is_number) return
-      at = position_of(number, nodes)
-      if (at > 0) then
-         x = node_place(all, nodes, at)
+      node%valid = .true.
+      call need_field(data, i, what, report, node%number, node%valid)
+      if (.not. node%valid) return
+      at = position_of(node%number, nodes)
+      node%valid = at > 0
+      if (node%valid) then
+         node%x = node_place(all, nodes, at)
       else
          call report%error(field_place(data, i), 'no *NODE before this card has node '// &
-            to_text(number))
-         valid = .false.
+            to_text(node%number))
       end if
    end subroutine need_given_node
 
    !> Center of the circle of *NGEN, LINE=C, a node or a place, and the angle from the first node to
    !> the last: the smaller one, or the one anticlockwise about the normal that the card gives.
-   subroutine read_circle(card, data, x, nodes, all, report, center, angle, valid)
+   subroutine read_circle(card, data, ends, nodes, all, report, circle)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: x(2, 2)         ! the two ends
+      type(given_point_type), intent(in) :: ends(2)
       type(given_type), intent(in) :: nodes
       type(cards_type), intent(in) :: all
       type(deck_report_type), intent(inout) :: report
-      real(dp), intent(out) :: center(2)
-      real(dp), intent(out) :: angle          ! [rad]
-      logical, intent(inout) :: valid
+      type(given_circle_type), intent(out) :: circle
       real(dp), parameter :: whole = 2*acos(-1.0_dp)
       character(:), allocatable :: kind
       real(dp) :: normal, radii(2, 2)
-      integer :: number
 
-      center = 0.0_dp
       normal = 0.0_dp
       kind = ''
       call choose(card, 'LINE', 'C', report, kind)
-      valid = valid .and. kind == 'C'
-      if (.not. valid) return
+      circle%valid = kind == 'C' .and. ends(1)%valid .and. ends(2)%valid
+      if (.not. circle%valid) return
       if (has_field(data, 4)) then
-         call need_given_node(data, 4, 'center', nodes, all, report, number, center, valid)
+         call need_given_node(data, 4, 'center', nodes, all, report, circle%given_point_type)
       else
-         call need_field(data, 5, 'x of the center', report, center(1), valid)
-         call need_field(data, 6, 'y of the center', report, center(2), valid)
+         call need_field(data, 5, 'x of the center', report, circle%x(1), circle%valid)
+         call need_field(data, 6, 'y of the center', report, circle%x(2), circle%valid)
       end if
-      call take_field(data, 10, 'z of the normal', report, normal, valid)
+      call take_field(data, 10, 'z of the normal', report, normal, circle%valid)
       call check_extra(data, 10, 'first node, last node, increment, center: node or x, y, z, '// &
          'normal: x, y, z', report)
-      radii = x - spread(center, 2, 2)
-      angle = atan2(radii(1, 1)*radii(2, 2) - radii(2, 1)*radii(1, 2), &
-         dot_product(radii(:, 1), radii(:, 2)))
-      if (normal > 0.0_dp) angle = modulo(angle, whole)
-      if (normal < 0.0_dp) angle = -modulo(-angle, whole)
-      if (.not. valid .or. minval(norm2(radii, dim=1)) > 0.0_dp) return
+      radii(:, 1) = ends(1)%x - circle%x
+      radii(:, 2) = ends(2)%x - circle%x
+      associate (angle => circle%angle)
+         angle = atan2(radii(1, 1)*radii(2, 2) - radii(2, 1)*radii(1, 2), &
+            dot_product(radii(:, 1), radii(:, 2)))
+         if (normal > 0.0_dp) angle = modulo(angle, whole)
+         if (normal < 0.0_dp) angle = -modulo(-angle, whole)
+      end associate
+      if (.not. circle%valid .or. minval(norm2(radii, dim=1)) > 0.0_dp) return
       call report%error(field_place(data, 4), 'the center of the circle is one of its nodes')
-      valid = .false.
+      circle%valid = .false.
    end subroutine read_circle
 
    !> The increment leads from the first number to the last.
