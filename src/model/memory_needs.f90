@@ -5,9 +5,11 @@
 !> nested dissection have 31/4 n log2 n entries (A. George, Nested dissection of a regular finite
 !> element mesh, 1973). How often entries are held at a time was measured, docs/theory.md.
 module memory_needs
+   use contact_definitions, only: makes_friction_heat
    use controls, only: default_solver, solver_by_size, solver_mumps
    use element_kinds, only: element_node_count, linear_kind
    use kinds, only: dp
+   use materials, only: heat_capacity
    use model, only: model_type
    use ordering, only: adjacency, first_rows, profile_order
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
@@ -24,6 +26,9 @@ module memory_needs
    real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]
    real(dp), parameter :: field_values = 25.0_dp       !! of a node and written increment that wait
    real(dp), parameter :: dense_matrices = 12.0_dp     !! of the contact unknowns, held at a time
+   !> Numbers of a node and contact point: of responses at the rates of *STABILITY, and to heat of
+   !> friction.
+   real(dp), parameter :: motion_responses = 13.0_dp, friction_responses = 3.0_dp
 
 contains
 
@@ -52,6 +57,10 @@ contains
          model%steps%field_frequency > 0))
       bytes = base + per_entry*entries + min(waiting, real_bytes*field_values*nodes*written) + &
          dense_matrices*real_bytes*(3*points)**2
+      if (any(model%steps%stability_frequency > 0) .and. any(heat_capacity(model%materials) > &
+         0.0_dp)) bytes = bytes + real_bytes*motion_responses*nodes*points
+      if (makes_friction_heat(model%interactions, model%contacts)) bytes = bytes + &
+         real_bytes*friction_responses*nodes*points
       ! The bounds have room for both fields.
       bounds_errors = model%estimates_errors .and. size(model%contacts) > 0
       if (bounds_errors) bytes = bytes + per_fine_entry*entries_of(kinds, .true., .true.)* &

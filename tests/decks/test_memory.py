@@ -66,6 +66,15 @@ def test_the_estimate_has_room_for_the_factors_of_the_bounds_beside_mortar_point
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
 
 
+@pytest.mark.parametrize("levels", [2, 3])
+def test_the_estimate_has_room_for_the_motions_of_a_state(tmp_path, levels):
+    """*STABILITY keeps what contact points make of all temperatures, at several rates."""
+    deck = few_increments(without_checks(CYLINDER, tmp_path, [f"*REFINE, LEVELS={levels}"]))
+    text = deck.read_text().replace("*CONDUCTIVITY", "*DENSITY\n1.\n*SPECIFIC HEAT\n3.6\n*CONDUCTIVITY")
+    deck.write_text(text.replace("\n300., 900.", "\n300., 900.\n*STABILITY"))
+    assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
+
+
 @pytest.mark.parametrize("command", ["check", "run"])
 def test_what_no_machine_has_is_refused_before_it_is_refined(tmp_path, command):
     deck = copy_deck(CYLINDER, tmp_path / "large.inp", ["*REFINE, LEVELS=8"])
