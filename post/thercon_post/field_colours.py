@@ -9,6 +9,7 @@ PRINCIPAL = ("principal_1", "principal_2", "principal_3")
 SIGNED = ("xx", "yy", "zz", "xy", *PRINCIPAL, "radial", "hoop", "flux_x", "flux_y",
           "mode_temperature")
 ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are the same
+NOTHING = 1e-6  # of the largest magnitude: what is smaller everywhere is 0
 UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
 WIDE = 1.8  # width over height of models whose panels are one below the other
 
@@ -43,7 +44,7 @@ def limits(values, quantity, scale):
     low, high = values.min(), values.max()
     if high - low <= UNIFORM * scale:
         middle = 0.5 * (low + high)
-        middle = middle if abs(middle) > ROUNDING * scale else 0.0
+        middle = middle if abs(middle) > NOTHING * scale else 0.0
         return middle + np.array([-1.0, 1.0]) * (scale or 1.0)  # one band
     if quantity != "temperature":
         ends = np.percentile(values, (0.5, 99.5))

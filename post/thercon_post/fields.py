@@ -11,6 +11,7 @@ from . import element_fields, mesh, style
 from .cells import curves
 from .errors import UserError
 from .field_colours import (
+    NOTHING,
     ROUNDING,
     WIDE,
     colours_of,
@@ -45,6 +46,7 @@ TITLES = {
 }
 AMPLITUDE = 0.05  # of the size of the model: displacement of a motion that is drawn
 COLUMNS = 3  # of panels
+LOOKED_AT = 20  # times at most
 FINE_CELLS = 60000  # about as many parts as a page can show
 
 
@@ -185,8 +187,13 @@ def tells_nothing(result, there, step):
 
 
 def magnitude(result, quantity, step):
-    """Return the largest magnitude of a quantity, with all components of what it is one of."""
-    return float(np.nanmax(np.abs(result.source(quantity, step))))
+    """Return the largest magnitude of a quantity, with all components of what it is one of; that at
+    other times where it is NOTHING beside it, the rounding of what has gone."""
+    others = np.unique(np.linspace(0, len(result.field_times) - 1, LOOKED_AT).astype(int))
+    sizes = {k: np.abs(result.source(quantity, k)) for k in (step, *others.tolist())}
+    largest = {k: float(np.max(size, initial=0.0, where=np.isfinite(size))) for k, size in sizes.items()}
+    most = max(largest.values())
+    return largest[step] if largest[step] > NOTHING * most else most
 
 
 def layout(count, window):

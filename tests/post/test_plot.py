@@ -535,6 +535,17 @@ def test_a_uniform_panel_has_one_colour_with_its_value(kept, result):
             if text.get_text()] == ["\N{MINUS SIGN}100"]
 
 
+def test_the_rounding_of_stresses_that_have_gone_is_no_concentration(kept, result):
+    """As of bodies that come apart: nothing is left but 1e-7 of what there was."""
+    with h5py.File(result, "r+") as file:
+        stress = file["VTKHDF/PointData/stress"]
+        stress[-len(stress) // 15:] *= 1e-7
+    (figure,) = kept("fields", result, "--quantity", "yy")
+    (bar,) = bars_of(figure)
+    labels = [text.get_text() for text in bar.get_xticklabels() + bar.get_yticklabels() if text.get_text()]
+    assert labels == ["0"]
+
+
 @pytest.mark.parametrize("factors", [(1.0, 0.02), (0.02, 1.0), (1.0, 0.4), (1.0, 1.0)])
 @pytest.mark.parametrize("colours", ["panel", "body"])
 def test_colour_bars_of_thin_and_flat_bodies_overlap_nothing(kept, result, factors, colours):
