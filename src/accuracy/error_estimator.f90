@@ -6,13 +6,14 @@ module error_estimator
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
+   use contact_system, only: contact_open
    use divided_mesh, only: divided_mesh_type
    use doubled_increments, only: doubled_increments_type
    use element_kinds, only: element_corner_count
    use errors, only: error_type
    use increment_quantities, only: history_value
    use increments, only: simulation_type
-   use interface_quantities, only: quantities_of, quantities_of_state
+   use interface_quantities, only: quantities_of, quantities_of_state, regime_of
    use kinds, only: dp
    use mesh, only: mesh_type
    use mesh_bounds, only: bounds_of_mesh, locked_in
@@ -48,6 +49,7 @@ module error_estimator
       type(solution_state_type) :: before          !! state before the present increment
       type(quantity_histories_type) :: histories   !! quantities at the increments before
       real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
+      integer, allocatable :: regime(:)            !! (interfaces) regime_of their contact
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
    contains
@@ -69,6 +71,7 @@ contains
       self%is_on = model%estimates_errors .and. size(model%contacts) > 0
       if (.not. self%is_on) return
       allocate (self%most_locked(size(model%contacts)), source=0.0_dp)
+      allocate (self%regime(size(model%contacts)), source=contact_open)
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 
@@ -105,6 +108,8 @@ contains
          associate (contact => record%contacts(i))
             values(:, i) = quantities_of(points, contact)
             self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact))
+            if (regime_of(contact) /= self%regime(i)) call self%histories%begin_anew(i)
+            self%regime(i) = regime_of(contact)
          end associate
       end do
       call self%histories%follow(record%time, values)
@@ -149,6 +154,7 @@ contains
       call integers(table, 'estimated_step', step)
       self%step = step(1)
       call reals(table, 'most_locked', self%most_locked)
+      call integers(table, 'contact_regime', self%regime)
       call self%histories%exchange(table)
       call self%doubled%exchange(table)
    end subroutine exchange

@@ -15,9 +15,23 @@ module interface_quantities
    implicit none
    private
    public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &
-      peaks_at_corner, point_before, quantities_of, quantities_of_state, rises_to_end
+      peaks_at_corner, point_before, quantities_of, quantities_of_state, regime_of, rises_to_end
+
+   !> Regimes of a face with several contact states: a part of it is closed, or all of it.
+   integer, parameter :: partly_closed = -1, closed = -2
 
 contains
+
+   !> The contact regime of a face: its contact state where it has a single one.
+   pure integer function regime_of(contact) result(regime)
+      type(contact_record_type), intent(in) :: contact    !! its state
+
+      associate (states => contact%contact_state)
+         regime = partly_closed
+         if (all(states /= contact_open)) regime = closed
+         if (all(states == states(1))) regime = states(1)
+      end associate
+   end function regime_of
 
    !> The record of an interface, as far as estimates look at it: all but slip, temperatures,
    !> conductance and heat flux.

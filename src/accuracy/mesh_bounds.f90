@@ -89,9 +89,8 @@ contains
       call bound_edges(points, contact, change, known_scatter, bounds)
    end function bounds_of_mesh
 
-   !> How far scatter counts. Without contact no edge passes a node; its end is a corner of the
-   !> history, and no scatter. An edge of stick between node pairs lies within its part of the
-   !> spacing without.
+   !> How far scatter counts. Where the whole face has one contact state no edge passes a node. An
+   !> edge of stick between node pairs lies within its part of the spacing without.
    pure function known(scatter, contact, has_hats)
       real(dp), intent(in) :: scatter(:)
       type(contact_record_type), intent(in) :: contact
@@ -99,7 +98,7 @@ contains
       real(dp) :: known(size(scatter))
 
       known = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
-         all(contact%contact_state == contact_open))
+         all(contact%contact_state == contact%contact_state(1)))
       if (has_hats) return
       associate (heat => known(find_quantity(estimated, 'heat_rate')))
          heat = of_scatter_in_heat*heat

@@ -20,6 +20,7 @@ module quantity_histories
       real(dp), allocatable :: values(:, :, :)
    contains
       procedure :: begin_step
+      procedure :: begin_anew
       procedure :: follow
       procedure :: scatter
       procedure :: change_since
@@ -38,6 +39,14 @@ contains
       self%values = ieee_value(1.0_dp, ieee_quiet_nan)
       self%corners = corners
    end subroutine begin_step
+
+   !> Forgets the values of an interface: those that follow are of another history.
+   pure subroutine begin_anew(self, interface)
+      class(quantity_histories_type), intent(inout) :: self
+      integer, intent(in) :: interface
+
+      self%values(:, :, interface) = ieee_value(1.0_dp, ieee_quiet_nan)
+   end subroutine begin_anew
 
    !> Takes the values at the end of an increment.
    pure subroutine follow(self, time, values)

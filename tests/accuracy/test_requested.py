@@ -18,7 +18,7 @@ TEXT = """
 pressure and edge of contact are within P per cent ([\\*ACCURACY](deck.md#accuracy) has the rules, also where
 no bound can be given). Each round solves the deck from its beginning, with elements divided where the
 recovered energy norm is large and round the edges of zones, the smaller the nearer. Bends of the history
-that both meshes share, such as faces that close at once, are not counted as scatter.
+that both meshes share are not counted as scatter.
 
 True errors are those to the converged values above, CPU seconds those of all rounds together. All start
 from the deck's mesh without \\*REFINE. "By hand" is the cheapest of eleven meshes without bounds whose true
