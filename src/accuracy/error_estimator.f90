@@ -18,13 +18,14 @@ module error_estimator
    use mesh, only: mesh_type
    use mesh_bounds, only: bounds_of_mesh, locked_in
    use model, only: model_type
+   use other_states, only: find_other_states
    use quantity_histories, only: quantity_histories_type
    use quantity_types, only: find_quantity
    use records, only: increment_record_type, interface_errors_type
    use field_recovery, only: error_record_type
    use solution_state, only: solution_state_type
    use state_tables, only: integers, reals, state_table_type
-   use text, only: append
+   use text, only: append, to_text
    implicit none
    private
    public :: error_estimator_type, largest_part, squared_errors
@@ -199,7 +200,7 @@ contains
       type(quantity_histories_type), intent(in) :: before    ! histories in the round before
       character(:), allocatable, intent(out) :: why_not      ! why there are none; else ''
       type(error_type), allocatable :: error
-      real(dp) :: change(size(estimated), size(record%errors))
+      real(dp), dimension(size(estimated), size(record%errors)) :: change, spread
       real(dp) :: energy
       type(contact_points_type) :: points
       integer :: i
@@ -210,15 +211,22 @@ contains
          why_not = error%message
          return
       end if
+      call find_other_states(simulation, model, record%step, self%before, spread)
       energy = sum(squared_errors(model%mesh, record), mask=.not. self%divided%is_divided)
       do i = 1, size(record%errors)
          associate (bounds => record%errors(i)%mesh)
             call simulation%bodies%view(i, points)
             bounds = bounds_of_mesh(points, record%contacts(i), &
-               change(:, i), self%histories%scatter(i, before), self%most_locked(i), energy)
+               change(:, i), self%histories%scatter(i, before), self%most_locked(i), energy) + &
+               spread(:, i)
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
                left_by_round*abs(self%histories%change_since(i, before)))
          end associate
+         if (spread(find_quantity(estimated, 'edge_contact'), i) > 0.0_dp) call append( &
+            record%notes, 'on this mesh another contact state of '//model%contacts(i)%name// &
+            ' satisfies all conditions, with the edge of contact '//to_text(spread( &
+            find_quantity(estimated, 'edge_contact'), i))//' from this one: the conductance '// &
+            'jumps there, and increments decide which is found; the bounds have both')
       end do
    end subroutine bound_mesh
 
