@@ -1,7 +1,7 @@
 !> Other contact states that satisfy all conditions at the end of a step. Where the conductance
-!> jumps as a gap closes, a contact point beside an edge may be closed, warm and pressed, or open and
-!> cold: both are solutions on the mesh of the run, and its increments decide which one it finds. The
-!> exact solution has one edge; so what these states differ by is an error of the mesh.
+!> jumps as a gap closes, a contact point beside an edge may be closed, warm and pressed, or open
+!> and cold: both are solutions on the mesh of the run, and its increments decide which one it
+!> finds. The exact solution has one edge; so what these states differ by is an error of the mesh.
 module other_states
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_quantities, only: estimated
