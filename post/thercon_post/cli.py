@@ -37,6 +37,7 @@ def parser():
     top = Parser(
         prog="plot", description=SUMMARY, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    top.set_defaults(note="")  # what every picture says of its deck
     pictures = top.add_subparsers(dest="picture", metavar="PICTURE", required=True)
     one = {
         "mesh": ("undeformed mesh, with a close-up of the contact", None),
@@ -209,7 +210,6 @@ SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": is_name}
 def run(arguments):
     """Draw what the arguments ask for; return the files written."""
     options = parser().parse_args(spread(arguments))
-    options.note = ""
     style.apply()
     if options.picture == "trade":
         return trade.draw(options.table, options)

@@ -137,6 +137,9 @@ class Result:
 
     def __init__(self, path):
         self.path = Path(path)
+        whole = self.path.with_name(f"{self.path.name}.vtkhdf")  # named without its ending, as decks are
+        if whole.is_file() and not self.path.is_file():
+            self.path = whole
         if not self.path.exists():
             raise UserError(f"{path}: no such file")
         if self.path.is_dir():

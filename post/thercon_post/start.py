@@ -8,7 +8,8 @@ from pathlib import Path
 
 from .errors import FAILED
 
-PYTHON = Path(__file__).resolve().parents[2] / "build" / "venv" / "bin" / "python"
+ROOT = Path(__file__).resolve().parents[1]
+PYTHON = ROOT.parent / "build" / "venv" / "bin" / "python"
 
 
 def run(script, module):
@@ -26,7 +27,8 @@ def run(script, module):
     except ModuleNotFoundError as missing:
         print(
             f"{script.name}: error: the Python package '{missing.name}' is missing; install the "
-            f"packages of {script.parent / 'requirements.txt'} (`./setup.sh build` does)",
+            f"packages of {ROOT / 'requirements.txt'}, on Debian by apt-get install python3-h5py "
+            "python3-matplotlib, in the source tree by ./setup.sh build",
             file=sys.stderr,
         )
         return FAILED

@@ -39,6 +39,7 @@ def parser():
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    top.set_defaults(note="")  # its pictures say nothing of decks
     top.add_argument("a", metavar="A", help="result, or any file that B may be")
     top.add_argument("b", metavar="B", nargs="+", help="file to compare with")
     top.add_argument(

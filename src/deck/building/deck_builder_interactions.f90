@@ -286,7 +286,8 @@ contains
       open = conductance(law, .false., 0.0_dp, 0.0_dp)
       if (abs(law_jump(law)) <= continuous*max(open, closed)) return
       advice = '; at gap 0 and pressure 0 both laws should give the same'
-      if (law%open_kind == law_none) advice = ', for there is no open law'
+      if (law%open_kind == law_none) advice = ', for there is no open law; give the gas in '// &
+         'gaps by *GAP LAW, TYPE=GAS'
       call report%warning(law_place, 'the conductance of '//interaction%name//' jumps by '// &
          to_text(law_jump(law))//' where the gap closes without pressure'//there//': from '// &
          to_text(open)//' open to '//to_text(closed)//' closed'//advice)
