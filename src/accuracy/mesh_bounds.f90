@@ -23,7 +23,7 @@ module mesh_bounds
    public :: bounds_of_mesh, locked_in
 
    !> Error in the change that halved elements make: errors that fall with h are just twice as
-   !> large, and need some room; with hats, and where too few increments tell no scatter, more.
+   !> large, and need some room; with hats, and where there is no scatter, more.
    real(dp), parameter :: of_change = 2.1_dp, of_change_alone = 3.0_dp
    !> The same where contact ends at a corner: stresses there vary nearly as the inverse root of the
    !> distance, and errors fall with the root of h: 1/(1 - 2^(-1/2)).
@@ -53,17 +53,19 @@ contains
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! its state
       real(dp), intent(in) :: change(:)                  !! of the quantities by halved elements
-      real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: unknown
+      real(dp), intent(in) :: scatter(:)                 !! over increments; NaN: too few of them
       real(dp), intent(in) :: most_locked                !! largest of locked_in so far
       !> Squared relative error of the energy norms left in elements that were not halved [-]
       real(dp), intent(in) :: energy
       real(dp) :: bounds(size(estimated))
       real(dp) :: known_scatter(size(estimated)), length, locked
-      logical :: has_hats
+      logical :: has_hats, is_alone(size(estimated))
 
       has_hats = points%pairing == pairing_surfaces
-      known_scatter = known(scatter, contact, has_hats)
-      bounds = merge(of_change_alone, of_change, has_hats .or. ieee_is_nan(scatter))
+      ! No edge passes a node of a face with a single contact state.
+      is_alone = ieee_is_nan(scatter) .or. all(contact%contact_state == contact%contact_state(1))
+      known_scatter = known(merge(0.0_dp, scatter, is_alone), has_hats)
+      bounds = merge(of_change_alone, of_change, has_hats .or. is_alone)
       if (any(points%at_corner .and. contact%contact_state([1, size(points%arc_length)]) /= &
          contact_open)) bounds = max(bounds, of_change_at_corner)
       bounds = bounds*abs(change) + known_scatter
@@ -89,16 +91,14 @@ contains
       call bound_edges(points, contact, change, known_scatter, bounds)
    end function bounds_of_mesh
 
-   !> How far scatter counts. Where the whole face has one contact state no edge passes a node. An
-   !> edge of stick between node pairs lies within its part of the spacing without.
-   pure function known(scatter, contact, has_hats)
+   !> How far scatter counts. An edge of stick between node pairs lies within its part of the
+   !> spacing without.
+   pure function known(scatter, has_hats)
       real(dp), intent(in) :: scatter(:)
-      type(contact_record_type), intent(in) :: contact
       logical, intent(in) :: has_hats
       real(dp) :: known(size(scatter))
 
-      known = merge(0.0_dp, scatter, ieee_is_nan(scatter) .or. &
-         all(contact%contact_state == contact%contact_state(1)))
+      known = scatter
       if (has_hats) return
       associate (heat => known(find_quantity(estimated, 'heat_rate')))
          heat = of_scatter_in_heat*heat

@@ -136,7 +136,7 @@ def test_a_course_that_bends_by_itself_keeps_no_request_from_its_target(tmp_path
     assert process.returncode == 0, process.stderr
     _, bounds, _ = rounds_of(tmp_path / "cracked_plate.vtkhdf", "CRACK")
     step, value, bound, _ = bounds["heat_rate"][0]
-    assert step == 4 and bound < 0.01 * abs(value)
+    assert step == 4 and bound < 0.02 * abs(value)
     exact = {quantity: float(TOLD["cracked plate"][head]) for quantity, head in QUANTITIES.items()}
     for quantity, rows in bounds.items():
         if rows[-1][0] == 4:
