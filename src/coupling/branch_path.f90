@@ -43,6 +43,7 @@ module branch_path
       procedure :: correction
       procedure :: orient
       procedure :: kinked
+      procedure :: at_kink
       procedure :: is_caught
    end type branch_measure_type
 
@@ -163,6 +164,22 @@ contains
          kinked = k
       end do
    end function kinked
+
+   !> A point with the coordinate that passes a kink up to another point at that kink, the first one
+   !> of several.
+   pure function at_kink(self, from, to) result(point)
+      class(branch_measure_type), intent(in) :: self
+      type(branch_point_type), intent(in) :: from, to
+      type(branch_point_type) :: point
+      integer :: k
+
+      k = self%kinked(from, to)
+      point = from
+      associate (a => from%coordinate(k), b => to%coordinate(k), kinks => self%graph(k)%kinks())
+         point%coordinate(k) = kinks(minloc(abs(kinks - a), mask=kinks > min(a, b) .and. &
+            kinks < max(a, b), dim=1))
+      end associate
+   end function at_kink
 
    !> Whether corrections end in a kink, where contact and law need not be on one side of it: the
    !> branch turns there.

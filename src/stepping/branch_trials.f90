@@ -222,8 +222,8 @@ contains
       self%point%tangent = correction%tangent
    end subroutine correct_once
 
-   !> A step of a length along the tangent, and back to the branch. With the load factor held it
-   !> ends where that has the value of the point before.
+   !> A step of a length along the tangent, and back to the branch. With an unknown held it ends
+   !> where that has the value of the point before.
    !> Error: status_interrupted.
    subroutine try_step(self, model, bodies, heat, loads, length, error)
       class(branch_trial_type), intent(inout) :: self   !! receives point and outcome
@@ -235,12 +235,14 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(branch_point_type) :: trial
       type(path_step_type) :: correction
-      real(dp) :: factor
       integer :: i
 
-      factor = self%point%factor
       trial = self%measure%moved(self%from, length*self%from%tangent)
-      if (self%held == size(trial%tangent)) trial%factor = factor
+      if (self%held == size(trial%tangent)) then
+         trial%factor = self%point%factor
+      else if (self%held > 0) then
+         trial%coordinate(self%held) = self%point%coordinate(self%held)
+      end if
       self%point = trial
       self%has_converged = .false.
       do i = 1, most_corrections
