@@ -95,6 +95,21 @@ module increment_data
       !> (m) temperatures of the faces that it found, where laws vary with them
       type(face_temperatures_type), allocatable :: faces(:)
       type(solution_report_type) :: record           !! what is told of the way to the solution
+   contains
+      procedure :: of_motions
    end type increment_workspace_type
+
+contains
+
+   !> What small motions about the solution need of it.
+   pure function of_motions(self) result(part)
+      class(increment_workspace_type), intent(in) :: self
+      type(increment_workspace_type) :: part   !! with graphs, faces, friction and contact alone
+
+      if (allocated(self%pass%graph)) part%pass%graph = self%pass%graph
+      if (allocated(self%faces)) part%faces = self%faces
+      part%friction = self%friction
+      part%contact = self%contact
+   end function of_motions
 
 end module increment_data

@@ -6,8 +6,8 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgemm, dgemv, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, dsyev, &
-      ilaver, reserve_blas_memory
+   public :: ddot, daxpy, dgemm, dgemv, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, dpstrf, &
+      dtrtri, ilaver, reserve_blas_memory
 
    interface
       !> Scalar product x.y.
@@ -91,15 +91,25 @@ module blas_lapack
          integer, intent(out) :: info
       end subroutine dgeev
 
-      !> Eigenvalues, and eigenvectors where asked for, of a symmetric matrix.
-      subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
+      !> Cholesky factors of a symmetric matrix, with row and column exchanges, up to its rank.
+      subroutine dpstrf(uplo, n, a, lda, piv, rank, tol, work, info)
          import :: dp
-         character, intent(in) :: jobz, uplo
-         integer, intent(in) :: n, lda, lwork
+         character, intent(in) :: uplo
+         integer, intent(in) :: n, lda
          real(dp), intent(inout) :: a(lda, *)
-         real(dp), intent(out) :: w(*), work(*)
+         integer, intent(out) :: piv(*), rank, info
+         real(dp), intent(in) :: tol
+         real(dp), intent(out) :: work(*)
+      end subroutine dpstrf
+
+      !> Inverse of a triangular matrix.
+      subroutine dtrtri(uplo, diag, n, a, lda, info)
+         import :: dp
+         character, intent(in) :: uplo, diag
+         integer, intent(in) :: n, lda
+         real(dp), intent(inout) :: a(lda, *)
          integer, intent(out) :: info
-      end subroutine dsyev
+      end subroutine dtrtri
 
       !> Least squares of any rank, by an orthogonal factorisation with column exchanges.
       subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)

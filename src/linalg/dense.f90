@@ -8,12 +8,13 @@
 !> as unknowns too, however large W is (Woodbury).
 module dense
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use blas_lapack, only: dgeev, dgelsy, dgemm, dgemv, dgesvd, dgetrf, dgetrs, dsyev
+   use blas_lapack, only: dgeev, dgelsy, dgemm, dgemv, dgesvd, dgetrf, dgetrs, dpstrf, &
+      dtrtri
    use column_panels, only: column_panels_type
    use kinds, only: dp, long
    implicit none
    private
-   public :: lu_type, null_space, column_space, eigenvalues, symmetric_eigenvectors, &
+   public :: lu_type, null_space, column_space, eigenvalues, energy_basis, &
       least_squares, product_of, tail_factors_type, tail_flops
 
    !> Pivot, relative to its column, below which it is rounding.
@@ -165,26 +166,30 @@ contains
       if (present(vectors)) call move_alloc(right, vectors)
    end subroutine eigenvalues
 
-   !> Eigenvalues of a symmetric matrix, ascending, and its eigenvectors.
-   subroutine symmetric_eigenvectors(matrix, values, vectors, found)
-      real(dp), intent(in) :: matrix(:, :)                   !! (n, n), n > 0; its upper triangle
-      real(dp), allocatable, intent(out) :: values(:)        !! (n)
-      real(dp), allocatable, intent(out) :: vectors(:, :)    !! (n, n) orthonormal columns
-      logical, intent(out) :: found !! LAPACK found them; not where the matrix overflowed
-      real(dp), allocatable :: work(:)
-      real(dp) :: best(1)
-      integer :: info, n
+   !> Combinations V of unit vectors, V^T A V = 1, without those of which A leaves nothing but
+   !> rounding beside others.
+   subroutine energy_basis(matrix, rounding, basis, found)
+      real(dp), intent(in) :: matrix(:, :)                !! (n, n) A, n > 0, diagonal above 0
+      real(dp), intent(in) :: rounding                    !! part of a diagonal entry
+      real(dp), allocatable, intent(out) :: basis(:, :)   !! (n, rank) V
+      logical, intent(out) :: found                       !! not where the matrix overflowed
+      real(dp), dimension(size(matrix, 1), size(matrix, 1)) :: factor
+      real(dp) :: scale(size(matrix, 1)), work(2*size(matrix, 1))
+      integer :: pivot(size(matrix, 1)), i, info, n, rank
 
       n = size(matrix, 1)
-      vectors = matrix
-      allocate (values(n), source=0.0_dp)
       found = all(ieee_is_finite(matrix))
       if (.not. found) return
-      call dsyev('V', 'U', n, vectors, n, values, best, -1, info)
-      allocate (work(max(1, nint(best(1)))))
-      call dsyev('V', 'U', n, vectors, n, values, work, size(work), info)
+      scale = [(1.0_dp/sqrt(max(matrix(i, i), tiny(1.0_dp))), i=1, n)]
+      factor = matrix*spread(scale, 1, n)*spread(scale, 2, n)
+      call dpstrf('U', n, factor, n, pivot, rank, rounding, work, info)
+      call dtrtri('U', 'N', rank, factor, n, info)
       found = info == 0
-   end subroutine symmetric_eigenvectors
+      allocate (basis(n, rank), source=0.0_dp)
+      do i = 1, rank
+         basis(pivot(:i), i) = scale(pivot(:i))*factor(:i, i)
+      end do
+   end subroutine energy_basis
 
    !> The product of a matrix and some columns.
    pure function product_of(matrix, columns) result(product)

@@ -94,6 +94,8 @@ module records
       real(dp) :: growth_rate = 0.0_dp              !! of the fastest, negative: it decays [1/time]
       real(dp) :: period = 0.0_dp                   !! of its oscillation, 0 without one [time]
       character(:), allocatable :: doubt            !! why it is uncertain; unallocated: it is not
+   contains
+      procedure :: add_doubt
    end type stability_record_type
 
    !> An attempt at an increment that failed.
@@ -149,6 +151,18 @@ module records
    end type increment_record_type
 
 contains
+
+   !> Adds a reason for which small motions are uncertain.
+   pure subroutine add_doubt(self, reason)
+      class(stability_record_type), intent(inout) :: self
+      character(*), intent(in) :: reason           !! a clause
+
+      if (allocated(self%doubt)) then
+         self%doubt = self%doubt//'; '//reason
+      else
+         self%doubt = reason
+      end if
+   end subroutine add_doubt
 
    !> Puts the attempts at an increment that failed, with their passes and their work, before those
    !> of the last one.

@@ -60,7 +60,7 @@ contains
       end do
       fastest = maxloc(real(rates), mask=is_sharp, dim=1)
       if (fastest == 0) then
-         record%stability%doubt = 'Arnoldi''s method finds no motion'
+         call record%stability%add_doubt('Arnoldi''s method finds no motion')
          return
       end if
       call take_motion(modes%eigenvector(fastest), rates(fastest), simulation, motion, record)
@@ -68,13 +68,13 @@ contains
       associate (found => record%stability)
          if (abs(rates(fastest)) <= neutral) found%growth_rate = 0.0_dp
          if (growing /= found%unstable_modes) then
-            found%doubt = 'the projected bodies have '//counted(found%unstable_modes, &
-               'growing motion')//', Arnoldi''s method finds '//to_text(growing)
+            call found%add_doubt('the projected bodies have '//counted(found%unstable_modes, &
+               'growing motion')//', Arnoldi''s method finds '//to_text(growing))
             ! Those that it finds are motions of the bodies themselves.
             found%unstable_modes = max(growing, found%unstable_modes)
          else if (growing > 0) then
             if (minval(abs(projected - rates(fastest))) > alike*abs(rates(fastest))) then
-               found%doubt = 'the rate of the projected bodies is another one'
+               call found%add_doubt('the rate of the projected bodies is another one')
             end if
          end if
       end associate

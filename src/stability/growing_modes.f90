@@ -2,9 +2,9 @@
 !> fastest one.
 !>
 !> The number is that of the bodies projected on their responses at rates from a tenth of the
-!> slowest conduction on, up to where the gain of the coupling is small, and once more above the
-!> fastest one. That is found on the bodies themselves (fastest_motion), where the growing ones are
-!> counted again: the one checks the other.
+!> slowest conduction on, up to where the gain of the coupling is small, and, where some grow, once
+!> more above the fastest one. That is found on the bodies themselves (fastest_motion), where the
+!> growing ones are counted again: the one checks the other.
 module growing_modes
    use dense, only: eigenvalues
    use due_output, only: stability_is_due
@@ -42,23 +42,23 @@ contains
       allocate (record%stability)
       associate (found => record%stability)
          if (.not. any(heat_capacity(model%materials(model%sections%material)) > 0.0_dp)) then
-            found%doubt = 'bodies without *SPECIFIC HEAT and *DENSITY have no course in time, '// &
-               'and det(I - U'') is not negative'
+            call found%add_doubt('bodies without *SPECIFIC HEAT and *DENSITY have no course in '// &
+               'time, and det(I - U'') is not negative')
             return
          end if
          call find_motions(model, simulation, record, error)
-         if (allocated(error)) found%doubt = error%message
-         if (any(simulation%state%resting)) found%doubt = &
-            'contact points rest where their law jumps'
-         if (follows_temperatures(model)) found%doubt = &
-            'changes of properties with the temperature are left out'
-         if (model%steps(record%step)%dilates) found%doubt = &
-            'the heat that strains take up is left out'
+         if (allocated(error)) call found%add_doubt(error%message)
+         if (any(simulation%state%resting)) call found%add_doubt( &
+            'contact points rest where their law jumps')
+         if (follows_temperatures(model)) call found%add_doubt( &
+            'changes of properties with the temperature are left out')
+         if (model%steps(record%step)%dilates) call found%add_doubt( &
+            'the heat that strains take up is left out')
       end associate
    end subroutine analyse_stability
 
-   !> Counts the growing motions and finds the fastest one. The rate at which that is sought is one
-   !> more of the projection.
+   !> Counts the growing motions and finds the fastest one: at the first rate where none seems to
+   !> grow, else at one above the growing ones, which is one more of the projection.
    !> Errors: as small_motion_type's begin and motion_response_type's make.
    subroutine find_motions(model, simulation, record, error)
       type(model_type), intent(in) :: model
@@ -69,48 +69,50 @@ contains
       type(motion_response_type) :: response
       type(projected_motions_type) :: projection
       complex(dp), allocatable :: rates(:)
-      real(dp) :: sigma, slowest
+      real(dp) :: slowest, fastest
       logical :: is_known
 
       call motion%begin(simulation%bodies, simulation%state, simulation%heats( &
          simulation%in_use), simulation%solved, error)
       if (allocated(error)) return
       slowest = slowest_conduction(model)
-      sigma = slowest
+      call response%make(model, simulation, motion, slower*slowest, error)
+      if (allocated(error)) return
       rates = [complex(dp) ::]
       is_known = .true.
       if (size(motion%active) + motion%heated > 0) then
-         call project(model, simulation, motion, slowest, projection, error)
+         call project(model, simulation, motion, response, projection, error)
          if (allocated(error)) return
          call projection%rates(rates, is_known)
-         if (size(rates) > 0) sigma = above*abs(rates(maxloc(real(rates), dim=1)))
       end if
-      call response%make(model, simulation, motion, sigma, error)
-      if (allocated(error)) return
-      if (size(rates) > 0) then
+      if (any(real(rates) > neutral*slowest)) then
+         fastest = abs(rates(maxloc(real(rates), dim=1)))
+         call response%make(model, simulation, motion, above*fastest, error)
+         if (allocated(error)) return
          call sample(simulation, motion, response, projection)
          call projection%rates(rates, is_known)
       end if
       record%stability%unstable_modes = count(real(rates) > neutral*slowest)
       call find_fastest(simulation, motion, response, rates, neutral*slowest, record)
-      if (.not. is_known) record%stability%doubt = &
-         'the projected bodies have no sound eigenvalues'
+      if (.not. is_known) call record%stability%add_doubt( &
+         'the projected bodies have no sound eigenvalues')
    end subroutine find_motions
 
-   !> Projects the bodies on their responses.
+   !> Projects the bodies on their responses, from the first one on.
    !> Errors: as motion_response_type's make.
-   subroutine project(model, simulation, motion, slowest, projection, error)
+   subroutine project(model, simulation, motion, first, projection, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(small_motion_type), intent(in) :: motion
-      real(dp), intent(in) :: slowest                        ! conduction of a body [1/time]
+      type(motion_response_type), intent(in) :: first
       type(projected_motions_type), intent(inout) :: projection
       type(error_type), allocatable, intent(out) :: error
       type(motion_response_type) :: response
       integer :: i
 
-      do i = 1, most_rates
-         call response%make(model, simulation, motion, slower*ratio**(i - 1)*slowest, error)
+      call sample(simulation, motion, first, projection)
+      do i = 2, most_rates
+         call response%make(model, simulation, motion, ratio**(i - 1)*first%sigma, error)
          if (allocated(error)) return
          call sample(simulation, motion, response, projection)
          if (i >= least_rates .and. largest_modulus(response%gain()) <= small_gain) exit

@@ -14,13 +14,13 @@
 !> K. Gallivan, E. Grimme, P. Van Dooren, Numer. Algorithms 12 (1996) 33; A. C. Antoulas,
 !> Approximation of Large-Scale Dynamical Systems, SIAM 2005.
 module projected_motions
-   use dense, only: eigenvalues, lu_type, product_of, symmetric_eigenvectors
+   use dense, only: eigenvalues, energy_basis, lu_type, product_of
    use kinds, only: dp
    implicit none
    private
    public :: projected_motions_type
 
-   !> Part of the largest eigenvalue of the energy A'/sigma + E below which a motion is rounding.
+   !> Part of the energy A'/sigma + E of a response, beside others, that is rounding.
    real(dp), parameter :: rounding = 1.0e-10_dp
    real(dp), parameter :: beyond = 3.0_dp   !! times the largest sigma: no rates farther from it
 
@@ -113,7 +113,7 @@ contains
       type(projected_motions_type), intent(in) :: self
       real(dp), allocatable, intent(out) :: conduction(:, :), capacity(:, :), by_rate(:, :)
       logical, intent(out) :: found
-      real(dp), allocatable :: energy(:, :), values(:), vectors(:, :), exchange(:, :), scale(:)
+      real(dp), allocatable :: vectors(:, :), exchange(:, :)
       integer :: i, j, n, r
 
       n = size(self%exchange, 1)
@@ -129,13 +129,8 @@ contains
             end associate
          end do
       end do
-      energy = conduction/minval(self%sigma) + capacity
-      scale = [(1.0_dp/sqrt(max(energy(i, i), tiny(1.0_dp))), i=1, r)]
-      energy = energy*spread(scale, 1, r)*spread(scale, 2, r)
-      call symmetric_eigenvectors(energy, values, vectors, found)
+      call energy_basis(conduction/minval(self%sigma) + capacity, rounding, vectors, found)
       if (.not. found) return
-      i = count(values <= rounding*values(r)) + 1
-      vectors = vectors(:, i:)*spread(scale, 2, r - i + 1)/spread(sqrt(values(i:)), 1, r)
       exchange = product_of(transpose(vectors), exchange)
       conduction = product_of(transpose(vectors), product_of(conduction, vectors)) - &
          product_of(exchange, product_of(reshape(self%answer, [n, r]), vectors))

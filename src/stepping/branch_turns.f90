@@ -1,8 +1,7 @@
 !> Steps along a branch round its turns: folds, where the load factor turns, and corners, where the
-!> tangent turns too far however short a step is. A step is halved where its corrections fail, or the
-!> tangent turns too far. Folds and corners are found by bisection, and a fold in a corner where the
-!> coordinate of the contact point that changes its state, or comes to a kink of its law, is that of
-!> the kink.
+!> tangent turns too far however short a step is. A step is halved where its corrections fail, or
+!> the tangent turns too far. Folds and corners are found by bisection; a fold in a corner is where
+!> the coordinate of a contact point has the value of the kink that it passes.
 module branch_turns
    use branch_path, only: branch_point_type
    use branch_trials, only: branch_trial_type, is_found, is_lost, is_sharp, straight

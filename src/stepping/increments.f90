@@ -466,7 +466,7 @@ contains
             call complete_record(bodies, model, self%recovery, self%loads, trial%data, next, record)
             self%seconds%recover = self%seconds%recover + (wall_seconds() - since)
             call warn_of_tables(model, record)
-            if (stability_is_due(record, model)) self%solved = trial%workspace
+            if (stability_is_due(record, model)) self%solved = trial%workspace%of_motions()
             call check_record(record, step%analysis, error)
             if (allocated(error)) return
          end if

@@ -200,6 +200,18 @@ def test_an_uncertain_answer_says_so_in_the_result(tmp_path):
     assert "uncertain" in printed
 
 
+def test_all_doubts_are_told(tmp_path):
+    cards = middle("*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15")
+    text = "\n".join(cards).replace(
+        "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT",
+        "*COUPLED TEMPERATURE-DISPLACEMENT, DILATATION=YES, DIRECT").replace(
+        "*CONDUCTIVITY\n20.0\n", "*CONDUCTIVITY\n20., 0.\n20.1, 600.\n", 1)
+    result, printed = solved(tmp_path, text.splitlines())
+    assert stability_of(result)["certain"] == 0
+    assert "changes of properties with the temperature are left out; the heat that strains " \
+        "take up is left out" in " ".join(printed.split())
+
+
 def test_all_growing_modes_of_a_pattern_are_found(tmp_path):
     """Contact points at both ends of the face grow alike, and each against the other."""
     cards, _ = pattern("*START, FROM=CLOSED")
