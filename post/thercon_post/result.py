@@ -250,6 +250,22 @@ class Result:
         rows = numbers(group, key, like=(len(times), 5))
         return rows[-1] if len(rows) and times[-1] == self.history["time"][-1] else None
 
+    @property
+    def maxima(self):
+        """Return unit, value, bound and its parts of the largest values of each body at the last
+        increment, by their names; nothing where there are none."""
+        group, found = self.file.get("errors", {}), {}
+        if not group:
+            return found
+        times = numbers(group, "time", like=(None,))
+        if not len(times) or times[-1] != self.history["time"][-1]:
+            return found
+        for name in (name for name in group if name.startswith("body ")):
+            found[name] = {key: (text(group[name][key].attrs["unit"]),
+                                 numbers(group[name], key, like=(len(times), 5))[-1])
+                           for key in group[name]}
+        return found
+
     @cached_property
     def deck(self):
         """Card images of the deck."""

@@ -9,6 +9,7 @@ module divided_mesh
    use doubled_increments, only: implicit_state, implicit_step
    use element_kinds, only: element_node_count
    use equations, only: equation_nodes
+   use field_recovery, only: error_record_type, point_map_type
    use errors, only: error_type
    use heat_reduction, only: heat_reduction_type
    use increments, only: make_initial_state, simulation_type
@@ -18,6 +19,7 @@ module divided_mesh
    use local_refinement, only: choose_neighbours, elements_at_surfaces
    use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type
+   use records, only: field_record_type
    use reduced_bodies, only: reduced_bodies_type
    use refinement, only: divide_model
    use solution_state, only: solution_state_type
@@ -32,14 +34,17 @@ module divided_mesh
    !> The divided model and its run, of which only the ends of steps are solved.
    type :: divided_mesh_type
       logical, allocatable :: is_divided(:)             !! (elements) once prepared
-      type(model_type), private :: model                !! the divided one
-      type(division_type), private :: division
+      type(model_type) :: model                         !! the divided one
+      type(division_type) :: division
+      !> Temperature and, where the step solves it, stress at the end of the step
+      type(field_record_type), allocatable :: fields
       type(simulation_type), private :: run
       type(solution_state_type), private :: initial     !! state before the first increment
       !> heat of both meshes with the films at the end, where the runs' have others
       type(heat_reduction_type), private :: heat, coarse_heat
    contains
       procedure :: find_change
+      procedure :: points
       procedure :: release
    end type divided_mesh_type
 
@@ -49,10 +54,11 @@ contains
    !> heat on both meshes. A scheme of (3.4) with a past is solved anew without one on the mesh as
    !> it is.
    !> Errors: as reduced_bodies' prepare and reduce, or the increment has no solution.
-   subroutine find_change(self, simulation, model, previous, change, error)
+   subroutine find_change(self, simulation, model, also, previous, change, error)
       class(divided_mesh_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation     !! the run at the end
       type(model_type), intent(in) :: model
+      logical, intent(in) :: also(:)                      !! (elements) that are divided besides
       type(solution_state_type), intent(in) :: previous   !! state before the last increment
       real(dp), intent(out) :: change(:, :)               !! (quantities, interfaces)
       type(error_type), allocatable, intent(out) :: error
@@ -60,7 +66,7 @@ contains
       type(heat_equation_type) :: equation
       real(dp) :: values(size(change, 1), size(change, 2))
 
-      call divide_at_contact(self, simulation, model, error)
+      call divide_at_contact(self, simulation, model, also, error)
       if (.not. allocated(error)) call solve_end(self, simulation, previous, change, error)
       if (allocated(error)) return
       state = simulation%state
@@ -76,6 +82,14 @@ contains
       change = change - values
    end subroutine find_change
 
+   !> The points of the divided mesh at which stress is averaged.
+   pure function points(self)
+      class(divided_mesh_type), intent(in) :: self
+      type(point_map_type) :: points
+
+      points = self%run%recovery%points
+   end function points
+
    !> Frees the factors.
    subroutine release(self)
       class(divided_mesh_type), intent(inout) :: self
@@ -85,17 +99,18 @@ contains
       call self%coarse_heat%release()
    end subroutine release
 
-   !> Divides the elements at the contact, unless that is done.
+   !> Divides the elements at the contact and some more, unless that is done.
    !> Errors: as prepare.
-   subroutine divide_at_contact(self, simulation, model, error)
+   subroutine divide_at_contact(self, simulation, model, also, error)
       type(divided_mesh_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
       type(model_type), intent(in) :: model
+      logical, intent(in) :: also(:)                      ! (elements)
       type(error_type), allocatable, intent(out) :: error
       logical :: chosen(size(model%mesh%element_number))
 
       chosen = elements_at_contact(model, simulation%bodies%points, &
-         simulation%state%contact%contact_state /= contact_open)
+         simulation%state%contact%contact_state /= contact_open) .or. also
       call choose_neighbours(model, chosen)
       if (allocated(self%is_divided)) then
          if (all(self%is_divided .eqv. chosen)) return
@@ -167,6 +182,7 @@ contains
          deallocate (self%is_divided)
          return
       end if
+      call self%run%recovery%prepare(self%model)
       self%run%heats(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
       self%heat%forms_on_demand = self%run%heats(1)%forms_on_demand
       call self%run%loads%prepare(self%model)
@@ -273,7 +289,8 @@ contains
          step = implicit_step(self%model%steps(number))
          if (run%heats(1)%forms_on_demand) step%fixed_point%method = method_anderson
          next = guess
-         call implicit_state(run, self%heat, self%model, step, before, next, error)
+         call implicit_state(run, self%heat, self%model, step, before, next, error, &
+            recovers=.true.)
          if (allocated(error) .and. run%heats(1)%forms_on_demand .and. run%bodies%is_coupled) then
             run%heats(1)%forms_on_demand = .false.
             self%heat%forms_on_demand = .false.
@@ -281,12 +298,27 @@ contains
             next = guess
             call run%reduce(self%model, error)
             if (.not. allocated(error)) call implicit_state(run, self%heat, self%model, step, &
-               before, next, error)
+               before, next, error, recovers=.true.)
          end if
          if (allocated(error)) return
          call quantities_of_state(run%bodies, next, values)
+         call keep_fields(self, next)
       end associate
    end subroutine solve_end
+
+   !> Keeps temperature and stress of a state.
+   subroutine keep_fields(self, state)
+      type(divided_mesh_type), intent(inout) :: self
+      type(solution_state_type), intent(in) :: state
+      type(error_record_type) :: estimate
+
+      if (allocated(self%fields)) deallocate (self%fields)
+      allocate (self%fields)
+      self%fields%temperature = state%temperature
+      if (state%has_mechanics) call self%run%recovery%recover_stress(self%model, &
+         reshape(state%displacement, [2, size(state%temperature)]), state%stress_temperature - &
+         self%model%initial_temperature, self%fields%stress, estimate)
+   end subroutine keep_fields
 
    !> Orders unknowns as the run does. A new node comes with the first one of its side, or of its
    !> element if it lies inside: what it joins, that one joins already, so separators stay.

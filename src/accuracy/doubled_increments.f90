@@ -195,9 +195,10 @@ contains
       implicit_step%scheme = implicit_scheme
    end function implicit_step
 
-   !> Solves the end of an increment on the contact points; the displacements stay.
+   !> Solves the end of an increment on the contact points; the displacements stay unless all fields
+   !> are recovered.
    !> Error: it has no solution.
-   subroutine implicit_state(simulation, own, model, step, previous, state, error)
+   subroutine implicit_state(simulation, own, model, step, previous, state, error, recovers)
       type(simulation_type), intent(in) :: simulation
       type(heat_reduction_type), intent(inout) :: own        !! where the run has other films
       type(model_type), intent(in) :: model
@@ -205,6 +206,7 @@ contains
       type(solution_state_type), intent(in) :: previous      !! at the start of the increment
       type(solution_state_type), intent(inout) :: state      !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: recovers              !! present: true
 
       associate (bodies => simulation%bodies)
          if (simulation%heats(1)%serves(bodies, state%sources%film) .or. &
@@ -224,6 +226,8 @@ contains
 
          call begin_increment(simulation%bodies, step, previous, state, data)
          call solve_points(simulation%bodies, heat, simulation%loads, data, workspace, state, error)
+         if (present(recovers) .and. .not. allocated(error)) call recover_fields( &
+            simulation%bodies, heat, simulation%loads, data, workspace, state)
       end subroutine solve_end
    end subroutine implicit_state
 

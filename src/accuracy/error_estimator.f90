@@ -3,6 +3,7 @@
 !> increments, fixed point. Which elements err most, recovery finds: in stress and heat flux.
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use body_bounds, only: body_bounds_type
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
@@ -25,7 +26,9 @@ module error_estimator
    use field_recovery, only: error_record_type
    use solution_state, only: solution_state_type
    use state_tables, only: integers, reals, state_table_type
+   use steps, only: solves_heat
    use text, only: append, to_text
+   use thermal_matrix, only: heat_equation_type
    implicit none
    private
    public :: error_estimator_type, largest_part, squared_errors
@@ -46,11 +49,15 @@ module error_estimator
    type :: error_estimator_type
       private
       type(divided_mesh_type) :: divided           !! the model with divided elements
+      type(body_bounds_type), allocatable :: bodies   !! their maxima
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
       type(quantity_histories_type) :: histories   !! quantities at the increments before
       real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
       integer, allocatable :: regime(:)            !! (interfaces) regime_of their contact
+      !> Squared relative errors that are left in elements that are not divided, of both fields and
+      !> of heat alone
+      real(dp) :: energies(2) = 0.0_dp
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
    contains
@@ -69,7 +76,7 @@ contains
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation     !! the run, started
 
-      self%is_on = model%estimates_errors .and. size(model%contacts) > 0
+      self%is_on = model%estimates_errors
       if (.not. self%is_on) return
       allocate (self%most_locked(size(model%contacts)), source=0.0_dp)
       allocate (self%regime(size(model%contacts)), source=contact_open)
@@ -128,7 +135,7 @@ contains
       if (no_mesh /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
          'estimated: '//no_mesh)
       histories(record%step) = self%histories
-      call bound_increments(self, simulation, record%errors)
+      call bound_increments(self, simulation, record)
       call bound_iteration(record)
       do i = 1, size(record%errors)
          associate (errors => record%errors(i))
@@ -139,6 +146,19 @@ contains
             end do
          end associate
       end do
+      do i = 1, size(record%body_errors)
+         associate (errors => record%body_errors(i))
+            errors%bound = errors%mesh + errors%increment + errors%iteration
+            allocate (errors%why_not(size(errors%value)))
+            do q = 1, size(errors%value)
+               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q)
+               if (errors%why_not(q)%value == '' .or. is_steady(model, record)) cycle
+               errors%why_not(q)%value = 'heat is not in equilibrium at the end of the step'
+            end do
+         end associate
+      end do
+      if (no_mesh == '' .and. is_steady(model, record)) call self%bodies%bound_checks(model, &
+         simulation, self%divided, self%energies, record)
    end subroutine end_increment
 
    !> All that the bounds take of earlier increments, in either direction.
@@ -172,7 +192,7 @@ contains
    pure function reason(doubled, no_mesh, errors, q) result(why_not)
       type(doubled_increments_type), intent(in) :: doubled
       character(*), intent(in) :: no_mesh      ! why no quantity has one of the mesh, or nothing
-      type(interface_errors_type), intent(in) :: errors
+      class(interface_errors_type), intent(in) :: errors
       integer, intent(in) :: q
       character(:), allocatable :: why_not
 
@@ -191,6 +211,18 @@ contains
       end if
    end function reason
 
+   !> Whether the fields at the end of a step depend on nothing before it.
+   pure logical function is_steady(model, record)
+      type(model_type), intent(in) :: model
+      type(increment_record_type), intent(in) :: record
+      type(heat_equation_type) :: equation
+
+      associate (step => model%steps(record%step))
+         equation = heat_equation_type(step%scheme)
+         is_steady = equation%is_steady() .or. .not. solves_heat(step%analysis)
+      end associate
+   end function is_steady
+
    !> Bounds of the errors of the mesh.
    subroutine bound_mesh(self, model, simulation, record, before, why_not)
       type(error_estimator_type), intent(inout) :: self
@@ -201,24 +233,32 @@ contains
       character(:), allocatable, intent(out) :: why_not      ! why there are none; else ''
       type(error_type), allocatable :: error
       real(dp), dimension(size(estimated), size(record%errors)) :: change, spread
-      real(dp) :: energy
+      real(dp) :: of_heat(size(model%mesh%element_kind))
+      logical :: also(size(model%mesh%element_kind))
       type(contact_points_type) :: points
       integer :: i
 
       why_not = ''
-      call self%divided%find_change(simulation, model, self%before, change, error)
+      if (.not. allocated(self%bodies)) allocate (self%bodies)
+      call self%bodies%find(model, simulation, record, also)
+      call self%divided%find_change(simulation, model, also, self%before, change, error)
       if (allocated(error)) then
          why_not = error%message
          return
       end if
       call find_other_states(simulation, model, record%step, self%before, spread)
-      energy = sum(squared_errors(model%mesh, record), mask=.not. self%divided%is_divided)
+      of_heat = 0.0_dp
+      call add_errors(model%mesh, record%heat_flux_error, of_heat)
+      self%energies = [sum(squared_errors(model%mesh, record), mask=.not. &
+         self%divided%is_divided), sum(of_heat, mask=.not. self%divided%is_divided)]
+      if (is_steady(model, record)) call self%bodies%bound(model, simulation, self%divided, &
+         self%energies, record)
       do i = 1, size(record%errors)
          associate (bounds => record%errors(i)%mesh)
             call simulation%bodies%view(i, points)
             bounds = bounds_of_mesh(points, record%contacts(i), &
-               change(:, i), self%histories%scatter(i, before), self%most_locked(i), energy) + &
-               spread(:, i)
+               change(:, i), self%histories%scatter(i, before), self%most_locked(i), &
+               self%energies(1)) + spread(:, i)
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
                left_by_round*abs(self%histories%change_since(i, before)))
          end associate
@@ -230,13 +270,14 @@ contains
       end do
    end subroutine bound_mesh
 
-   !> Bounds of the errors of the increments, from those of twice the size.
-   subroutine bound_increments(self, simulation, errors)
+   !> Bounds of the errors of the increments, from those of twice the size. Maxima of bodies err by
+   !> as large a part of themselves as force, heat rate and peak pressure of an interface.
+   subroutine bound_increments(self, simulation, record)
       type(error_estimator_type), intent(in) :: self
       type(simulation_type), intent(in) :: simulation
-      type(interface_errors_type), intent(inout) :: errors(:)
-      real(dp) :: doubled(size(estimated), size(errors))
-      integer :: i, peak
+      type(increment_record_type), intent(inout) :: record
+      real(dp) :: doubled(size(estimated), size(record%errors)), part
+      integer :: i, peak, q
 
       if (.not. self%doubled%is_led) return
       doubled = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -244,15 +285,29 @@ contains
          call quantities_of_state(simulation%bodies, self%doubled%state, doubled)
       end if
       peak = find_quantity(estimated, 'peak_pressure')
-      do i = 1, size(errors)
-         errors(i)%increment = of_doubled_increments*abs(errors(i)%value - doubled(:, i))
-         associate (bodies => simulation%bodies, start => simulation%bodies%points%interface_start)
+      part = 0.0_dp
+      do i = 1, size(record%errors)
+         associate (bodies => simulation%bodies, errors => record%errors(i), &
+            start => simulation%bodies%points%interface_start)
+            errors%increment = of_doubled_increments*abs(errors%value - doubled(:, i))
             if (bodies%interfaces(i)%pairing == pairing_surfaces .and. &
                any(bodies%laws%friction(start(i):start(i + 1) - 1)%coefficient > 0.0_dp)) then
-               errors(i)%increment(peak) = of_doubled_in_peak*abs(errors(i)%value(peak) - &
+               errors%increment(peak) = of_doubled_in_peak*abs(errors%value(peak) - &
                   doubled(peak, i))
             end if
+            do q = 1, size(estimated)
+               if (estimated(q)%is_of_friction .or. estimated(q)%resolution > 0.0_dp) cycle
+               if (ieee_is_nan(errors%value(q)) .or. .not. abs(errors%value(q)) > 0.0_dp) cycle
+               if (ieee_is_nan(part + errors%increment(q))) then
+                  part = part + errors%increment(q)
+               else
+                  part = max(part, errors%increment(q)/abs(errors%value(q)))
+               end if
+            end do
          end associate
+      end do
+      do i = 1, size(record%body_errors)
+         record%body_errors(i)%increment = part*abs(record%body_errors(i)%value)
       end do
    end subroutine bound_increments
 
@@ -271,6 +326,9 @@ contains
       relative = history_value('residual', record)/max(tiny(1.0_dp), distance)
       do i = 1, size(record%errors)
          record%errors(i)%iteration = relative*abs(record%errors(i)%value)
+      end do
+      do i = 1, size(record%body_errors)
+         record%body_errors(i)%iteration = relative*abs(record%body_errors(i)%value)
       end do
    end subroutine bound_iteration
 

@@ -62,7 +62,7 @@ contains
       if (makes_friction_heat(model%interactions, model%contacts)) bytes = bytes + &
          real_bytes*friction_responses*nodes*points
       ! The bounds have room for both fields.
-      bounds_errors = model%estimates_errors .and. size(model%contacts) > 0
+      bounds_errors = model%estimates_errors
       if (bounds_errors) bytes = bytes + per_fine_entry*entries_of(kinds, .true., .true.)* &
          4.0_dp**levels
       solver = model%solver

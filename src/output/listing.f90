@@ -10,7 +10,7 @@ module listing
    use file_calls, only: check_in_place, copy_file
    use listing_head, only: checks, ending, print_model, summary_block
    use listing_increments, only: print_attempts, print_balances, print_body_errors, &
-      print_increment, print_interface, print_interface_errors
+      print_increment, print_interface, print_interface_errors, print_maxima
    use listing_tables, only: print_contact_table, print_iterations, print_requested, print_verdicts
    use listing_text, only: page_width, print_deck, print_list, print_title, print_wrapped, &
       printed_text_type
@@ -101,7 +101,8 @@ contains
       self%summary_start = len(lines)
       allocate (running(0))
       call append(running, 'not finished: the run is still in progress, or was killed')
-      lines = lines//summary_block(running, size(interfaces), size(model%steps))
+      lines = lines//summary_block(running, size(interfaces), size(model%steps), &
+         merge(model%mesh%body_count, 0, model%estimates_errors))
       call append_to_file(self%descriptor, self%path, lines, error)
       if (allocated(error)) return
       call print_list(self%text%unit, 'DEFAULTS AND IGNORED CARDS', model%notes)
@@ -150,6 +151,9 @@ contains
       if (allocated(record%errors)) then
          do i = 1, size(interfaces)
             call print_interface_errors(self%text%unit, interfaces(i), record%errors(i))
+         end do
+         do i = 1, size(record%body_errors)
+            call print_maxima(self%text%unit, model%mesh, i, record%body_errors(i))
          end do
       end if
       call print_requested(self%text%unit, record, model)
@@ -286,7 +290,8 @@ contains
       if (size(warnings) > 0) call append(lines, counted(size(warnings), 'warning')// &
          ', see WARNINGS below')
       call self%summary%add_lines(model, interfaces, lines)
-      block = summary_block(lines, size(interfaces), size(model%steps))
+      block = summary_block(lines, size(interfaces), size(model%steps), &
+         merge(model%mesh%body_count, 0, model%estimates_errors))
       call overwrite_in_file(self%descriptor, self%path, self%summary_start, block, error)
       if (allocated(error)) return
       if (allocated(self%draft)) call copy_file(self%draft, self%path, error)

@@ -57,9 +57,10 @@ contains
 
    !> The summary as it is in the file: always as many lines of the same length, so that it can be
    !> written over.
-   pure function summary_block(lines, interfaces, steps) result(block)
+   pure function summary_block(lines, interfaces, steps, bodies) result(block)
       type(string_type), intent(in) :: lines(:)
       integer, intent(in) :: interfaces, steps        !! number of each
+      integer, intent(in) :: bodies                   !! those with bounds
       character(:), allocatable :: block
       type(summary_type) :: summary
       type(string_type), allocatable :: wrapped(:)
@@ -79,7 +80,8 @@ contains
          call append(wrapped, rest)
       end do
       block = ''
-      do i = 1, run_lines + summary%most_lines(interfaces, steps) + more_lines*max(interfaces, 1)
+      do i = 1, run_lines + summary%most_lines(interfaces, steps, bodies) + &
+         more_lines*max(interfaces, 1)
          line = ''
          if (i <= size(wrapped)) line = wrapped(i)%value
          block = block//line//new_line('a')

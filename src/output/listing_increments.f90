@@ -2,29 +2,32 @@
 !> end of a step the errors of bodies in the energy norm and the bounds of interfaces' quantities.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use body_lines, only: corner_words, place_words
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use contact_system, only: contact_open, contact_stick
+   use field_quantities, only: maxima
    use increment_quantities, only: error_values, history_value, stability_words
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, page_width, print_wrapped
+   use mesh, only: mesh_type
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_heat, needs_mechanics, &
       needs_branch, needs_nothing, needs_storage, &
       of_bodies, of_history, of_interface, quantity_type
-   use records, only: attempt_record_type, contact_record_type, increment_record_type, &
-      interface_errors_type
+   use records, only: attempt_record_type, body_errors_type, contact_record_type, &
+      increment_record_type, interface_errors_type
    use reported_quantities, only: quantities
    use steps, only: solves_heat, solves_mechanics
    use summary, only: words_of
-   use text, only: to_text
+   use text, only: string_type, to_text
    use zone_diagram, only: zone_counts
    use zone_edges, only: edges_kept
    implicit none
    private
    public :: print_increment, print_attempts, print_interface, print_balances
-   public :: print_body_errors, print_interface_errors
+   public :: print_body_errors, print_interface_errors, print_maxima
 
    character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'increments', &
       'iteration']
@@ -210,24 +213,63 @@ contains
       integer, intent(in) :: unit                          !! unit of the listing
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
       type(interface_errors_type), intent(in) :: errors
-      character(page_width) :: line
-      character(:), allocatable :: name
-      real(dp) :: part
-      integer :: k, q, width
-      logical :: is_told(size(estimated))
+      type(string_type) :: names(size(estimated))
+      integer :: q
 
-      width = maxval([(len(words_of(estimated(q)%name)), q=1, size(estimated))])
-      write (unit, '(/, 3a)') '   BOUNDS OF THE ERRORS OF ', points%name, &
+      do q = 1, size(estimated)
+         if (is_worth_telling(q, errors%value(q), errors%bound(q)) .and. &
+            .not. is_end_of_face(estimated(q), points, errors%value(q))) then
+            names(q)%value = words_of(estimated(q)%name)
+         else
+            names(q)%value = ''
+         end if
+      end do
+      call print_bounds(unit, points%name, maxval([(len(words_of(estimated(q)%name)), q=1, &
+         size(estimated))]), names, errors)
+   end subroutine print_interface_errors
+
+   !> Prints the bounds of the maxima of a body, where they are, and the corners that are left out.
+   subroutine print_maxima(unit, mesh, body, errors)
+      integer, intent(in) :: unit                          !! unit of the listing
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: body
+      type(body_errors_type), intent(in) :: errors
+      type(string_type) :: names(size(maxima))
+      integer :: q
+
+      do q = 1, size(maxima)
+         names(q)%value = ''
+         if (.not. ieee_is_nan(errors%value(q))) names(q)%value = 'largest '//trim(maxima(q)%label)
+      end do
+      if (any(errors%node > 0)) call print_bounds(unit, 'BODY '//to_text(body), &
+         len('largest ') + maxval(len_trim(maxima%label)), names, errors)
+      do q = 1, size(maxima)
+         if (errors%node(q) > 0) call print_wrapped(unit, '    ', names(q)%value//' at '// &
+            place_words(mesh, errors%node(q)))
+      end do
+      if (size(errors%corners) > 0) call print_wrapped(unit, '    ', corner_words(mesh, errors))
+   end subroutine print_maxima
+
+   !> Prints bounds with their parts, and why there are none.
+   subroutine print_bounds(unit, title, width, names, errors)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: title                    ! what they are of
+      integer, intent(in) :: width                         ! of the names
+      type(string_type), intent(in) :: names(:)            ! of the quantities; empty: not told
+      class(interface_errors_type), intent(in) :: errors
+      character(page_width) :: line
+      character(width) :: name
+      real(dp) :: part
+      integer :: k, q
+
+      write (unit, '(/, 3a)') '   BOUNDS OF THE ERRORS OF ', title, &
          ': how far values may be off to either side, with the parts of each bound'
       write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') repeat(' ', width), 'value', &
          'bound', '%', 'mesh', 'increments', 'iteration', 'largest part'
-      do q = 1, size(estimated)
+      do q = 1, size(names)
          associate (value => errors%value(q), bound => errors%bound(q))
-            is_told(q) = is_worth_telling(q, value, bound) .and. &
-               .not. is_end_of_face(estimated(q), points, value)
-            if (.not. is_told(q)) cycle
-            name = words_of(estimated(q)%name)
-            name = name//repeat(' ', width - len(name))
+            if (names(q)%value == '') cycle
+            name = names(q)%value
             part = ieee_value(part, ieee_quiet_nan)
             if (abs(value) > 0.0_dp) part = 100.0_dp*bound/abs(value)
             write (line, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
@@ -238,14 +280,15 @@ contains
             write (unit, '(a)') trim(line)
          end associate
       end do
-      do q = 1, size(estimated)
+      do q = 1, size(names)
          associate (why_not => errors%why_not(q)%value)
-            if (why_not == '' .or. .not. is_told(q)) cycle
-            if (any([(is_told(k) .and. errors%why_not(k)%value == why_not, k=1, q - 1)])) cycle
+            if (why_not == '' .or. names(q)%value == '') cycle
+            if (any([(names(k)%value /= '' .and. errors%why_not(k)%value == why_not, &
+               k=1, q - 1)])) cycle
             call print_wrapped(unit, '    ', 'uncertain: '//why_not)
          end associate
       end do
-   end subroutine print_interface_errors
+   end subroutine print_bounds
 
    !> Whether a quantity has a value and a part in the deck; that of friction is 0 without it.
    pure logical function is_worth_telling(q, value, bound)
@@ -272,7 +315,7 @@ contains
 
    !> Which part of a bound is the largest.
    pure function largest_part(errors, q) result(name)
-      type(interface_errors_type), intent(in) :: errors
+      class(interface_errors_type), intent(in) :: errors
       integer, intent(in) :: q
       character(10) :: name
       real(dp) :: parts(3)

@@ -4,7 +4,7 @@ module result_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only: c_loc
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, estimated, geometry_values
+   use contact_quantities, only: contact_values, geometry_values
    use hdf5, only: h5dclose_f, h5dcreate_f, h5dget_space_f, h5dopen_f, h5dset_extent_f, &
       h5p_dataset_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, h5s_select_set_f, &
       h5s_unlimited_f, h5sclose_f, h5screate_simple_f, h5sselect_hyperslab_f, h5t_native_double, &
@@ -13,14 +13,14 @@ module result_tables
    use increment_quantities, only: error_values, history_value, pass_value
    use kinds, only: dp, long
    use model, only: unit_labels_type
-   use quantity_types, only: of_bodies, of_contact_points, quantity_type
+   use quantity_types, only: of_bodies, of_contact_points, of_history, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: geometry
    use solution_report, only: iteration_record_type
    use unit_labels, only: unit_in_words
    implicit none
    private
-   public :: result_table_type, bounded_quantities, write_geometry, growing_dataset_type, &
+   public :: result_table_type, bounded, write_geometry, growing_dataset_type, &
       growing_dataset, quantity_dataset, bytes_in, flush_sets
 
    integer, parameter :: chunk_bytes = 32768   !! bytes of a chunk, unless one append is larger
@@ -120,10 +120,10 @@ contains
       end do
    end subroutine append_contact
 
-   !> Adds the bounds of an interface at the end of a step.
+   !> Adds the bounds of an interface or body at the end of a step.
    subroutine append_errors(self, errors)
       class(result_table_type), intent(inout) :: self     !! `/errors/<name>`
-      type(interface_errors_type), intent(in) :: errors
+      class(interface_errors_type), intent(in) :: errors
       integer :: i
 
       do i = 1, size(self%sets)
@@ -132,19 +132,22 @@ contains
       end do
    end subroutine append_errors
 
-   !> The quantities with estimated errors, as they are in `/errors/<name>`.
-   pure function bounded_quantities() result(quantities)
+   !> Quantities with estimated errors, as they are in `/errors/<name>`.
+   pure function bounded(estimated) result(quantities)
+      type(quantity_type), intent(in) :: estimated(:)
       type(quantity_type) :: quantities(size(estimated))
       integer :: i
 
       quantities = estimated
+      ! Every table has one row a step, whatever it is of.
+      quantities%kind = of_history
       quantities%values = 5
       quantities%components = 'value bound mesh increments iteration'
       do i = 1, size(estimated)
          quantities(i)%description = 'value and the bound of its error, with its parts: '// &
             trim(estimated(i)%description)
       end do
-   end function bounded_quantities
+   end function bounded
 
    !> Writes the geometry of contact points, those of some interfaces one behind the other.
    subroutine write_geometry(file, group, interfaces, node_number, labels)

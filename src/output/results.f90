@@ -9,10 +9,12 @@ module results
    use accuracy_rounds, only: accuracy_rounds_type
    use contact_definitions, only: makes_friction_heat, pairing_name
    use contact_points, only: contact_points_type
+   use contact_quantities, only: estimated
    use due_output, only: fields_are_due
    use errors, only: error_type
+   use field_quantities, only: maxima
    use file_calls, only: file_identity_type, identity_of, rename_file
-   use result_tables, only: bounded_quantities, bytes_in, flush_sets, result_table_type, &
+   use result_tables, only: bounded, bytes_in, flush_sets, result_table_type, &
       write_geometry
    use hdf5_writer, only: end_hdf5, start_hdf5
    use kinds, only: dp, long
@@ -33,7 +35,7 @@ module results
    use status_files, only: status_file_type
    use steps, only: dof_temperature, planned_increments, solves_heat, solves_mechanics
    use clock, only: wall_seconds
-   use text, only: string_type
+   use text, only: string_type, to_text
    use unit_labels, only: unit_in_words
    use working_files, only: working_file_type
    implicit none
@@ -56,7 +58,7 @@ module results
       type(field_results_type) :: fields                      !! `/VTKHDF`
       type(restart_results_type) :: restarts                  !! `/restart`
       !> `/history`, `/convergence`, `/stability`, `/contact/<name>` of each interface, then, where
-      !> errors are estimated, `/errors` and `/errors/<name>` of each interface
+      !> errors are estimated, `/errors` and `/errors/<name>` of each interface and body
       type(result_table_type), allocatable :: tables(:)
       type(working_file_type) :: contact_file                 !! `NAME.contact.vtkhdf`
       type(contact_grid_type) :: contact_grid                 !! its contents
@@ -134,7 +136,7 @@ contains
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(quantity_type), allocatable :: of_history_alone(:), of_stability(:)
-      logical :: has(0:needs_branch), has_errors
+      logical :: has(0:needs_branch)
       integer :: i, expected, n
 
       call start_hdf5(error)
@@ -150,8 +152,7 @@ contains
       if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
          [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected, &
          model%units)
-      has_errors = self%has_contact .and. model%estimates_errors
-      allocate (self%tables(merge(4 + 2*n, 3 + n, has_errors)))
+      allocate (self%tables(merge(4 + 2*n + model%mesh%body_count, 3 + n, model%estimates_errors)))
       associate (tables => self%tables, units => model%units, steps => size(model%steps))
          of_stability = datasets(of_history, has)
          of_history_alone = pack(of_stability, of_stability%needs /= needs_stability)
@@ -167,11 +168,15 @@ contains
                [datasets(of_contact_points, has), datasets(of_interface, has)], &
                size(interfaces(i)%slave), expected, units)
          end do
-         if (.not. has_errors) return
+         if (.not. model%estimates_errors) return
          call tables(4 + n)%start('/errors', [step_time], 0, steps, units)
          do i = 1, n
-            call tables(4 + n + i)%start('/errors/'//interfaces(i)%name, bounded_quantities(), 0, &
+            call tables(4 + n + i)%start('/errors/'//interfaces(i)%name, bounded(estimated), 0, &
                steps, units)
+         end do
+         do i = 1, model%mesh%body_count
+            call tables(4 + 2*n + i)%start('/errors/body '//to_text(i), bounded(maxima), 0, steps, &
+               units)
          end do
       end associate
    end subroutine open_results
@@ -290,6 +295,9 @@ contains
          call self%tables(4 + n)%append(record)
          do i = 1, n
             call self%tables(4 + n + i)%append(record%errors(i))
+         end do
+         do i = 1, size(record%body_errors)
+            call self%tables(4 + 2*n + i)%append(record%body_errors(i))
          end do
       end if
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)

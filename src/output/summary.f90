@@ -2,15 +2,18 @@
 !> increment, with the bounds of their errors where these are estimated.
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use body_lines, only: corner_words, place_words
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated, zone_words
    use contact_system, only: contact_open, contact_stick
    use interface_quantities, only: is_end_of_face, rises_to_end
    use increment_quantities, only: stability_words
+   use field_quantities, only: maxima
    use kinds, only: dp
    use model, only: model_type
    use quantity_types, only: needs_heat, quantity_type
-   use records, only: contact_record_type, increment_record_type, interface_errors_type
+   use records, only: body_errors_type, contact_record_type, increment_record_type, &
+      interface_errors_type
    use run_summaries, only: or_blank
    use text, only: append, few_digits, percent, string_type, to_text
    use unit_labels, only: unit_label
@@ -42,6 +45,7 @@ module summary
       real(dp) :: load = 0.0_dp                                    !! value on the load axis
       type(contact_record_type), allocatable, public :: contacts(:)   !! (interfaces)
       type(interface_errors_type), allocatable :: errors(:)        !! (interfaces) or unallocated
+      type(body_errors_type), allocatable :: body_errors(:)        !! (bodies) or unallocated
       !> Without an interface: smallest and largest temperature, heat in and out
       real(dp), allocatable :: heat(:)
       !> Likewise: the largest magnitude of a displacement [length]
@@ -83,6 +87,8 @@ contains
       end if
       if (allocated(self%errors)) deallocate (self%errors)
       if (allocated(record%errors)) self%errors = record%errors
+      if (allocated(self%body_errors)) deallocate (self%body_errors)
+      if (allocated(record%body_errors)) self%body_errors = record%body_errors
       if (allocated(self%heat)) deallocate (self%heat)
       if (allocated(self%displacement)) deallocate (self%displacement)
       associate (fields => record%fields)
@@ -117,12 +123,15 @@ contains
    end function step_line
 
    !> Most lines that there can be.
-   pure integer function most_lines(interfaces, steps)
+   pure integer function most_lines(interfaces, steps, bodies)
       integer, intent(in) :: interfaces, steps   !! number of each
+      integer, intent(in) :: bodies              !! those with bounds
 
       most_lines = 2 + interfaces*(1 + size(estimated))
       if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
       if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
+      ! Some of a body's lines are wrapped.
+      most_lines = most_lines + bodies*2*(1 + size(maxima))
    end function most_lines
 
    !> Adds when that increment was and where a branch turned, then each interface with a line for
@@ -153,8 +162,39 @@ contains
          call add_quantities(self, model, interfaces(i), i, lines)
       end do
       if (size(interfaces) == 0) call add_fields(self, model, lines)
+      if (allocated(self%body_errors)) then
+         do i = 1, size(self%body_errors)
+            call add_maxima(model, self%body_errors(i), i, lines)
+         end do
+      end if
       if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines
+
+   !> The maxima of a body.
+   subroutine add_maxima(model, errors, body, lines)
+      type(model_type), intent(in) :: model
+      type(body_errors_type), intent(in) :: errors
+      integer, intent(in) :: body
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      character(name_width) :: name
+      character(value_width) :: value
+      character(:), allocatable :: words
+      integer :: q
+
+      if (all(ieee_is_nan(errors%value)) .and. size(errors%corners) == 0) return
+      call append(lines, 'largest in body '//to_text(body))
+      do q = 1, size(maxima)
+         if (ieee_is_nan(errors%value(q))) cycle
+         name = maxima(q)%label(:name_width)
+         value = to_text(errors%value(q))
+         words = trim('  '//name//adjustr(value)//bound_words(errors%bound(q), errors%value(q))// &
+            ' '//unit_label(maxima(q)%unit, model%units))//', '// &
+            place_words(model%mesh, errors%node(q))
+         if (errors%why_not(q)%value /= '') words = words//': '//errors%why_not(q)%value
+         call append(lines, words)
+      end do
+      if (size(errors%corners) > 0) call append(lines, '  '//corner_words(model%mesh, errors))
+   end subroutine add_maxima
 
    !> The first numbers of a list, in words.
    pure function listed(values) result(words)

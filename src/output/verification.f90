@@ -4,7 +4,7 @@ module verification
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, geometry_values
    use due_output, only: is_judged
-   use field_quantities, only: point_values
+   use field_quantities, only: maxima, point_values
    use increment_quantities, only: history_value
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -71,8 +71,12 @@ contains
             values, reason)
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
-         if (allocated(record%errors) .and. len(self%outcomes(i)%reason) == 0) call take_bound( &
-            model%verifications(i), record, interfaces, self%outcomes(i))
+         if (len(self%outcomes(i)%reason) > 0) cycle
+         if (allocated(record%errors)) call take_bound(model%verifications(i), record, interfaces, &
+            self%outcomes(i))
+         if (.not. allocated(record%check_bounds)) cycle
+         if (.not. ieee_is_nan(record%check_bounds(i))) self%outcomes(i)%bound = &
+            record%check_bounds(i)
       end do
    end subroutine judge
 
@@ -115,8 +119,9 @@ contains
       end do
    end subroutine exchange
 
-   !> Takes the bound of what a check is about: of a quantity of an interface, or of the largest
-   !> pressure of the only one.
+   !> Takes the bound of what a check is about: of a quantity of an interface, of the largest
+   !> pressure of the only one, or of the largest stress or temperature, where that is the maximum
+   !> of a body.
    subroutine take_bound(check, record, interfaces, outcome)
       type(verify_type), intent(in) :: check
       type(increment_record_type), intent(in) :: record
@@ -124,6 +129,16 @@ contains
       type(outcome_type), intent(inout) :: outcome
       integer :: i, q
 
+      if (to_upper(check%where) == 'MAX') then
+         q = 0
+         if (to_upper(check%quantity) == 'MISES') q = find_quantity(maxima, 'von_mises')
+         if (to_upper(check%quantity) == 'NT') q = find_quantity(maxima, 'temperature')
+         do i = 1, merge(size(record%body_errors), 0, q > 0)
+            if (ieee_is_nan(record%body_errors(i)%value(q))) cycle
+            if (record%body_errors(i)%value(q) >= outcome%found) outcome%bound = &
+               record%body_errors(i)%bound(q)
+         end do
+      end if
       q = find_quantity(estimated, check%quantity)
       if (to_upper(check%quantity) == 'PRESSURE' .and. to_upper(check%where) == 'MAX' .and. &
          size(interfaces) == 1) q = find_quantity(estimated, 'peak_pressure')

@@ -3,11 +3,11 @@
 module field_quantities
    use kinds, only: dp
    use quantity_types, only: needs_heat, needs_mechanics, needs_stability, needs_temperature, &
-      of_elements, of_nodes, of_points, quantity_type
+      of_bodies, of_elements, of_nodes, of_points, quantity_type
    use records, only: field_record_type
    implicit none
    private
-   public :: field_table, point_values
+   public :: field_table, maxima, point_values
 
    type(quantity_type), parameter :: field_table(*) = [ &
       quantity_type('U1', of_nodes, 'length', needs_mechanics), &
@@ -47,6 +47,13 @@ module field_quantities
       description='estimated error of the stress by the mesh, rms in the element'), &
       quantity_type('heat_flux_error', of_elements, 'power/length^2', needs_heat, &
       description='estimated error of the heat flux by the mesh, rms in the element')]
+
+   !> The maxima of a body; components of body_errors_type are in this order.
+   type(quantity_type), parameter :: maxima(*) = [ &
+      quantity_type('von_mises', of_bodies, 'stress', needs_mechanics, label='von Mises stress', &
+      description='largest equivalent stress of von Mises away from singular corners'), &
+      quantity_type('temperature', of_bodies, 'temperature', needs_heat, label='temperature', &
+      description='largest temperature')]
 
 contains
 

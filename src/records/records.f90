@@ -10,7 +10,7 @@ module records
    implicit none
    private
    public :: element_points_record_type
-   public :: increment_record_type, contact_record_type
+   public :: increment_record_type, contact_record_type, body_errors_type
    public :: field_record_type, attempt_record_type
    public :: add_attempts, note_failure
    public :: interface_errors_type, stability_record_type
@@ -27,6 +27,13 @@ module records
       real(dp), allocatable :: iteration(:)    !! of the error of the fixed point
       type(string_type), allocatable :: why_not(:)   !! why there is no bound; empty where there is
    end type interface_errors_type
+
+   !> Bounds of the errors of the maxima of a body; arrays over `maxima` of field_quantities.
+   type, extends(interface_errors_type) :: body_errors_type
+      integer, allocatable :: node(:)          !! where they are, 0 where there is none
+      !> Nodes at which stress may have no limit and round which it is larger
+      integer, allocatable :: corners(:)
+   end type body_errors_type
 
    !> State of one contact interface; arrays over its contact points, in the order of
    !> contact_points_type.
@@ -139,6 +146,9 @@ module records
       type(field_record_type) :: fields = field_record_type()   !! fields
       !> (interfaces) at the end of a step; else unallocated
       type(interface_errors_type), allocatable :: errors(:)
+      type(body_errors_type), allocatable :: body_errors(:)   !! (bodies) likewise
+      !> (checks of *VERIFY) bounds of what those of nodes judge, else NaN; unallocated: none
+      real(dp), allocatable :: check_bounds(:)
       !> Unallocated where the stress is.
       type(error_record_type) :: stress_error = error_record_type()
       !> Unallocated where the heat flux is.

@@ -262,9 +262,12 @@ def test_a_summary_tells_the_interface_then_the_results_then_what_failed(tmp_pat
         assert float(line[21:34]) == pytest.approx(value, rel=1e-5)
         assert line.split(",")[0].endswith(" " + unit)
         assert float(line.split("+-")[1].split()[0]) == pytest.approx(bound, rel=0.05)
-    assert lines[9].startswith("  results: ")
-    assert lines[9].endswith("cylinder.vtkhdf, .contact.vtkhdf, .lst, .sta, .cvg")
-    assert lines[10] == "  37 checks passed, 1 failed"
+    assert lines[9] == "  largest in body 1" and "  largest in body 2" in lines
+    assert re.fullmatch(r" +von Mises stress +\S+ \+- \S+ +\(\S+ %\) +MPa, node \d+ \(\S+, \S+\)",
+                        lines[10])
+    at = next(k for k, line in enumerate(lines) if line.startswith("  results: "))
+    assert lines[at].endswith("cylinder.vtkhdf, .contact.vtkhdf, .lst, .sta, .cvg")
+    assert lines[at + 1] == "  37 checks passed, 1 failed"
     assert re.search(r"^\S*cylinder\.inp:\d+: check failed: .* at time \S+: \S+( \+- \S+)?, "
                      r"expected \S+ \(off by \S+ %, allowed \S+ %\)$", process.stderr, re.M)
     listing = (tmp_path / "cylinder.lst").read_text().splitlines()
@@ -325,11 +328,12 @@ def test_a_run_without_contact_says_what_came_of_it(tmp_path):
     assert process.returncode == 0, process.stderr
     lines = [" ".join(line.split()) for line in process.stdout.splitlines()]
     told = ["at time 1 (increment 1):", "lowest temperature 100", "highest temperature 400",
-            "heat in 7500", "heat out 7500"]
-    assert lines[1:6] == told
-    assert lines[6].endswith("bar.vtkhdf, .lst, .sta, .cvg")
+            "heat in 7500", "heat out 7500", "largest in body 1",
+            "temperature 400 +- 0 (0 %), node 1 (0, 0)"]
+    assert lines[1:8] == told
+    assert lines[8].endswith("bar.vtkhdf, .lst, .sta, .cvg")
     listing = [" ".join(line.split()) for line in (tmp_path / "bar.lst").read_text().splitlines()]
-    assert listing[listing.index("solved, 1 increment") + 3:][:5] == told
+    assert listing[listing.index("solved, 1 increment") + 3:][:7] == told
 
 
 def test_a_summary_tells_all_edges_of_a_zone(tmp_path):

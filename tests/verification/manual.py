@@ -54,6 +54,8 @@ How to read the tables:
   an edge moves between two nodes, and for forces fixed by equilibrium.
 - `allowed` is the tolerance on the `*VERIFY` card. It does not come from the program's own results:
   each case gives its reason.
+- `bound`, in some tables, is how far the program says that the value may be off, relative to the
+  reference; the row passes only if the reference is within.
 """
 RESULTANTS = ("normal_force", "shear_force", "heat_in", "heat_out")
 ROUNDING = 1e-9  # errors below it have no order
@@ -61,6 +63,7 @@ THEMES = ("elements", "nafems", "contact", "friction", "heat", "bodies", "transi
           "dilatation", "frictional_heat", "tables", "stability")
 DOCUMENT = Document("verification.md", HERE, THEMES, PREFACE)
 HEAD = ["mesh", "quantity", "value", "reference", "error", "order", "allowed", "verdict"]
+BOUND = 5  # column of the bound in tables that have one
 
 
 @dataclass
@@ -95,6 +98,7 @@ class Verdict:
     value: float
     error: float
     passed: bool
+    bound: float | None = None   # of the error of the value, in its unit
 
 
 @dataclass
@@ -128,11 +132,13 @@ class Case:
     short: int = 1
     remarks: str = ""
     named: str = "mesh"  # what a row is of; without refinement rows have no order
+    bounded: bool = False  # whether the program bounds the errors, and the references are within
 
     def solve(self, folder, mesh):
         """Run the deck of a mesh in a folder."""
         cards, checks = self.make(mesh)
-        return solve(folder, self.file(mesh), cards, checks, mesh, self.kind, self.cite)
+        return solve(folder, self.file(mesh), cards, checks, mesh, self.kind, self.cite,
+                     self.bounded)
 
     def file(self, mesh):
         """Return the name of the deck of a mesh."""
@@ -141,6 +147,8 @@ class Case:
     def table(self, runs):
         """Return the table of these runs: the rows of a quantity follow each other."""
         table = Table(self.title, [self.named, *HEAD[1:]], text=self.text())
+        if self.bounded:
+            table.head.insert(BOUND, "bound")
         if self.named != "mesh":
             for solved in runs:
                 for check, found in zip(solved.checks, solved.verdicts, strict=True):
@@ -158,10 +166,18 @@ class Case:
         """Return the row of a check."""
         least = self.order.get(check.name) if solved.mesh == self.meshes[-1] else None
         holds = found.passed and (least is None or order is None or order > least)
-        return [self.label(solved.mesh), check.name, f"{found.value:.6g}", f"{check.value:.6g}",
+        cells = [self.label(solved.mesh), check.name, f"{found.value:.6g}", f"{check.value:.6g}",
                 f"{found.error:.2g}", "" if order is None else f"{order:.1f}",
                 f"{check.tolerance:.2g}" + (" abs." if check.how == "ABS" else ""),
-                verdict(holds)]
+                verdict(holds and not (self.bounded and self.exceeds(check, found)))]
+        if self.bounded:
+            cells.insert(BOUND, f"{found.bound / abs(check.value):.2g}")
+        return cells
+
+    @staticmethod
+    def exceeds(check, found):
+        """Return whether a reference is farther from a value than its bound."""
+        return not abs(found.value - check.value) <= found.bound
 
     def text(self):
         """Return what comes before the table."""
@@ -182,12 +198,13 @@ def order_of(coarse, fine):
     return log2(coarse / fine)
 
 
-def solve(folder, name, cards, checks, mesh=None, kind="ANALYTIC", cite="docs/verification.md"):
+def solve(folder, name, cards, checks, mesh=None, kind="ANALYTIC", cite="docs/verification.md",
+          bounded=False):
     """Run a deck with its checks; return what the listing says of them.
 
     The exit status must be that of the verdicts: 0 where all passed, 4 where one failed.
     """
-    deck = write(folder / f"{name}.inp", ["*OPTIONS, WIDTH=300, ERRORS=NO"], cards,
+    deck = write(folder / f"{name}.inp", [f"*OPTIONS, WIDTH=300, ERRORS={'YES' if bounded else 'NO'}"], cards,
                  [f'*VERIFY, KIND={kind}, SOURCE="{cite}"'], [check.card() for check in checks])
     process = run("run", "--quiet", deck, "--out", folder)
     assert process.returncode in (0, 4), f"{name}: {process.returncode}\n{process.stderr}"
@@ -207,6 +224,8 @@ def read_verdicts(listing):
             expected, value, deviation, _, _, outcome = match.groups()
             assert value != "-", line
             found.append(Verdict(float(value), float(deviation), outcome == "PASS"))
+        elif bound := re.match(r" +found: +\S+ \+- (\S+)$", line):
+            found[-1].bound = float(bound[1])
     return found
 
 

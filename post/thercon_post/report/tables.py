@@ -72,9 +72,14 @@ def last_load(result):
     return f"{words}, {plain(load)}"
 
 
+LARGEST = {"von_mises": "largest von Mises stress", "temperature": "largest temperature"}
+
+
 def bounds(result):
-    """Return the quantities of every interface at the last increment, with the bounds of their
-    errors."""
+    """Return the quantities of every interface and the largest values of every body at the last
+    increment, with the bounds of their errors."""
+    head = ["quantity", "value", "error bound", "unit", "by the mesh", "by increments",
+            "by iteration"]
     found = []
     for contact in contacts_of(result):
         rows = []
@@ -84,10 +89,14 @@ def bounds(result):
             rows.append(bound_row(result, contact, key, float(values[-1])))
             rows[-1][0] = words_of(key) + (", s" if key.startswith("edge_") else "")
             rows[-1][3] = contact.unit(key)
-        head = ["quantity", "value", "error bound", "unit", "by the mesh", "by increments",
-                "by iteration"]
         caption = f"Interface {contact.name} at the last increment"
         found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
+    for name, values in result.maxima.items():
+        rows = [[LARGEST[key], number(errors[0]), *bound_cells(errors, unit)]
+                for key, (unit, errors) in values.items() if np.isfinite(errors[0])]
+        if rows:
+            caption = f"{name.capitalize()} at the last increment, stress away from singular corners"
+            found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
     return joined(found)
 
 
@@ -100,13 +109,18 @@ def bound_row(result, contact, key, value):
     if key.startswith("edge_") and value >= contact["s"][-1]:
         row[2] = "none: end of the face"
         return row
-    _, bound, *parts = errors
-    row[4:] = [number(part, 2) for part in parts]
-    row[2] = "uncertain"
+    row[2:] = bound_cells(errors, "")
+    return row
+
+
+def bound_cells(errors, unit):
+    """Return bound, unit and the parts of the bound."""
+    value, bound, *parts = errors
+    words = "uncertain"
     if np.isfinite(bound):
         share = f" ({number(100.0 * bound / abs(value), 2)} %)" if value else ""
-        row[2] = f"± {number(bound, 2)}{share}"
-    return row
+        words = f"± {number(bound, 2)}{share}"
+    return [words, unit, *(number(part, 2) for part in parts)]
 
 
 def stability(result, listing):

@@ -79,7 +79,7 @@ contains
       call build_couplings(cards, context, model, report)
       call build_transforms(cards, model, report)
       call build_steps(cards, context, model, report)
-      if (unbounded(model) /= '' .and. model%estimates_errors .and. size(model%contacts) > 0) then
+      if (unbounded(model) /= '' .and. model%estimates_errors) then
          call context%note('no bounds of errors: they do not know '//unbounded(model))
       end if
       model%estimates_errors = model%estimates_errors .and. unbounded(model) == ''

@@ -1,0 +1,158 @@
+!> The largest von Mises stress and temperature of each body: where they are on the mesh of a run,
+!> and on one some of whose elements are divided. Stress counts in elements without singular
+!> corners, and in the children of these.
+module body_maxima
+   use divided_mesh, only: divided_mesh_type
+   use element_kinds, only: element_node_count
+   use field_quantities, only: maxima, point_values
+   use field_recovery, only: point_map_type
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use mesh_division, only: child_element
+   use records, only: field_record_type
+   implicit none
+   private
+   public :: places_type, places_of, divided_places, divided_point, vertex_near, &
+      elements_about, of_stress, of_temperature
+
+   integer, parameter :: of_stress = 1, of_temperature = 2   !! as in maxima
+
+   !> Maxima of the bodies; point 0 where there is none.
+   type :: places_type
+      integer, allocatable :: point(:, :)        !! (maxima, bodies)
+      real(dp), allocatable :: value(:, :)       !! (maxima, bodies)
+   end type places_type
+
+contains
+
+   !> The maxima of fields.
+   pure function places_of(mesh, points, fields, counts) result(found)
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points          !! of stress
+      type(field_record_type), intent(in) :: fields
+      logical, intent(in) :: counts(:, :)                 !! (maxima, elements) those looked at
+      type(places_type) :: found
+      integer :: e, n
+
+      allocate (found%point(size(maxima), mesh%body_count), source=0)
+      allocate (found%value(size(maxima), mesh%body_count), source=-huge(1.0_dp))
+      associate (stress => point_values('von_mises', fields, points%node))
+         do e = 1, size(counts, 2)
+            n = element_node_count(mesh%element_kind(e))
+            associate (places => points%element_points(:n, e))
+               if (size(stress) > 0 .and. counts(of_stress, e)) call take(of_stress, stress(places))
+               if (counts(of_temperature, e)) call take(of_temperature, &
+                  fields%temperature(points%node(places)))
+            end associate
+         end do
+      end associate
+
+   contains
+
+      pure subroutine take(q, values)
+         integer, intent(in) :: q
+         real(dp), intent(in) :: values(:)
+         integer :: k
+
+         associate (b => mesh%element_body(e))
+            k = maxloc(values, dim=1)
+            if (values(k) <= found%value(q, b)) return
+            found%value(q, b) = values(k)
+            found%point(q, b) = points%element_points(k, e)
+         end associate
+      end subroutine take
+
+   end function places_of
+
+   !> The maxima where some elements are divided, of the children of those looked at.
+   pure function divided_places(divided, counts) result(found)
+      type(divided_mesh_type), intent(in) :: divided
+      logical, intent(in) :: counts(:, :)                 !! (maxima, elements) before
+      type(places_type) :: found
+      logical :: fine(size(counts, 1), divided%division%elements_after)
+      integer :: child, e
+
+      do e = 1, size(counts, 2)
+         fine(:, e) = counts(:, e)
+         if (.not. divided%is_divided(e)) cycle
+         do child = 1, 4
+            fine(:, child_element(divided%division, e, child)) = counts(:, e)
+         end do
+      end do
+      found = places_of(divided%model%mesh, divided%points(), divided%fields, fine)
+   end function divided_places
+
+   !> The point of a divided mesh that a point is there: at the same node in a part of its element.
+   pure integer function divided_point(divided, mesh, points, point)
+      type(divided_mesh_type), intent(in) :: divided
+      type(mesh_type), intent(in) :: mesh                 !! before
+      type(point_map_type), intent(in) :: points          !! before
+      integer, intent(in) :: point
+      type(point_map_type) :: fine
+      integer :: child, e, k, part
+
+      fine = divided%points()
+      divided_point = 0
+      do e = 1, size(mesh%element_kind)
+         if (all(points%element_points(:, e) /= point)) cycle
+         do child = 1, merge(4, 1, divided%is_divided(e))
+            part = e
+            if (divided%is_divided(e)) part = child_element(divided%division, e, child)
+            k = findloc(divided%model%mesh%element_nodes(:, part), points%node(point), dim=1)
+            if (k > 0) divided_point = fine%element_points(k, part)
+         end do
+         return
+      end do
+   end function divided_point
+
+   !> The largest value on the sides at a node by the parabola through both ends and the middle of
+   !> each, which is new on sides of two nodes; -huge where none has its vertex within.
+   pure real(dp) function vertex_near(divided, values, node) result(largest)
+      type(divided_mesh_type), intent(in) :: divided
+      real(dp), intent(in) :: values(:)                   !! (nodes of the divided mesh and more)
+      integer, intent(in) :: node                         !! of the mesh before
+      integer :: middle, s
+      real(dp) :: bend, slope
+
+      largest = -huge(1.0_dp)
+      associate (sides => divided%division%sides)
+         do s = 1, sides%count
+            if (all(sides%ends(:, s) /= node)) cycle
+            middle = merge(sides%ends(2, s), divided%division%between(1, s), sides%ends(2, s) > 0)
+            if (middle == 0) cycle
+            associate (a => values(sides%ends(1, s)), b => values(middle), c => &
+               values(sides%ends(3, s)))
+               slope = 0.5_dp*(c - a)
+               bend = 0.5_dp*(a + c) - b
+               if (2*abs(bend) > abs(slope)) largest = max(largest, b - slope**2/(4*bend))
+            end associate
+         end do
+      end associate
+   end function vertex_near
+
+   !> The elements at some nodes, and in further layers those beside them.
+   pure function elements_about(mesh, nodes, layers) result(is_near)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: nodes(:)
+      integer, intent(in) :: layers
+      logical :: is_near(size(mesh%element_kind))
+      logical :: is_reached(size(mesh%node_number))
+      integer :: e, layer
+
+      is_reached = .false.
+      is_reached(nodes) = .true.
+      do layer = 1, layers
+         do e = 1, size(is_near)
+            associate (own => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+               is_near(e) = any(is_reached(own))
+            end associate
+         end do
+         do e = 1, size(is_near)
+            associate (own => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+               if (is_near(e)) is_reached(own) = .true.
+            end associate
+         end do
+      end do
+   end function elements_about
+
+end module body_maxima

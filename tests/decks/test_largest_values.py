@@ -1,0 +1,102 @@
+"""The largest stress and temperature of a body: their bounds, and singular corners that are named."""
+
+import re
+
+import h5py
+import numpy as np
+import pytest
+from blocks import write
+from deck_runs import run, solve
+from physics import material, mesh, nodes_of
+
+STATIC = ["*STEP", "*STATIC", "1., 1.", "*BOUNDARY"]
+
+
+def block(name="BODY", kind="CPE8", n=4, first=1, x=0.0, y=0.0):
+    """Return the cards of a unit square of n x n elements."""
+    return mesh(name, x + np.linspace(0, 1, n + 1), y + np.linspace(0, 1, n + 1), kind, first)
+
+
+def summary(folder, *cards):
+    """Run a deck; return its summary and its listing."""
+    deck = write(folder / "deck.inp", list(cards))
+    solve(deck)
+    text = " ".join(deck.with_suffix(".lst").read_text().split())
+    return text[:text.index("PHYSICS")], text
+
+
+def corner(place):
+    """Return the words that name one corner."""
+    x, y = place
+    return rf"no bound: node \d+ \({x:g}, {y:g}\)"
+
+
+def test_a_clamped_side_ends_at_singular_corners(tmp_path):
+    head, rest = summary(tmp_path, *block(), *material("BODY"), *STATIC, "BODY.BOTTOM, 1, 2",
+                         "*DSLOAD", "BODY.TOP, P, -1.", "*END STEP")
+    for text in head, rest:
+        assert re.search(corner((0, 0)) + r", node \d+ \(1, 0\)", text)
+    assert re.search(r"von Mises stress +\S+ \+- \S+ \(\S+ %\), node \d+ \(", head)
+
+
+def test_held_in_one_direction_a_side_has_none(tmp_path):
+    head, _ = summary(tmp_path, *block(), *material("BODY"), *STATIC, "BODY.BOTTOM, 2",
+                      "BODY.LEFT, 1", "*DSLOAD", "BODY.TOP, P, -1.", "*END STEP")
+    assert "singular" not in head and "von Mises stress" in head
+
+
+def test_a_force_on_one_node_is_singular(tmp_path):
+    cards = block()
+    (node,) = [n for n, p in nodes_of(cards).items() if p == (0.5, 1.0)]
+    head, _ = summary(tmp_path, *cards, *material("BODY"), *STATIC, "BODY.BOTTOM, 2",
+                      "BODY.LEFT, 1", "*CLOAD", f"{node}, 2, -1.", "*END STEP")
+    assert re.search(corner((0.5, 1)), head)
+
+
+def test_a_reentrant_corner_is_singular(tmp_path):
+    # An L whose inner corner is (1, 1).
+    cards, number, elements = ["*NODE, NSET=ALL"], {}, []
+    for j in range(9):
+        for i in range(9):
+            if i <= 4 or j <= 4:
+                number[i, j] = len(number) + 1
+                cards.append(f"{number[i, j]}, {i / 4}, {j / 4}")
+    for j in range(8):
+        for i in range(8):
+            if i < 4 or j < 4:
+                elements.append([number[i, j], number[i + 1, j], number[i + 1, j + 1],
+                                 number[i, j + 1]])
+    cards += ["*ELEMENT, TYPE=CPE4, ELSET=BODY"]
+    cards += [", ".join(map(str, [k, *e])) for k, e in enumerate(elements, 1)]
+    top = [f"{elements.index(e) + 1}, S3" for e in elements if e[2] in
+           [number[i, 8] for i in range(1, 5)] and e[3] in [number[i, 8] for i in range(4)]]
+    cards += ["*SURFACE, NAME=TOP", *top, "*NSET, NSET=BOTTOM",
+              *[str(number[i, 0]) for i in range(9)], "*NSET, NSET=LEFT",
+              *[str(number[0, j]) for j in range(9)]]
+    head, _ = summary(tmp_path, *cards, *material("BODY"), *STATIC, "BOTTOM, 2", "LEFT, 1",
+                      "*DSLOAD", "TOP, P, -1.", "*END STEP")
+    assert re.search(corner((1, 1)), head)
+
+
+@pytest.mark.parametrize(("where", "bounded"), [("MAX", True), ("1", True), ("BODY.LEFT", False)])
+def test_checks_of_largest_values_and_of_nodes_have_bounds(tmp_path, where, bounded):
+    _, text = summary(tmp_path, *block(), *material("BODY", None, conductivity=1.0),
+                      "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", "*STEP",
+                      "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY",
+                      "BODY.RIGHT, 11, 11, 0.", "BODY.TOP, 11, 11, 0.", "*DFLUX", "BODY, BF, 1.",
+                      "*END STEP", '*VERIFY, KIND=ANALYTIC, SOURCE="a quarter of a square"',
+                      f"NT, {where}, LAST, 0.2947, 1.")
+    # 0.294685 in the middle of a square of side 2 (S. P. Timoshenko, J. N. Goodier, section 109).
+    found = re.search(r"found: (\S+) \+- (\S+)", text)
+    assert bool(found) == bounded
+    assert not bounded or abs(float(found[1]) - 0.294685) < float(found[2]) < 0.01
+
+
+def test_without_bounds_nothing_is_told(tmp_path):
+    deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO", *block(), *material("BODY"), *STATIC,
+                                         "BODY.BOTTOM, 1, 2", "*DSLOAD", "BODY.TOP, P, -1.",
+                                         "*END STEP"])
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 0 and "largest in body" not in process.stdout
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        assert "errors" not in file
