@@ -5,7 +5,8 @@
 !> node; so the scatter of a quantity over the increments before is added. What friction locked in
 !> while the contact grew over the nodes is known from the old mesh only: its error is a part of the
 !> stuck shear forces that falls with the spacing. An edge lies anywhere within a part of the
-!> spacing, and moves by as large a part of the contact as the force is uncertain by.
+!> spacing beyond what halved elements move it by. It also moves by as large a part of the contact
+!> as the force is uncertain by.
 !>
 !> docs/accuracy.md says on which decks the constants were chosen and which judge them.
 module mesh_bounds
@@ -14,7 +15,7 @@ module mesh_bounds
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use contact_system, only: contact_open, contact_slip, contact_stick
-   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner, point_before
+   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner
    use kinds, only: dp
    use quantity_types, only: find_quantity
    use records, only: contact_record_type
@@ -36,10 +37,8 @@ module mesh_bounds
    !> Errors of edges in the spacing: one at a node itself, and one of stick where contact ends too;
    !> of others the table of quantities tells.
    real(dp), parameter :: at_node = 0.25_dp, of_both = 0.15_dp
-   !> Error of an edge of contact close behind a corner of a three-node side, in that elsewhere.
-   real(dp), parameter :: behind_corner = 0.5_dp
    !> Error of an edge of contact that means with hats tell, in that which gaps of nodes tell.
-   real(dp), parameter :: of_hats = 4.0_dp
+   real(dp), parameter :: of_hats = 3.0_dp
    real(dp), parameter :: same_place = 1.0e-6_dp    !! of the spacing
    !> Error of normal force and heat rate in the squared relative error of the energy norm that
    !> elements have that are not halved.
@@ -121,15 +120,14 @@ contains
          inner => find_quantity(estimated, 'edge_stick'))
          of_contact = estimated(outer)%resolution*merge(of_hats, 1.0_dp, &
             points%pairing == pairing_surfaces)
-         if (is_behind_corner(points, contact%edge_contact)) of_contact = behind_corner*of_contact
-         bounds(outer) = shift + edge_bound(points, contact%edge_contact, of_contact, &
+         bounds(outer) = shift + edge_bound(points, contact%edge_contact, of_contact, 0.0_dp, &
             change(outer))
          if (ends_with_contact(points, contact)) then
             bounds(inner) = shift + edge_bound(points, contact%edge_stick, &
-               max(of_both, of_contact), change(inner))
+               max(of_both, of_contact), 0.0_dp, change(inner))
          else
             bounds(inner) = shift + scatter(inner) + edge_bound(points, contact%edge_stick, &
-               estimated(inner)%resolution, change(inner))
+               estimated(inner)%resolution, estimated(inner)%resolution, change(inner))
          end if
       end associate
    end subroutine bound_edges
@@ -153,11 +151,13 @@ contains
          (square(2) - square(1)))
    end function rise_on_axis
 
-   !> A part of the spacing, and of_change what the edge moves by beyond that: finer nodes alone
-   !> move it by up to a quarter.
-   pure real(dp) function edge_bound(points, edge, part, change) result(bound)
+   !> A part of the spacing, and of_change what the edge moves by: its error falls with the spacing,
+   !> all the more where heat follows the edge and moves it on. An edge of stick is so noisy that
+   !> finer nodes alone move it.
+   pure real(dp) function edge_bound(points, edge, part, noise, change) result(bound)
       type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: edge, part, change
+      real(dp), intent(in) :: edge, change
+      real(dp), intent(in) :: part, noise     ! in the spacing
       real(dp) :: spacing
 
       ! Where there is no edge, or none on the finer mesh, nothing is known.
@@ -167,26 +167,8 @@ contains
       bound = part*spacing
       if (any(abs(points%arc_length - edge) <= same_place*spacing)) bound = max(part, at_node)* &
          spacing
-      bound = bound + of_change*max(0.0_dp, abs(change) - max(part, at_node)*spacing)
+      bound = bound + of_change*max(0.0_dp, abs(change) - noise*spacing)
    end function edge_bound
-
-   !> Whether the last contact point before an edge is a corner of a three-node side, and the edge
-   !> nearer to it than to the midside node. Whatever the lengths of sides, no corner has a larger
-   !> weight than both of its neighbours.
-   pure logical function is_behind_corner(points, edge)
-      type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: edge
-      integer :: k
-
-      is_behind_corner = .false.
-      if (points%pairing == pairing_surfaces .or. points%side_nodes < 3) return
-      if (ieee_is_nan(edge) .or. size(points%arc_length) < 2) return
-      associate (s => points%arc_length, weight => points%weight)
-         k = point_before(s, edge)
-         is_behind_corner = weight(k + 1) > maxval(weight([k, min(k + 2, size(s))])) .and. &
-            edge < 0.5_dp*(s(k) + s(k + 1))
-      end associate
-   end function is_behind_corner
 
    !> Spacing of the slave's nodes at an edge.
    pure real(dp) function nodal_spacing(points, edge)
