@@ -32,11 +32,12 @@ instead of 17 s, and a pellet with 3000 elements and 5 interfaces 16 instead of 
 `OPENBLAS_CORETYPE` of the environment names a known processor: `SKYLAKEX` has AVX-512, `HASWELL` AVX2.
 
 `./setup.sh bench performance` writes this document from runs; with the names of sections
-(`skyline`, `tail`, `levels`, `paper`) it renews these alone. Times are CPU seconds of one thread;
-those of another machine, or of the same one on another day, differ. Operations and instructions do
-not.
+(`skyline`, `tail`, `levels`, `paper`, `stability`) it renews these alone. Times are CPU seconds of
+one thread; those of another machine, or of the same one on another day, differ. Operations and
+instructions do not.
 """
-DOCUMENT = Document("performance.md", HERE, ("skyline", "tail", "levels", "paper"), PREFACE)
+DOCUMENT = Document("performance.md", HERE, ("skyline", "tail", "levels", "paper", "stability"),
+                    PREFACE)
 
 if __name__ == "__main__":
     DOCUMENT.write(sys.argv[1:])
