@@ -157,9 +157,26 @@ def brake_disc():
     return cards + part("TRACK", disc_xs, disc_ys, 1001, 80.0, 120.0)
 
 
+def bolted_flange():
+    """The lower half of a bolt M20, of a flange of radii 11 and 40, 30 thick, and of a gasket 2 thick."""
+    under = spaced(0.0, 10.0, 5)
+    seat, ring = spaced(11.0, 16.0, 5), spaced(16.0, 30.0, 8)
+    head_xs, head_ys = [*under, *seat], spaced(-44.0, -31.0, 6, 0.5)
+    flange_xs, flange_ys = [*seat, *ring[1:], *spaced(30.0, 40.0, 4)[1:]], spaced(-31.0, -1.0, 14)
+    cards = block("SHANK", under, spaced(-31.0, 0.0, 14, 1.5), 1, "CAX8", "BOTTOM")
+    cards += block("HEAD", head_xs, head_ys, 1001, "CAX8", "BOTTOM")
+    cards += part("SEAT", head_xs, head_ys, 1001, 11.0, 16.0) + part("NECK", head_xs, head_ys, 1001, 0.0, 10.0)
+    cards += block("FLANGE", flange_xs, flange_ys, 2001, "CAX8", "RIGHT")
+    cards += surface("FACE", [2001 + k for k in range(5)], FACES["BOTTOM"])
+    cards += part("WET", flange_xs, flange_ys, 2001, 11.0, 16.0) + part(
+        "LAND", flange_xs, flange_ys, 2001, 16.0, 30.0)
+    cards += block("GASKET", ring, [-1.0, -0.5, 0.0], 4001, "CAX8", "BOTTOM")
+    return cards + surface("CUT", [1 + 5 * 7 + k for k in range(5)], FACES["TOP"])
+
+
 def main():
     makers = (press_fit, fuel_pellet, brake_pad, cracked_plate, turbine_joint, thermal_cycling, warm_blocks,
-              shrink_shock, brake_disc)
+              shrink_shock, brake_disc, bolted_flange)
     for make in makers:
         cards = [f"** Written by make_meshes.py. {make.__doc__}", *make()]
         assert max(map(len, cards[1:])) <= 80

@@ -8,8 +8,8 @@ module loads
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
    use state_tables, only: state_table_type
-   use steps, only: analysis_static, dof_temperature, load_film_sink, load_temperature, load_type, &
-      step_type
+   use steps, only: analysis_static, boundary_type, dof_temperature, load_film_sink, &
+      load_temperature, load_type, step_type
    use unit_loads, only: entries_of, find_locations, integrated, same_location, unit_loads_type
    implicit none
    private
@@ -112,16 +112,25 @@ contains
       do i = 1, size(step%boundaries)
          associate (card => step%boundaries(i))
             if (card%dof == dof_temperature) then
-               call self%temperature%give(card%node, card%value, card%amplitude, card%card)
+               call prescribe(self%temperature, card%node, card)
             else
-               call self%displacement%give(2*(card%node - 1) + card%dof, card%value, &
-                  card%amplitude, card%card)
+               call prescribe(self%displacement, 2*(card%node - 1) + card%dof, card)
             end if
          end associate
       end do
       call apply_step(self, step)
       call begin_interferences(self, step)
    end subroutine begin_step
+
+   !> Gives a prescribed value, or keeps the one at the start of the step.
+   pure subroutine prescribe(history, i, boundary)
+      type(load_history_type), intent(inout) :: history
+      integer, intent(in) :: i                    !! its number there
+      type(boundary_type), intent(in) :: boundary
+
+      call history%give(i, merge(history%start(i), boundary%value, boundary%keeps), &
+         boundary%amplitude, boundary%card)
+   end subroutine prescribe
 
    !> Gives the interferences of a step. Without an amplitude they act whole at once, and go down to
    !> zero over the step.

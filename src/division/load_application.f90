@@ -5,7 +5,7 @@
 !> parts, one on a side on the parts along it. What is given for a single node stays on it, and so
 !> do forces and heat of the nodes of a set.
 module load_application
-   use equations, only: coupling_equations, equation_type
+   use equations, only: coupling_equations, equation_type, facing_nodes
    use kinds, only: dp
    use load_requests, only: nodal_field_type, request_type
    use local_refinement, only: hanging_rows
@@ -62,6 +62,12 @@ contains
          associate (request => model%requests%temperatures%items(i))
             nodes = nodes_of(request, model%mesh)
             model%initial_temperature(pack(nodes, nodes >= first_new)) = request%value
+         end associate
+      end do
+      do i = 1, size(model%couplings)
+         if (.not. model%couplings(i)%is_section()) cycle
+         associate (pairs => facing_nodes(model%couplings(i), model%mesh))
+            model%initial_temperature(pairs(2, :)) = model%initial_temperature(pairs(1, :))
          end associate
       end do
    end subroutine apply_temperatures
@@ -208,8 +214,8 @@ contains
                if (max(1, request%step) /= step .or. (request%step == 0 .and. is_new)) cycle
                nodes = nodes_of(request, model%mesh)
                if (pass == 2) supports(n + 1:n + size(nodes)) = [(boundary_type(nodes(j), &
-                  request%component, request%value, request%amplitude, request%card), &
-                  j=1, size(nodes))]
+                  request%component, request%value, request%amplitude, request%card, &
+                  request%keeps), j=1, size(nodes))]
                n = n + size(nodes)
             end associate
          end do
@@ -247,6 +253,15 @@ contains
                model%fields(f)%values(nodes) = merge(request%value, 0.0_dp, f == k)
             end do
             model%fields(k)%card = request%card
+         end associate
+      end do
+      do i = 1, size(model%couplings)
+         if (.not. model%couplings(i)%is_section()) cycle
+         associate (pairs => facing_nodes(model%couplings(i), model%mesh))
+            do f = 1, size(model%fields)
+               model%fields(f)%given(pairs(2, :)) = model%fields(f)%given(pairs(1, :))
+               model%fields(f)%values(pairs(2, :)) = model%fields(f)%values(pairs(1, :))
+            end do
          end associate
       end do
       associate (loads => model%requests%loads)

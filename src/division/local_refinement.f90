@@ -178,10 +178,11 @@ contains
       is_near = .false.
    end function is_near
 
-   !> Pairs of elements on both faces of interfaces and ties whose nodes match.
+   !> Pairs of elements on both faces of interfaces and ties whose nodes match, and of sections.
    subroutine find_opposite(model, pairs)
       type(model_type), intent(in) :: model
       integer, allocatable, intent(out) :: pairs(:, :)   ! (2, pairs)
+      type(contact_definition_type) :: faces
       integer :: i
 
       allocate(pairs(2, 0))
@@ -190,9 +191,17 @@ contains
             call add_opposite(model%mesh, model%contacts(i), pairs)
          end do
       end if
-      if (.not. allocated(model%ties)) return
-      do i = 1, size(model%ties)
-         call add_opposite(model%mesh, model%ties(i)%faces, pairs)
+      if (allocated(model%ties)) then
+         do i = 1, size(model%ties)
+            call add_opposite(model%mesh, model%ties(i)%faces, pairs)
+         end do
+      end if
+      if (.not. allocated(model%couplings)) return
+      do i = 1, size(model%couplings)
+         if (.not. model%couplings(i)%is_section()) cycle
+         faces%slave = model%couplings(i)%surface
+         faces%master = model%couplings(i)%opposite
+         call add_opposite(model%mesh, faces, pairs)
       end do
    end subroutine find_opposite
 

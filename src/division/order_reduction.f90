@@ -50,7 +50,10 @@ contains
          if (allocated(model%bars(i)%mean%node)) call model%bars(i)%mean%replace(corners, new_index)
       end do
       model%couplings%reference = new_index(model%couplings%reference)
-      model%couplings%rotation = new_index(model%couplings%rotation)
+      do i = 1, size(model%couplings)
+         if (model%couplings(i)%rotation > 0) model%couplings(i)%rotation = &
+            new_index(model%couplings(i)%rotation)
+      end do
       if (model%load_node > 0) model%load_node = new_index(model%load_node)
       call reduce_mesh(new_index, model%mesh)
       model%element_order = 1

@@ -1,14 +1,15 @@
-!> Linear equations between degrees of freedom, as a deck gives them, and kinematic couplings: faces
-!> that follow a reference node as a rigid body does.
+!> Linear equations between degrees of freedom, as a deck gives them; kinematic couplings: faces
+!> that follow a reference node as a rigid body does; and pre-tension sections: cuts through a body
+!> whose two faces a reference node pulls together.
 module equations
-   use element_kinds, only: side_nodes
+   use element_kinds, only: axisymmetric, side_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
    use steps, only: dof_temperature
    implicit none
    private
    public :: equation_type, equation_nodes, coupling_type, coupling_equations, constrained_nodes, &
-      fill_equation, surface_nodes
+      fill_equation, surface_nodes, facing_nodes, section_nodes
 
    !> A sum of coefficient*degree of freedom that is zero, of displacements or of temperatures.
    type :: equation_type
@@ -24,15 +25,20 @@ module equations
       procedure :: add_term
    end type equation_type
 
-   !> One *COUPLING with *KINEMATIC.
+   !> One *COUPLING with *KINEMATIC, or one *PRE-TENSION SECTION.
    type :: coupling_type
       character(:), allocatable :: title       !! card and line, for messages
       integer :: card = 0                      !! card image
       integer :: reference = 0                 !! index of the reference node
-      integer :: rotation = 0 !! index of the node whose first degree of freedom is its rotation
+      !> index of the node whose first degree of freedom is its rotation; 0 at a section
+      integer :: rotation = 0
       integer :: surface = 0                   !! index of the surface
+      integer :: opposite = 0   !! surface of the other face of a section; 0 at a coupling
+      real(dp) :: normal(2) = 0.0_dp           !! of a section, unit vector
       logical :: follows(2) = .false.          !! displacements along x and y
       logical :: is_warm = .false.             !! temperatures
+   contains
+      procedure :: is_section
    end type coupling_type
 
 contains
@@ -43,6 +49,21 @@ contains
 
       is_thermal = self%dof(1) == dof_temperature
    end function is_thermal
+
+   !> Whether it is a pre-tension section.
+   elemental logical function is_section(self)
+      class(coupling_type), intent(in) :: self
+
+      is_section = self%opposite > 0
+   end function is_section
+
+   !> Reference nodes of the pre-tension sections, in the order of the deck.
+   pure function section_nodes(couplings) result(nodes)
+      type(coupling_type), intent(in) :: couplings(:)
+      integer, allocatable :: nodes(:)             !! (sections)
+
+      nodes = pack(couplings%reference, couplings%is_section())
+   end function section_nodes
 
    !> Positions of its terms among the degrees of freedom of a field.
    pure function places(self)
@@ -109,8 +130,26 @@ contains
       end do
    end function equation_nodes
 
-   !> The equations of the nodes of the surface, in linear theory: u = u_r + theta x (x - x_r).
+   !> The equations of a coupling or a section.
    pure function coupling_equations(coupling, mesh) result(equations)
+      type(coupling_type), intent(in) :: coupling
+      type(mesh_type), intent(in) :: mesh
+      type(equation_type), allocatable :: equations(:)
+      integer :: k
+
+      if (coupling%is_section()) then
+         equations = section_equations(coupling, mesh)
+      else
+         equations = rigid_equations(coupling, mesh)
+      end if
+      equations%card = coupling%card
+      do k = 1, size(equations)
+         equations(k)%title = coupling%title
+      end do
+   end function coupling_equations
+
+   !> The equations of the nodes of a surface, in linear theory: u = u_r + theta x (x - x_r).
+   pure function rigid_equations(coupling, mesh) result(equations)
       type(coupling_type), intent(in) :: coupling
       type(mesh_type), intent(in) :: mesh
       type(equation_type), allocatable :: equations(:)
@@ -121,7 +160,6 @@ contains
       nodes = surface_nodes(mesh, coupling%surface)
       nodes = pack(nodes, nodes /= coupling%reference)
       allocate (equations(size(nodes)*(count(coupling%follows) + merge(1, 0, coupling%is_warm))))
-      equations%card = coupling%card
       n = 0
       do k = 1, size(nodes)
          arm = mesh%coordinates(:, nodes(k)) - mesh%coordinates(:, coupling%reference)
@@ -136,10 +174,55 @@ contains
          call fill_equation([nodes(k), coupling%reference], [dof_temperature, dof_temperature], &
             [1.0_dp, -1.0_dp], equations(n))
       end do
-      do k = 1, n
-         equations(k)%title = coupling%title
+   end function rigid_equations
+
+   !> The equations of the nodes of both faces of a section: u = u' + n u_r, where u' is that of the
+   !> opposite face and u_r the first degree of freedom of the reference node, by which the faces
+   !> overlap; temperatures are equal. On the axis of an axisymmetric body no node moves along the radius.
+   pure function section_equations(section, mesh) result(equations)
+      type(coupling_type), intent(in) :: section
+      type(mesh_type), intent(in) :: mesh
+      type(equation_type), allocatable :: equations(:)
+      integer, allocatable :: pairs(:, :)
+      logical, allocatable :: on_axis(:)
+      integer :: c, k, n
+
+      pairs = facing_nodes(section, mesh)
+      on_axis = mesh%coordinates(1, pairs(1, :)) <= 0.0_dp .and. &
+         mesh%element_plane(mesh%surfaces(section%surface)%faces(1, 1)) == axisymmetric
+      allocate (equations(3*size(pairs, 2) - count(on_axis)))
+      n = 0
+      do k = 1, size(pairs, 2)
+         do c = 1, 2
+            if (c == 1 .and. on_axis(k)) cycle
+            n = n + 1
+            call fill_equation([pairs(2, k), pairs(1, k), section%reference], [c, c, 1], &
+               [1.0_dp, -1.0_dp, -section%normal(c)], equations(n))
+         end do
+         n = n + 1
+         call fill_equation(pairs(2:1:-1, k), [dof_temperature, dof_temperature], &
+            [1.0_dp, -1.0_dp], equations(n))
       end do
-   end function coupling_equations
+   end function section_equations
+
+   !> Nodes of the two faces of a section that are at one place: those of the deck, on the opposite
+   !> face, and those of the surface. Both faces are divided alike.
+   pure function facing_nodes(section, mesh) result(pairs)
+      type(coupling_type), intent(in) :: section
+      type(mesh_type), intent(in) :: mesh
+      integer, allocatable :: pairs(:, :)          !! (2, n)
+      integer, allocatable :: one(:), other(:)
+      integer :: k
+
+      one = surface_nodes(mesh, section%opposite)
+      other = surface_nodes(mesh, section%surface)
+      allocate (pairs(2, size(one)))
+      pairs(1, :) = one
+      do k = 1, size(one)
+         pairs(2, k) = other(minloc((mesh%coordinates(1, other) - mesh%coordinates(1, one(k)))**2 &
+            + (mesh%coordinates(2, other) - mesh%coordinates(2, one(k)))**2, dim=1))
+      end do
+   end function facing_nodes
 
    !> Nodes that equations relate, and those that couplings bring.
    pure function constrained_nodes(equations, couplings, nodes) result(related)

@@ -17,6 +17,7 @@ module load_requests
       real(dp) :: value = 0.0_dp    !! value
       integer :: amplitude = 0      !! index into model%amplitudes, 0 for none
       integer :: card = 0           !! running number of the data card
+      logical :: keeps = .false.    !! *BOUNDARY, FIXED: the value at the start of the step
       type(place_type) :: place     !! where the data card begins
    end type request_type
 

@@ -70,7 +70,8 @@ module model
       type(bar_type), allocatable :: bars(:)                     !! springs and trusses
       type(transform_type), allocatable :: transforms(:)         !! axes of nodes
       type(partner_type), allocatable :: partners(:)             !! what stands for these nodes
-      type(coupling_type), allocatable :: couplings(:)           !! kinematic couplings
+      !> kinematic couplings, then pre-tension sections
+      type(coupling_type), allocatable :: couplings(:)
       real(dp), allocatable :: initial_temperature(:)            !! (nodes) [temperature]
       !> steps in their order, with the loads and supports on the mesh
       type(step_type), allocatable :: steps(:)
@@ -118,6 +119,8 @@ contains
       if (follows_temperatures(model)) words = 'properties over temperature'
       if (any(model%steps%is_transient)) words = 'steps that store heat'
       if (any(model%steps%continuation%is_on)) words = 'branches'
+      if (.not. allocated(model%couplings)) return
+      if (any(model%couplings%is_section())) words = 'pre-tension sections'
    end function unbounded
 
 end module model

@@ -7,9 +7,10 @@ module quantity_types
    private
    public :: quantity_type, find_quantity
    public :: of_history, of_bodies, of_passes, of_interface, of_contact_points, of_nodes, &
-      of_points, of_elements
+      of_points, of_elements, of_sections
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
-   public :: needs_storage, needs_dilatation, needs_friction_heat, needs_stability, needs_branch
+   public :: needs_storage, needs_dilatation, needs_friction_heat, needs_stability, needs_branch, &
+      needs_sections
 
    integer, parameter :: name_length = 24
 
@@ -22,6 +23,7 @@ module quantity_types
    integer, parameter :: of_nodes = 6       !! an increment and node, of *VERIFY alone
    integer, parameter :: of_points = 7      !! an increment and point: /VTKHDF/PointData
    integer, parameter :: of_elements = 8    !! an increment and element: /VTKHDF/CellData
+   integer, parameter :: of_sections = 9    !! an increment and pre-tension section: /history
 
    ! Fields that a step must solve for a quantity to have a value; a deck none of whose steps does
    ! so has no dataset of it.
@@ -35,6 +37,7 @@ module quantity_types
    integer, parameter :: needs_friction_heat = 7 !! heat, and *GAP HEAT GENERATION
    integer, parameter :: needs_stability = 8     !! *STABILITY: /stability in place of /history
    integer, parameter :: needs_branch = 9        !! *CONTINUATION
+   integer, parameter :: needs_sections = 10     !! mechanics and *PRE-TENSION SECTION
 
    type :: quantity_type
       character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors

@@ -67,6 +67,7 @@ module steps
       real(dp) :: value = 0.0_dp    !! value at the end of the step, before the amplitude
       integer :: amplitude = 0     !! index into model%amplitudes, 0 for the step's own time history
       integer :: card = 0           !! running number of the *BOUNDARY data card, over all steps
+      logical :: keeps = .false.    !! FIXED: the value at the start of the step, in place of value
    end type boundary_type
 
    !> Controls of a step that last until a later one changes them.

@@ -7,7 +7,7 @@ module listing_increments
    use contact_quantities, only: contact_values, estimated
    use contact_system, only: contact_open, contact_stick
    use field_quantities, only: maxima
-   use increment_quantities, only: error_values, history_value, stability_words
+   use increment_quantities, only: history_value, part_values, stability_words
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, page_width, print_wrapped
@@ -154,6 +154,7 @@ contains
       integer, intent(in) :: unit                         !! unit of the listing
       type(increment_record_type), intent(in) :: record
       integer, intent(in) :: analysis                     !! one of the analysis_* constants
+      integer :: i
 
       if (history_line(needs_nothing, record) /= '') write (unit, '(a)') &
          history_line(needs_nothing, record)
@@ -167,6 +168,10 @@ contains
          write (unit, '(a)') history_line(needs_friction_heat, record)
       end if
       if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
+      if (allocated(record%pre_tension)) then
+         if (size(record%pre_tension) > 0) write (unit, '(3x, a, *(a))') 'pre-tension', &
+            (column(record%pre_tension(i), 14, 6), i=1, size(record%pre_tension))
+      end if
       if (allocated(record%load_factor)) write (unit, '(a)') history_line(needs_branch, record)
       if (stability_words(record) /= '') call print_wrapped(unit, '   ', 'stability: '// &
          stability_words(record))
@@ -193,12 +198,12 @@ contains
       errors = pack(quantities, quantities%kind == of_bodies)
       bodies = 0
       do i = 1, size(errors)
-         bodies = max(bodies, size(error_values(errors(i), record)))
+         bodies = max(bodies, size(part_values(errors(i), record)))
       end do
       do b = 1, bodies
          line = ''
          do i = 1, size(errors)
-            values = error_values(errors(i), record)
+            values = part_values(errors(i), record)
             if (b > size(values)) cycle
             line = line//'   '//trim(errors(i)%label)//column(values(b), 9, 2)
          end do

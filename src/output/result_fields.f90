@@ -13,7 +13,7 @@ module result_fields
    use element_kinds, only: axisymmetric, element_node_count, kind_count
    use field_quantities, only: point_values
    use hdf5_writer, only: as_byte, as_integer, as_long, as_real, hdf5_writer_type
-   use increment_quantities, only: error_values
+   use increment_quantities, only: part_values
    use kinds, only: dp
    use model, only: model_type, unit_labels_type
    use quantity_types, only: of_contact_points, of_elements, of_points, quantity_type
@@ -185,7 +185,7 @@ contains
          end associate
       end do
       do i = 1, size(self%cell_data)
-         call self%sets(size(self%point_data) + i)%append(error_values(self%cell_data(i), record))
+         call self%sets(size(self%point_data) + i)%append(part_values(self%cell_data(i), record))
       end do
       call self%append_time(record%time)
    end subroutine append

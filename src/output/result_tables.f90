@@ -10,10 +10,10 @@ module result_tables
       h5s_unlimited_f, h5sclose_f, h5screate_simple_f, h5sselect_hyperslab_f, h5t_native_double, &
       hid_t, hsize_t
    use hdf5_writer, only: as_integer, as_real, hdf5_writer_type, stored_type, write_values
-   use increment_quantities, only: error_values, history_value, pass_value
+   use increment_quantities, only: part_values, history_value, pass_value
    use kinds, only: dp, long
    use model, only: unit_labels_type
-   use quantity_types, only: of_bodies, of_contact_points, of_history, quantity_type
+   use quantity_types, only: of_bodies, of_contact_points, of_history, of_sections, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: geometry
    use solution_report, only: iteration_record_type
@@ -88,8 +88,8 @@ contains
       integer :: i
 
       do i = 1, size(self%sets)
-         if (self%quantities(i)%kind == of_bodies) then
-            call self%sets(i)%append(error_values(self%quantities(i), record))
+         if (any(self%quantities(i)%kind == [of_bodies, of_sections])) then
+            call self%sets(i)%append(part_values(self%quantities(i), record))
          else
             call self%sets(i)%append([history_value(self%quantities(i)%name, record)])
          end if

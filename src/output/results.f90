@@ -16,13 +16,14 @@ module results
    use file_calls, only: file_identity_type, identity_of, rename_file
    use result_tables, only: bounded, bytes_in, flush_sets, result_table_type, &
       write_geometry
+   use equations, only: section_nodes
    use hdf5_writer, only: end_hdf5, start_hdf5
    use kinds, only: dp, long
    use model, only: model_type
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
-      needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_stability, &
+      needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
-      of_passes, quantity_type
+      of_passes, of_sections, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
@@ -135,8 +136,8 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(quantity_type), allocatable :: of_history_alone(:), of_stability(:)
-      logical :: has(0:needs_branch)
+      type(quantity_type), allocatable :: of_cuts(:), of_history_alone(:), of_stability(:)
+      logical :: has(0:needs_sections)
       integer :: i, expected, n
 
       call start_hdf5(error)
@@ -159,7 +160,9 @@ contains
          of_stability = pack(of_stability, of_stability%needs == needs_stability)
          if (size(of_stability) > 0) of_stability = [of_history_alone(1), of_stability]
          call tables(stability)%start('/stability', of_stability, 0, expected, units)
-         call tables(history)%start('/history', [of_history_alone, &
+         of_cuts = datasets(of_sections, has)
+         of_cuts%values = size(section_nodes(model%couplings))
+         call tables(history)%start('/history', [of_history_alone, of_cuts, &
             datasets(of_bodies, has)], model%mesh%body_count, expected, units)
          call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected, &
             units)
@@ -364,7 +367,7 @@ contains
    pure function what_is_solved(model, has_contact) result(has)
       type(model_type), intent(in) :: model
       logical, intent(in) :: has_contact
-      logical :: has(0:needs_branch)
+      logical :: has(0:needs_sections)
 
       associate (analysis => model%steps%analysis)
          has(needs_nothing) = .true.
@@ -375,6 +378,7 @@ contains
          has(needs_dilatation) = any(model%steps%dilates)
          has(needs_stability) = any(model%steps%stability_frequency > 0)
          has(needs_branch) = any(model%steps%continuation%is_on)
+         has(needs_sections) = has(needs_mechanics) .and. size(section_nodes(model%couplings)) > 0
          has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
             model%interactions, model%contacts)
          has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &

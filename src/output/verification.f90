@@ -4,12 +4,13 @@ module verification
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, geometry_values
    use due_output, only: is_judged
+   use equations, only: section_nodes
    use field_quantities, only: maxima, point_values
    use increment_quantities, only: history_value
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type, verify_type
-   use quantity_types, only: find_quantity, of_history, of_nodes, quantity_type
+   use quantity_types, only: find_quantity, of_history, of_nodes, of_sections, quantity_type
    use records, only: contact_record_type, increment_record_type
    use reported_quantities, only: verifiable
    use state_tables, only: logicals, reals, state_table_type, words
@@ -67,7 +68,7 @@ contains
 
       do i = 1, size(self%outcomes)
          if (.not. is_judged(model%verifications(i), record, model)) cycle
-         call values_asked_for(model%verifications(i), record, model%mesh, interfaces, point_node, &
+         call values_asked_for(model%verifications(i), record, model, interfaces, point_node, &
             values, reason)
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
@@ -217,10 +218,10 @@ contains
    end function outcome_of
 
    !> The values that a check is about: one, or those of a set, of which the worst counts.
-   subroutine values_asked_for(check, record, mesh, interfaces, point_node, values, reason)
+   subroutine values_asked_for(check, record, model, interfaces, point_node, values, reason)
       type(verify_type), intent(in) :: check
       type(increment_record_type), intent(in) :: record
-      type(mesh_type), intent(in) :: mesh
+      type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: point_node(:)                 !! (points) node index of each point
       real(dp), allocatable, intent(out) :: values(:)
@@ -242,18 +243,24 @@ contains
          if (size(values) == 0) then
             reason = 'this step has no '//check%quantity
          else if (.not. is_extreme) then
-            call select_points(check%where, mesh, point_node, values, reason)
-         else if (allocated(mesh%node_body)) then
+            call select_points(check%where, model%mesh, point_node, values, reason)
+         else if (allocated(model%mesh%node_body)) then
             ! Nodes without elements, such as mesh generators leave, have nothing but zeros.
-            values = pack(values, mesh%node_body(point_node) > 0)
+            values = pack(values, model%mesh%node_body(point_node) > 0)
          end if
+      case (of_sections)
+         allocate (values(0))
+         if (allocated(record%pre_tension)) values = record%pre_tension
+         if (size(values) == 0) reason = 'this step has no '//check%quantity
+         if (size(values) > 0 .and. .not. is_extreme) call select_points(check%where, model%mesh, &
+            section_nodes(model%couplings), values, reason)
       case default
          allocate (values(0))
          at = index(check%where//'@', '@')
          name = check%where(:at - 1)
          do i = 1, size(interfaces)
             if (.not. is_extreme .and. to_upper(interfaces(i)%name) /= to_upper(name)) cycle
-            values = [values, values_of(quantity, mesh, interfaces(i), record%contacts(i))]
+            values = [values, values_of(quantity, model%mesh, interfaces(i), record%contacts(i))]
             if (is_extreme) cycle
             if (at < len(check%where)) call select_position(interfaces(i), check%where(at + 1:), &
                quantity%is_integer, values, reason)

@@ -3,16 +3,15 @@ module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
    use quantity_types, only: needs_branch, needs_coupling, needs_dilatation, needs_friction_heat, &
-      needs_heat, needs_mechanics, &
-      needs_stability, needs_storage, of_bodies, of_elements, &
-      of_history, of_passes, quantity_type
+      needs_heat, needs_mechanics, needs_sections, needs_stability, needs_storage, of_bodies, &
+      of_elements, of_history, of_passes, of_sections, quantity_type
    use field_recovery, only: error_record_type
    use records, only: increment_record_type, stability_record_type
    use solution_report, only: iteration_record_type
    use text, only: counted, few_digits
    implicit none
    private
-   public :: increment_table, history_value, error_values, pass_value, stability_words
+   public :: increment_table, history_value, part_values, pass_value, stability_words
 
    type(quantity_type), parameter :: increment_table(*) = [ &
       quantity_type('time', of_history, 'time', &
@@ -62,6 +61,9 @@ module increment_quantities
       description='1 where the load factor of a branch turns, else 0'), &
       quantity_type('unstable', of_history, '-', needs_branch, is_integer=.true., &
       label='unstable', description='1 where det(I - U'') < 0: an odd number of modes grows'), &
+      quantity_type('pre_tension', of_sections, 'stress length^2', needs_sections, &
+      label='pre-tension', description='force across a pre-tension section, positive in '// &
+      'tension; a column each where there are several'), &
       quantity_type('stress_error', of_bodies, '-', needs_mechanics, label='stress', &
       description='estimated error of the stress by the mesh, relative; one column per body'), &
       quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
@@ -202,11 +204,11 @@ contains
       if (found%period > 0.0_dp) words = words//', period '//few_digits(found%period, 3)
    end function motion_words
 
-   !> A quantity of the bodies or of the elements.
-   pure function error_values(quantity, record) result(values)
-      type(quantity_type), intent(in) :: quantity          !! one of of_bodies or of_elements
+   !> A quantity of the bodies, of the elements or of the pre-tension sections.
+   pure function part_values(quantity, record) result(values)
+      type(quantity_type), intent(in) :: quantity          !! one of those kinds
       type(increment_record_type), intent(in) :: record
-      real(dp), allocatable :: values(:)                   !! (bodies or elements), or none
+      real(dp), allocatable :: values(:)                   !! one each, or none
       type(error_record_type) :: error
 
       if (quantity%name == 'stress_error') error = record%stress_error
@@ -214,7 +216,9 @@ contains
       allocate (values(0))
       if (quantity%kind == of_bodies .and. allocated(error%body)) values = error%body
       if (quantity%kind == of_elements .and. allocated(error%element)) values = error%element
-   end function error_values
+      if (quantity%kind == of_sections .and. allocated(record%pre_tension)) &
+         values = record%pre_tension
+   end function part_values
 
    !> A quantity of a pass.
    elemental function pass_value(name, pass) result(value)

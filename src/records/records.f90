@@ -137,6 +137,8 @@ module records
       !> Largest violation of the contact conditions by the recovered displacements, relative; NaN
       !> where they are kept.
       real(dp) :: contact_violation = 0.0_dp
+      !> (sections) across pre-tension sections; unallocated before mechanics is solved [force]
+      real(dp), allocatable :: pre_tension(:)
       type(contact_record_type), allocatable :: contacts(:)     !! one an interface
       integer :: cut_backs = 0               !! attempts at it that failed before
       !> Solutions that properties over temperature or the heat of strains asked for; 0 without them

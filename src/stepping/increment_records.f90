@@ -9,6 +9,7 @@ module increment_records
    use contact_tractions, only: in_contact, pressures, shears
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery, table_is_due
+   use equations, only: section_nodes
    use friction_laws, only: friction_law_type
    use increment_data, only: increment_data_type
    use kinds, only: dp
@@ -71,6 +72,8 @@ contains
             record%fields%displacement = reshape(next%displacement, [2, size(next%temperature)])
             record%fields%external_force = record%fields%reaction + on_nodes( &
                bodies%points%partners, reshape(next%force_load, shape(record%fields%reaction)))
+            if (allocated(model%couplings)) record%pre_tension = &
+               record%fields%external_force(1, section_nodes(model%couplings))
             if (recovers) call recovery%recover_stress(model, record%fields%displacement, &
                next%stress_temperature - model%initial_temperature, record%fields%stress, &
                record%stress_error)

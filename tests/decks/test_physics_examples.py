@@ -2,7 +2,7 @@
 
 import subprocess
 import sys
-from math import log, pi
+from math import log, pi, radians, tan
 
 import h5py
 import numpy as np
@@ -101,6 +101,20 @@ def test_tables_of_the_fuel_pellet_are_those_of_the_formulas():
     for keyword, rows in expected.items():
         found = data_cards(EXAMPLES / "fuel_pellet.inp", keyword)
         assert [tuple(map(float, row)) for row in found] == rows, keyword
+
+
+def bolted_flange():
+    """Force and equilibrium after tightening; springs one behind and beside the other after that."""
+    modulus, width, bore, thickness = 2.1e5, 32.0, 22.0, 30.0
+    bolt = (31.0 + 10.0) / (modulus * pi * 10.0**2)
+    cone = width + 2.0 * thickness * tan(radians(30.0))
+    flange = log((width + bore) * (cone - bore) / ((width - bore) * (cone + bore))) / (
+        pi * modulus * bore * tan(radians(30.0)))
+    gasket = 1.0 / (500.0 * pi * (30.0**2 - 16.0**2))
+    water = 30.0 * pi * (16.0**2 - 11.0**2)
+    return {("pre_tension", "BOLT", "1."): 6e4, ("normal_force", "SEAT", "1."): 6e4,
+            ("normal_force", "GASKET", "1."): 6e4,
+            ("pre_tension", "BOLT", "2."): 6e4 + water * gasket / (bolt + flange + gasket)}
 
 
 def cracked_plate():

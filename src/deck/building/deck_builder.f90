@@ -18,6 +18,7 @@ module deck_builder
    use deck_builder_materials, only: build_materials, build_orientations, build_sections
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_options, only: build_load_axis, build_options, build_regions
+   use deck_builder_sections, only: build_pre_tensions
    use deck_builder_sets, only: build_sets, build_surfaces
    use deck_builder_steps, only: build_steps
    use deck_checks, only: check_model, check_usage
@@ -77,6 +78,7 @@ contains
       call build_bars(cards, context, model, report)
       call build_equations(cards, context, model, report)
       call build_couplings(cards, context, model, report)
+      call build_pre_tensions(cards, context, model, report)
       call build_transforms(cards, model, report)
       call build_steps(cards, context, model, report)
       if (unbounded(model) /= '' .and. model%estimates_errors) then

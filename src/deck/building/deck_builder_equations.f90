@@ -18,7 +18,7 @@ module deck_builder_equations
    use transforms, only: transform_type
    implicit none
    private
-   public :: build_equations, build_couplings, build_transforms
+   public :: build_equations, build_couplings, build_transforms, find_reference
 
    integer, parameter :: term_fields = 3   !! node or set, degree of freedom, coefficient
 
@@ -203,7 +203,6 @@ contains
       type(deck_context_type), intent(inout) :: context    !! numbers -> indexes; receives notes
       type(model_type), intent(inout) :: model             !! receives the couplings
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      character(:), allocatable :: name
       integer :: errors, k, n
 
       errors = report%error_count()
@@ -216,9 +215,7 @@ contains
             associate (card => cards%keywords(k), coupling => model%couplings(n))
                coupling%card = card%place%image
                coupling%title = '*COUPLING, '//report%source%words_of(card%place)
-               call need_parameter(card, 'REF NODE', report, name)
-               if (len(name) > 0) call find_reference(name, card, context, model, report, &
-                  coupling%reference)
+               call find_reference('REF NODE', card, context, model, report, coupling%reference)
                if (coupling%reference > 0) model%mesh%coordinates(:, coupling%rotation) = &
                   model%mesh%coordinates(:, coupling%reference)
                call need_named(card, 'SURFACE', 'surface', model%mesh%surfaces, report, &
@@ -239,28 +236,32 @@ contains
       if (report%error_count() > errors) call report%lose('equation')
    end subroutine build_couplings
 
-   !> The reference node: its number, or a set of one node.
-   subroutine find_reference(name, card, context, model, report, node)
-      character(*), intent(in) :: name
+   !> The reference node that a parameter names: its number, or a set of one node.
+   subroutine find_reference(parameter, card, context, model, report, node)
+      character(*), intent(in) :: parameter
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: node
+      type(deck_context_type), intent(in) :: context       !! numbers -> indexes
+      type(model_type), intent(in) :: model                !! node sets
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, intent(out) :: node                         !! its index; 0 after an error
+      character(:), allocatable :: name
       integer :: number, set
       logical :: is_number
 
-      associate (place => parameter_place(card, 'REF NODE'), sets => model%mesh%node_sets)
+      node = 0
+      call need_parameter(card, parameter, report, name)
+      if (len(name) == 0) return
+      associate (place => parameter_place(card, parameter), sets => model%mesh%node_sets)
          call read_integer(name, number, is_number)
          if (is_number) then
             node = context%node_index%find(number)
             if (node == 0) call report%missing(place, 'there is no node '//name, 'node', name)
             return
          end if
-         call need_named(card, 'REF NODE', 'node set', sets, report, set)
+         call need_named(card, parameter, 'node set', sets, report, set)
          if (set == 0) return
          if (size(sets(set)%members) /= 1) then
-            call report%error(place, 'a coupling has one reference node; node set '//name// &
+            call report%error(place, 'there is one reference node; node set '//name// &
                ' has '//to_text(size(sets(set)%members)))
          else
             node = sets(set)%members(1)

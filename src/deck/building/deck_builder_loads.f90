@@ -50,6 +50,10 @@ contains
       call choose(card, 'TYPE', 'DISPLACEMENT', report, kind)
       call read_operation(card, step, model, context, report)
       call take_named(card, 'AMPLITUDE', 'amplitude', model%amplitudes, report, request%amplitude)
+      request%keeps = has_parameter(card, 'FIXED')
+      if (request%keeps .and. request%amplitude > 0) call report%error(parameter_place(card, &
+         'AMPLITUDE'), 'FIXED holds the values at the start of the step, which no amplitude '// &
+         'changes; leave one of the two out')
       call take_named(card, 'FILM AMPLITUDE', 'amplitude', model%amplitudes, report, film_amplitude)
       if (film_amplitude > 0) then
          associate (film => model%amplitudes(film_amplitude))
@@ -221,7 +225,8 @@ contains
             if (size(members) == 1) node = members(1)
          end associate
       end if
-      i = findloc(model%couplings%reference, node, dim=1)
+      i = findloc(model%couplings%reference == node .and. .not. model%couplings%is_section(), &
+         .true., dim=1)
       if (i == 0 .or. node == 0) then
          call report%error(field_place(data, 2), &
             'a moment acts on the reference node of a *COUPLING; forces act on 1 and 2')
@@ -389,7 +394,8 @@ contains
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
 
-      turns = any(is_target(model%couplings%reference, request, model))
+      turns = any(is_target(model%couplings%reference, request, model) .and. .not. &
+         model%couplings%is_section())
    end function turns
 
    elemental logical function is_target(node, request, model)
@@ -413,6 +419,7 @@ contains
       rotation%set = 0
       rotation%component = 1
       do i = 1, size(model%couplings)
+         if (model%couplings(i)%is_section()) cycle
          if (.not. is_target(model%couplings(i)%reference, request, model)) cycle
          rotation%item = model%couplings(i)%rotation
          call context%boundaries%add(rotation)

@@ -5,7 +5,7 @@ module deck_builder_verify
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
-   use equations, only: constrained_nodes, equation_nodes
+   use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type
@@ -15,7 +15,7 @@ module deck_builder_verify
    use model, only: model_type, verify_type, unbounded
    use named_items, only: find_named
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_contact_points, &
-      of_history, of_interface, of_nodes, quantity_type
+      of_history, of_interface, of_nodes, of_sections, quantity_type
    use spelling, only: known_choices, nearest_known
    use steps, only: analysis_static
    use text, only: read_real, string_type, to_text, to_upper
@@ -172,9 +172,14 @@ contains
             check%quantity)
          return
       end if
+      if (kind == of_sections .and. .not. any(model%couplings%is_section())) then
+         call report%missing(field_place(data, 1), &
+            'the deck has no *PRE-TENSION SECTION: there is no '//check%quantity, 'equation')
+         return
+      end if
       if (any(to_upper(check%where) == ['MIN', 'MAX'])) return
-      if (kind == of_nodes) then
-         call check_nodes(data, context, model, report)
+      if (kind == of_nodes .or. kind == of_sections) then
+         call check_nodes(data, kind, context, model, report)
       else if (kind == of_interface .and. check%where == '' .and. size(model%contacts) == 1) then
          check%where = model%contacts(1)%name
       else
@@ -183,8 +188,9 @@ contains
    end subroutine check_where
 
    !> A node or a node set, one of whose nodes at least has values.
-   subroutine check_nodes(data, context, model, report)
+   subroutine check_nodes(data, kind, context, model, report)
       type(data_card_type), intent(in) :: data
+      integer, intent(in) :: kind
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
@@ -198,13 +204,20 @@ contains
          node, set, valid)
       if (.not. valid) return
       used = .false.
-      used([model%mesh%element_nodes]) = .true.
-      used(1:) = used(1:) .or. constrained_nodes(model%equations, &
-         model%couplings, size(used) - 1) .or. equation_nodes(model%bars%elongation, size(used) - 1)
+      if (kind == of_sections) then
+         used(section_nodes(model%couplings)) = .true.
+      else
+         used([model%mesh%element_nodes]) = .true.
+         used(1:) = used(1:) .or. constrained_nodes(model%equations, model%couplings, &
+            size(used) - 1) .or. equation_nodes(model%bars%elongation, size(used) - 1)
+      end if
       nodes = [node]
       if (set > 0) nodes = model%mesh%node_sets(set)%members
       nodes = pack(nodes, used(nodes))
-      if (size(nodes) == 0 .and. .not. all(context%element_valid)) then
+      if (size(nodes) == 0 .and. kind == of_sections) then
+         call report%error(field_place(data, 2), field_text(data, 2)//' is not the reference '// &
+            'node of a *PRE-TENSION SECTION')
+      else if (size(nodes) == 0 .and. .not. all(context%element_valid)) then
          return
       else if (size(nodes) == 0) then
          call report%missing(field_place(data, 2), &

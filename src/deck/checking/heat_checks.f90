@@ -6,6 +6,7 @@ module heat_checks
    use conductance_laws, only: law_none
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use equations, only: facing_nodes
    use deck_source, only: place_type
    use kinds, only: dp
    use load_requests, only: request_type
@@ -102,6 +103,12 @@ contains
             else
                starts_at_0(given%items(i)%item) = .false.
             end if
+         end do
+         do i = 1, size(model%couplings)
+            if (.not. model%couplings(i)%is_section()) cycle
+            associate (pairs => facing_nodes(model%couplings(i), mesh))
+               starts_at_0(pairs(2, :)) = .false.
+            end associate
          end do
          if (.not. any(starts_at_0)) return
          call report%warning(given%items(1)%place, 'these cards give no initial temperature to '// &

@@ -142,6 +142,8 @@ contains
       constrained = equation_nodes(model%equations, size(constrained))
       do i = 1, size(model%couplings)
          constrained(surface_nodes(model%mesh, model%couplings(i)%surface)) = .true.
+         if (model%couplings(i)%is_section()) constrained(surface_nodes(model%mesh, &
+            model%couplings(i)%opposite)) = .true.
       end do
       do i = 1, size(touches)
          related(i) = is_paired(touches(i)%side, touches(i)%other) .or. &

@@ -354,7 +354,7 @@ contains
       character(*), intent(in) :: keyword, parameter
 
       select case (parameter)
-      case ('NSET', 'ELSET', 'SURFACE', 'ORIENTATION', 'REF NODE')
+      case ('NSET', 'ELSET', 'SURFACE', 'ORIENTATION', 'REF NODE', 'NODE')
          is_name = .true.
       case ('NAME')
          is_name = keyword == 'SURFACE' .or. keyword == 'ORIENTATION'

@@ -163,7 +163,7 @@ contains
          call report%lose('surface interaction')
       case ('CONTACT PAIR')
          call report%lose('contact pair')
-      case ('EQUATION', 'COUPLING', 'KINEMATIC')
+      case ('EQUATION', 'COUPLING', 'KINEMATIC', 'PRE-TENSION SECTION')
          call report%lose('equation')
       case default
          return

@@ -52,7 +52,7 @@ module keywords
    !> and of words of the field.
    type :: advice_type
       integer :: kind = no_advice       !! refused, passed_over ...
-      character(16) :: keyword = ''     !! for which one stands, or that has a parameter
+      character(19) :: keyword = ''     !! for which one stands, or that has a parameter
       character(256) :: names = ''      !! what it is about: names separated by slashes
       character(96) :: words = ''       !! why it is passed over or refused, what to write
    end type advice_type
@@ -68,7 +68,7 @@ module keywords
 
    integer, parameter :: shortest = 3   !! letters of an abbreviation
 
-   type(keyword_type), parameter :: known_keywords(86) = [ &
+   type(keyword_type), parameter :: known_keywords(87) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -136,6 +136,7 @@ module keywords
       keyword_type('EQUATION', built, in_model, 1, many, ''), &
       keyword_type('COUPLING', built, in_model, 0, 0, 'REF NODE=/SURFACE=/CONSTRAINT NAME='), &
       keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
+      keyword_type('PRE-TENSION SECTION', built, in_model, 0, 1, 'NODE=/SURFACE='), &
       keyword_type('STEP', built, in_both, 0, 0, &
          'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM?/~EXTRAPOLATION=/~CONVERT SDI='), &
       keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
@@ -148,7 +149,7 @@ module keywords
          stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/DILATATION='), &
       keyword_type('UNCOUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
          'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR='), &
-      keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE=/TYPE='), &
+      keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE=/TYPE=/FIXED'), &
       keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       keyword_type('DSLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
@@ -180,7 +181,7 @@ module keywords
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(83) = [ &
+   type(advice_type), parameter :: advice(84) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -223,7 +224,7 @@ module keywords
       advice_type(refused, 'CONTACT PAIR', 'CONTACT', &
          'there is no general contact; name the faces of each *CONTACT PAIR'), &
       advice_type(refused, '', 'KINEMATIC COUPLING/DISTRIBUTING/DISTRIBUTING COUPLING/CYCLIC '// &
-         'SYMMETRY MODEL/PRE-TENSION SECTION/SUBMODEL/DASHPOT', &
+         'SYMMETRY MODEL/SUBMODEL/DASHPOT', &
          'bodies are held by *BOUNDARY, contact, *TIE, *EQUATION and *COUPLING'), &
       advice_type(refused, '', 'MPC', 'give its relations by *EQUATION or *COUPLING'), &
       advice_type(refused, '', 'RIGID BODY', 'every body is elastic; give it a high modulus'), &
@@ -252,7 +253,9 @@ module keywords
          'only faces that lie opposite each other are tied'), &
       advice_type(of_parameter, 'TIE', 'TIED NSET', &
          'POSITION TOLERANCE= selects the nodes that are tied'), &
-      advice_type(of_parameter, 'BOUNDARY', 'FIXED/SUBMODEL', 'give the values'), &
+      advice_type(of_parameter, 'BOUNDARY', 'SUBMODEL', 'give the values'), &
+      advice_type(of_parameter, 'PRE-TENSION SECTION', 'ELEMENT', &
+         'bolts are plane elements; name the sides of elements of a section, SURFACE='), &
       advice_type(of_parameter, 'BOUNDARY', 'MASS FLOW', 'there are no fluids'), &
       advice_type(of_parameter, 'TEMPERATURE', 'FILE/BSTEP', &
          'give the values, or solve *HEAT TRANSFER before'), &

@@ -1,0 +1,126 @@
+!> *PRE-TENSION SECTION -> a body cut in two, and the section that joins its faces again.
+module deck_builder_sections
+   use card_values, only: check_extra, need_field, take_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use deck_builder_equations, only: find_reference
+   use deck_context, only: deck_context_type, need_named
+   use deck_report, only: deck_report_type
+   use deck_structure, only: cards_of
+   use equations, only: coupling_type
+   use kinds, only: dp
+   use mesh, only: mesh_type, surface_type
+   use model, only: model_type
+   use section_cuts, only: cut_mesh, section_normal, unit_vector
+   use text, only: to_text
+   implicit none
+   private
+   public :: build_pre_tensions
+
+contains
+
+   !> Builds all sections, behind the couplings: their nodes are behind all others.
+   subroutine build_pre_tensions(cards, context, model, report)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(inout) :: context    !! knows the nodes; receives notes
+      type(model_type), intent(inout) :: model             !! receives sections, nodes, surfaces
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(coupling_type) :: section
+      integer, allocatable :: places(:)
+      integer :: k
+
+      places = cards_of(cards, 'PRE-TENSION SECTION')
+      do k = 1, size(places)
+         call build_section(cards, cards%keywords(places(k)), context, model, report, section)
+         if (section%opposite > 0) then
+            model%couplings = [model%couplings, section]
+         else
+            call report%lose('equation')
+         end if
+      end do
+   end subroutine build_pre_tensions
+
+   !> Builds one section; without an opposite face after an error.
+   subroutine build_section(cards, card, context, model, report, section)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
+      type(coupling_type), intent(out) :: section
+      character(:), allocatable :: fault
+      logical :: valid
+
+      section%card = card%place%image
+      section%title = '*PRE-TENSION SECTION, '//report%source%words_of(card%place)
+      call find_reference('NODE', card, context, model, report, section%reference)
+      call need_named(card, 'SURFACE', 'surface', model%mesh%surfaces, report, section%surface)
+      valid = section%reference > 0 .and. section%surface > 0 .and. all(context%element_valid)
+      if (valid) valid = size(model%mesh%surfaces(section%surface)%faces) > 0
+      if (valid) section%normal = section_normal(section%surface, model%mesh)
+      if (card%last_data >= card%first_data) call read_normal(cards%data(card%first_data), report, &
+         section%normal, valid)
+      if (.not. valid) return
+      fault = ''
+      if (norm2(section%normal) <= 0.0_dp) fault = 'is closed: it has no normal'
+      if (any(model%mesh%element_nodes == section%reference)) fault = 'has node '// &
+         to_text(model%mesh%node_number(section%reference))//', which elements have, too: '// &
+         'the reference node is a node of its own'
+      if (any(model%couplings%reference == section%reference)) fault = 'has node '// &
+         to_text(model%mesh%node_number(section%reference))//', which is the reference node '// &
+         'of another card'
+      if (len(fault) == 0) call cut(card, context, model%mesh, section, fault)
+      if (len(fault) > 0) call report%error(card%place, 'this section '//fault)
+   end subroutine build_section
+
+   !> Cuts the mesh, and adds the other face.
+   subroutine cut(card, context, mesh, section, fault)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(mesh_type), intent(inout) :: mesh
+      type(coupling_type), intent(inout) :: section
+      character(:), allocatable, intent(out) :: fault
+      type(surface_type) :: other
+      integer :: first, last
+
+      call cut_mesh(section%surface, mesh, other%faces, first, fault)
+      if (len(fault) > 0) return
+      last = size(mesh%node_number)
+      ! No deck can name it.
+      other%name = section%title
+      other%card = section%card
+      mesh%surfaces = [mesh%surfaces, other]
+      section%opposite = size(mesh%surfaces)
+      context%face_places = [context%face_places, context%face_places(section%surface)]
+      context%node_place = [context%node_place, spread(card%place, 1, last - first + 1)]
+      context%node_valid = [context%node_valid, spread(.true., 1, last - first + 1)]
+      context%dropped = [context%dropped, spread(.false., 1, last - first + 1)]
+      call context%note(section%title//': the elements of its surface have the nodes '// &
+         to_text(mesh%node_number(first))//' to '//to_text(mesh%node_number(last))// &
+         ' there, which the deck does not have')
+   end subroutine cut
+
+   !> The normal; its third component is 0.
+   subroutine read_normal(data, report, normal, valid)
+      type(data_card_type), intent(in) :: data
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: normal(2)
+      logical, intent(inout) :: valid
+      character(*), parameter :: names = 'xyz'
+      real(dp) :: given(3)
+      integer :: i
+
+      given = 0.0_dp
+      do i = 1, 2
+         call need_field(data, i, names(i:i)//' of the normal', report, given(i), valid)
+      end do
+      call take_field(data, 3, 'z of the normal', report, given(3), valid)
+      call check_extra(data, 3, 'x, y and z of the normal', report)
+      if (.not. valid) return
+      normal = unit_vector(given(:2))
+      if (norm2(normal) > 0.0_dp .and. abs(given(3)) <= 0.0_dp) return
+      call report%error(field_place(data, 1), 'the normal of a section is a direction in the '// &
+         'plane, such as 0., 1., 0.')
+      valid = .false.
+   end subroutine read_normal
+
+end module deck_builder_sections
