@@ -178,7 +178,8 @@ contains
 
    !> The equations of the nodes of both faces of a section: u = u' + n u_r, where u' is that of the
    !> opposite face and u_r the first degree of freedom of the reference node, by which the faces
-   !> overlap; temperatures are equal. On the axis of an axisymmetric body no node moves along the radius.
+   !> overlap; temperatures are equal. On the axis of an axisymmetric body no node moves along the
+   !> radius.
    pure function section_equations(section, mesh) result(equations)
       type(coupling_type), intent(in) :: section
       type(mesh_type), intent(in) :: mesh

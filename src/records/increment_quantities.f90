@@ -216,8 +216,8 @@ contains
       allocate (values(0))
       if (quantity%kind == of_bodies .and. allocated(error%body)) values = error%body
       if (quantity%kind == of_elements .and. allocated(error%element)) values = error%element
-      if (quantity%kind == of_sections .and. allocated(record%pre_tension)) &
-         values = record%pre_tension
+      if (quantity%kind == of_sections .and. allocated(record%pre_tension)) values = &
+         record%pre_tension
    end function part_values
 
    !> A quantity of a pass.

@@ -18,8 +18,8 @@ HELD = ["*BOUNDARY", "BODY.LEFT, 1, 1", "BODY.RIGHT, 1, 1", "1, 2, 2"]
 def bar(kind="CPE8", poisson=0.0, cut=("2, S2", "6, S2"), normal=(), node="900"):
     """Return a bar of 4 x 2 elements along x that a section cuts in the middle."""
     return [*mesh("BODY", [0.0, 1.0, 2.0, 3.0, LENGTH], [0.0, 0.5, HEIGHT], kind, 1),
-            *material("BODY", (MODULUS, poisson), EXPANSION, 2.0), "*NODE, NSET=BOLT", "900, 0., 9.",
-            "*NODE, NSET=OTHER", "901, 0., 9.",
+            *material("BODY", (MODULUS, poisson), EXPANSION, 2.0),
+            "*NODE, NSET=BOLT", "900, 0., 9.", "*NODE, NSET=OTHER", "901, 0., 9.",
             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.",
             "*SURFACE, NAME=CUT", *cut, "*SURFACE, NAME=LATER", "3, S2", "7, S2",
             f"*PRE-TENSION SECTION, NODE={node}, SURFACE=CUT", *normal]
