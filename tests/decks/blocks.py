@@ -41,7 +41,7 @@ def block(name, xs, ys, first=1, skew=0.0):
 
 
 def without_unused_surfaces(cards):
-    """Return the cards without surfaces that no contact pair, tie, coupling, section or load names."""
+    """Return the cards without surfaces that no pair, tie, coupling, section or load names."""
     keywords = list(accumulate(cards, lambda last, card: card if card.startswith("*") else last))
     used = {field.strip().removeprefix("SURFACE=")
             for keyword, card in zip(keywords, cards, strict=True)

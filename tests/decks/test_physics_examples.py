@@ -104,7 +104,7 @@ def test_tables_of_the_fuel_pellet_are_those_of_the_formulas():
 
 
 def bolted_flange():
-    """Force and equilibrium after tightening; springs one behind and beside the other after that."""
+    """Force and equilibrium after tightening; springs behind and beside each other after that."""
     modulus, width, bore, thickness = 2.1e5, 32.0, 22.0, 30.0
     bolt = (31.0 + 10.0) / (modulus * pi * 10.0**2)
     cone = width + 2.0 * thickness * tan(radians(30.0))
