@@ -8,7 +8,7 @@ from deck_runs import DECKS
 
 REFERENCE = DECKS.parents[1] / "docs" / "deck.md"
 FLAGS = {"GENERATE", "DIRECT", "PRESSURE", "CLEARANCE", "ROUGH", "ADD", "REMOVE", "SHRINK",
-         "READ", "WRITE", "OVERLAY", "SHIFT",
+         "READ", "WRITE", "OVERLAY", "SHIFT", "FIXED",
          "REFLECT"}
 VALUES = {"GAP LAW, CLEARANCE"}   # no flag there, but a value of TYPE=
 
