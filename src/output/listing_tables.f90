@@ -5,7 +5,7 @@ module listing_tables
    use contact_quantities, only: contact_values, geometry_values
    use due_output, only: table_is_due
    use increment_quantities, only: pass_value
-   use equations, only: equation_nodes
+   use equations, only: equation_nodes, section_nodes
    use kinds, only: dp
    use listing_text, only: column, in_columns, table_cell, table_head
    use model, only: model_type, verify_type
@@ -172,6 +172,7 @@ contains
       set_name = request%name_of_set(model%mesh%node_sets)
       nodes = request%members(model%mesh%node_sets, size(model%mesh%node_body))
       is_held = model%mesh%node_body > 0 .or. equation_nodes(model%bars%elongation, size(is_held))
+      is_held(section_nodes(model%couplings)) = .true.
       nodes = pack(nodes, is_held(nodes))
       allocate (columns(0, size(nodes)), sums(0, size(nodes)), heads(0), sum_heads(0))
       do i = 1, size(request%quantities)
