@@ -50,7 +50,7 @@ contains
       model%materials(1)%conductivity = 2.0_dp
       model%materials(2)%conductivity = 5.0_dp
       allocate (model%interactions(1), model%contacts(1), model%ties(0), model%equations(0), &
-         model%bars(0), model%amplitudes(0), model%steps(1))
+         model%bars(0), model%couplings(0), model%amplitudes(0), model%steps(1))
       allocate (model%verifications(0), model%orientations(0))
       model%interactions(1)%friction%coefficient = friction
       model%interactions(1)%law%closed_kind = law_power
