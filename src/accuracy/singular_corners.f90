@@ -8,7 +8,7 @@ module singular_corners
    use contact_system, only: contact_open
    use element_kinds, only: element_corner_count, element_node_count
    use element_sides, only: element_sides_type, find_sides, side_ends
-   use equations, only: surface_nodes
+   use equations, only: coupled_nodes
    use increments, only: simulation_type
    use kinds, only: dp
    use local_refinement, only: coarse_side, fine_sides, hanging_count
@@ -85,7 +85,7 @@ contains
          end associate
       end do
       do i = 1, size(model%couplings)
-         nodes = surface_nodes(model%mesh, model%couplings(i)%surface)
+         nodes = coupled_nodes(model%mesh, model%couplings(i))
          do d = 1, 2
             if (model%couplings(i)%follows(d)) is_held(d, nodes) = .true.
          end do

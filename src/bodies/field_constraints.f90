@@ -123,18 +123,23 @@ contains
       end do
    end function temperature_rows
 
-   !> Degrees of freedom that elements, springs, trusses or equations have.
+   !> Degrees of freedom that elements, springs, trusses, equations or contact points have: those of
+   !> a rigid surface have a reference node.
    pure function in_use(used, points, thermal) result(dofs)
       logical, intent(in) :: used(:)
       type(connections_type), intent(in) :: points
       logical, intent(in) :: thermal
       logical, allocatable :: dofs(:)
+      logical :: needed(size(used))
       integer :: i
 
+      needed = used
+      needed(points%master) = .true.
+      if (.not. thermal) needed(points%references(.not. used)) = .true.
       if (thermal) then
-         dofs = used
+         dofs = needed
       else
-         dofs = reshape(spread(used, 1, 2), [2*size(used)])
+         dofs = reshape(spread(needed, 1, 2), [2*size(used)])
       end if
       do i = 1, size(points%equations)
          if (points%equations(i)%is_thermal() .eqv. thermal) dofs(points%equations(i)%places()) = &

@@ -149,7 +149,7 @@ contains
    end function free_part
 
    !> The axes along which cards name the displacements of a node, and which of these supports
-   !> prescribe.
+   !> prescribe, also by an equation whose other terms they hold.
    pure subroutine find_axes(points, held, node, axes, fixed)
       type(connections_type), intent(in) :: points
       logical, intent(in) :: held(:)
@@ -162,6 +162,14 @@ contains
       i = findloc(points%partners%node, node, dim=1)
       if (i > 0) axes = points%partners(i)%axes
       fixed = held(2*named_node(points, node) - 1:2*named_node(points, node))
+      do i = 1, size(points%equations)
+         associate (equation => points%equations(i))
+            if (equation%node(1) /= node .or. equation%is_thermal()) cycle
+            associate (others => equation%places())
+               if (all(held(others(2:)))) fixed(equation%dof(1)) = .true.
+            end associate
+         end associate
+      end do
    end subroutine find_axes
 
    !> The node whose degrees of freedom cards name for a node: its partner where *TRANSFORM turns

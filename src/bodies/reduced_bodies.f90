@@ -181,7 +181,8 @@ contains
          of_ties = joints_of(self%points%ties)
          of_equations = joints_of(self%points%equations)
          of_bars = joints_of(self%points%elongations)
-         call unsupported_motions(model%mesh, held, [of_ties, of_equations, of_bars], self%rigid)
+         call unsupported_motions(model%mesh, held, [of_ties, of_equations, of_bars], &
+            self%points%references(model%mesh%node_body == 0), self%rigid)
       end if
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) then
@@ -221,7 +222,9 @@ contains
             stiffness(nodes) = max(stiffness(nodes), own*section%thickness)
          end associate
       end do
-      stiffer = stiffness(points%slave) > far*stiffness(points%master)
+      ! A rigid master has no stiffness at its reference node: its slave follows.
+      stiffer = stiffness(points%slave) > far*stiffness(points%master) .and. &
+         stiffness(points%master) > 0.0_dp
    end function slave_is_stiffer
 
    !> Reduces equilibrium to the unknowns that were numbered last, where that is not done.

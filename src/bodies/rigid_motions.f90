@@ -61,7 +61,7 @@ contains
       real(dp), allocatable :: basis(:, :)
       integer :: i
 
-      bodies = measure(mesh, joints)
+      bodies = measure(mesh, joints, [integer ::])
       basis = free_basis(mesh, bodies, held, joints)
       allocate (motions(size(basis, 2)))
       do i = 1, size(motions)
@@ -73,16 +73,17 @@ contains
    !> Displacements of the nodes in the motions that supports, ties and equations leave free, each
    !> motion of one body, of those that are tied to it, and of the nodes of no body that equations
    !> relate to them: forces act on these, too.
-   pure subroutine unsupported_motions(mesh, held, joints, fields)
+   pure subroutine unsupported_motions(mesh, held, joints, references, fields)
       type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: held(:)                       !! (2 nodes) prescribed displacements
       type(joint_type), intent(in) :: joints(:)            !! what ties and equations hold
+      integer, intent(in) :: references(:)  !! nodes of no body that contact points take, each once
       real(dp), allocatable, intent(out) :: fields(:, :)   !! (2 nodes, motions)
       type(rigid_bodies_type) :: bodies
       real(dp), allocatable :: basis(:, :)
       integer :: c, node
 
-      bodies = measure(mesh, joints)
+      bodies = measure(mesh, joints, references)
       basis = free_basis(mesh, bodies, held, joints)
       allocate (fields(size(held), size(basis, 2)), source=0.0_dp)
       do node = 1, size(mesh%node_body)
@@ -190,13 +191,14 @@ contains
       displacement = [direction, direction(2)*arm(1) - direction(1)*arm(2)]
    end function at_point
 
-   pure function measure(mesh, joints) result(bodies)
+   pure function measure(mesh, joints, references) result(bodies)
       type(mesh_type), intent(in) :: mesh
       type(joint_type), intent(in) :: joints(:)
+      integer, intent(in) :: references(:)
       type(rigid_bodies_type) :: bodies
       integer :: nodes(mesh%body_count), c, i, k, node
 
-      allocate (bodies%lone(0))
+      bodies%lone = [((2*(references(i) - 1) + c, c=1, 2), i=1, size(references))]
       do i = 1, size(joints)
          do k = 1, size(joints(i)%nodes)
             if (mesh%node_body(joints(i)%nodes(k)) > 0) cycle

@@ -6,6 +6,7 @@ module contact_pairs
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
    use contact_points, only: contact_points_type, no_radius
+   use drawn_lines, only: drawn_line_type
    use element_kinds, only: axisymmetric, element_corner_count
    use errors, only: error_type, set_error, status_deck
    use interface_checks, only: blame_corner, check_corner, check_covered, check_folds, &
@@ -14,6 +15,7 @@ module contact_pairs
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
    use mortar_points, only: set_mortar_points
+   use rigid_masters, only: check_facing, follow_reference, opposite_line, sampled_line
    use sum_lists, only: differences, single_values, sum_list_type
    use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
    use text, only: to_text
@@ -40,8 +42,11 @@ contains
       type(contact_points_type), intent(inout) :: points      !! its name and its axis are set
       type(error_type), allocatable, intent(out) :: error
       integer :: first, k, last
+      integer, allocatable :: kept(:)
+      logical :: on_drawing
 
       points%pairing = pairing_nodes
+      on_drawing = allocated(master%tangent)
       points%slave = slave%nodes
       points%master = master%nodes
       call set_weights(mesh, slave, master, thickness, points%about_axis, points%weight)
@@ -50,20 +55,24 @@ contains
       if (slave%nodes(1) == master%nodes(1)) first = 2
       if (slave%nodes(last) == master%nodes(last)) last = last - 1
       call set_geometry(mesh, slave, master, points)
-      call check_sides(mesh, definition, slave, master, [first, last], error)
-      if (allocated(error)) return
+      if (.not. on_drawing) then
+         call check_sides(mesh, definition, slave, master, [first, last], error)
+         if (allocated(error)) return
+      end if
       if (.not. (slave%closed .or. master%closed)) then
          ! One face may end at a corner of its body where the other goes on, as a punch on a wider
          ! body: judged by the outlines beyond the lines.
          associate (s => slave%nodes([1, size(slave%nodes)]), &
             m => master%nodes([1, size(slave%nodes)]))
-            points%at_corner = [(body_angle(mesh, s(k)) > going_on .neqv. &
-               body_angle(mesh, m(k)) > going_on, k=1, 2)]
+            points%at_corner = [(body_angle(mesh, s(k)) > going_on .neqv. (on_drawing .or. &
+               body_angle(mesh, m(k)) > going_on), k=1, 2)]
          end associate
       end if
       points%side_nodes = slave%side_nodes
       points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
-      call keep_points([(k, k=first, last)], points)
+      kept = [(k, k=first, last)]
+      if (on_drawing) kept = pack(kept, norm2(master%tangent(:, kept), dim=1) > 0.0_dp)
+      call keep_points(kept, points)
       ! 0 is the weight of a corner on the axis or at the tip of quarter points.
       if (.not. all(points%weight >= 0.0_dp)) then
          call set_error(error, status_deck, definition%title()//': no length of the face '// &
@@ -131,8 +140,12 @@ contains
       associate (x => mesh%coordinates, n => slave%side_nodes, closed => slave%closed)
          points%position = x(:, slave%nodes)
          points%arc_length = arc_lengths(points%position, n, closed)
-         points%tangent = chain_tangents(points%position, n, closed) + &
-            chain_tangents(x(:, master%nodes), n, closed)
+         points%tangent = chain_tangents(points%position, n, closed)
+         if (allocated(master%tangent)) then
+            points%tangent = points%tangent + master%tangent
+         else
+            points%tangent = points%tangent + chain_tangents(x(:, master%nodes), n, closed)
+         end if
          side = merge(-1.0_dp, 1.0_dp, slave%turned)
          allocate (points%normal, mold=points%tangent)
          do k = 1, size(slave%nodes)
@@ -161,16 +174,21 @@ contains
          master_surface => mesh%surfaces(definition%master))
          call chain_faces(mesh, slave_surface, slave, error)
          if (allocated(error)) return
-         call chain_faces(mesh, master_surface, master, error)
-         if (allocated(error)) return
-         call aligned_chains(mesh, slave, master)
          points%name = definition%name
          points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
+         if (allocated(master_surface%drawing)) then
+            call set_rigid_points(mesh, definition, master_surface%drawing, slave, thickness, &
+               points, error)
+         else
+            call chain_faces(mesh, master_surface, master, error)
+            if (allocated(error)) return
+            call aligned_chains(mesh, slave, master)
+            call check_shared(mesh, definition, slave, master, error)
+            if (allocated(error)) return
+            call find_points(mesh, definition, slave, master, thickness, points, error)
+         end if
+         if (allocated(error)) return
       end associate
-      call check_shared(mesh, definition, slave, master, error)
-      if (allocated(error)) return
-      call find_points(mesh, definition, slave, master, thickness, points, error)
-      if (allocated(error)) return
       if (definition%adjusts .and. definition%adjusted_set == 0) then
          where (points%initial_gap <= definition%adjusted) points%initial_gap = 0.0_dp
       else if (definition%adjusts) then
@@ -180,6 +198,42 @@ contains
       end if
       if (definition%has_clearance) points%initial_gap = definition%clearance
    end subroutine make_contact_points
+
+   !> The contact points of a face and the line of a rigid body: mortar points, or with
+   !> PAIRING=NODES the slave's nodes and the points of the line nearest to them.
+   !> Errors: a line that shows its back to the slave; as find_points.
+   subroutine set_rigid_points(mesh, definition, drawing, slave, thickness, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      type(drawn_line_type), intent(in) :: drawing
+      type(surface_chain_type), intent(inout) :: slave        ! as from chain_faces
+      real(dp), intent(in) :: thickness
+      type(contact_points_type), intent(inout) :: points
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_definition_type) :: asked
+      type(mesh_type) :: drawn
+      type(surface_chain_type) :: master
+
+      drawn = mesh
+      call sampled_line(drawing, slave, drawn, master)
+      call aligned_chains(drawn, slave, master)
+      call check_facing(mesh, definition, drawing, slave, error)
+      if (allocated(error)) return
+      if (definition%pairing == pairing_nodes) then
+         drawn = mesh
+         call opposite_line(drawing, slave, drawn, master)
+         call set_node_pairs(drawn, definition, slave, master, thickness, points, error)
+         if (allocated(error)) return
+         call check_covered(drawn, definition, slave, master, size(points%slave), error)
+         if (allocated(error)) return
+      else
+         asked = definition
+         asked%pairing = pairing_surfaces
+         call find_points(drawn, asked, slave, master, thickness, points, error)
+         if (allocated(error)) return
+      end if
+      call follow_reference(drawing, size(mesh%node_number), drawn%coordinates, points)
+   end subroutine set_rigid_points
 
    !> The contact points of two lines that run the same way.
    subroutine find_points(mesh, definition, slave, master, thickness, points, error)

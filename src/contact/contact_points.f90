@@ -38,6 +38,7 @@ module contact_points
       procedure :: add_forces
       procedure :: nodes_of
       procedure :: means_of
+      procedure :: references
    end type contact_row_type
 
    !> The contact points of one interface, ordered along the slave from the end with the smaller x
@@ -66,6 +67,8 @@ module contact_points
       logical :: at_corner(2) = .false.
       type(hat_geometry_type) :: mortar        !! of mortar points; empty for node pairs
       logical :: about_axis = .false.          !! whether the model is axisymmetric
+      !> Whether the master is a rigid surface: the master nodes are its reference node
+      logical :: is_rigid = .false.
    end type contact_points_type
 
    !> Part of the node spacing by which nodes may lie beside each other. An offset misplaces the
@@ -185,6 +188,22 @@ contains
 
       nodes = self%difference%values_of(k)
    end function nodes_of
+
+   !> Nodes of no body whose displacements contact points take: those by which rigid bodies move.
+   pure function references(self, of_no_body)
+      class(contact_row_type), intent(in) :: self
+      logical, intent(in) :: of_no_body(:)         !! (nodes)
+      integer, allocatable :: references(:)        !! each once
+      logical :: taken(size(of_no_body))
+      integer :: i
+
+      taken = .false.
+      if (self%turns()) then
+         taken(self%along%value(:self%along%start(self%along%count + 1) - 1)) = .true.
+         taken(self%across%value(:self%across%start(self%across%count + 1) - 1)) = .true.
+      end if
+      references = pack([(i, i=1, size(taken))], taken .and. of_no_body)
+   end function references
 
    !> Coefficients of nodal displacements in a contact point: slave's less master's along an axis
    !> are along.u of that axis, and across.u of the other one, added for x and subtracted for y.

@@ -70,7 +70,7 @@ contains
       real(dp) :: part(size(points%edge))
 
       warning = ''
-      if (points%pairing /= pairing_nodes) return
+      if (points%pairing /= pairing_nodes .or. points%is_rigid) return
       call find_offsets(mesh, points, part, words)
       if (count(part > small_offset) == 0) return
       warning = 'contact pair '//points%name//': '//words// &
@@ -107,6 +107,7 @@ contains
       integer :: k
 
       warning = ''
+      if (points%is_rigid) return
       gap = [(normal_distance(mesh, points, k), k=1, size(gap))]
       off = abs(gap - points%initial_gap)
       ! A face may have a single contact point.

@@ -215,7 +215,8 @@ contains
       type(error_type), allocatable :: error
       integer, allocatable :: of_slave(:), of_master(:)
 
-      if (definition%pairing == pairing_surfaces) return
+      if (definition%pairing == pairing_surfaces .or. &
+         allocated(mesh%surfaces(definition%master)%drawing)) return
       call chain_faces(mesh, mesh%surfaces(definition%slave), slave, error)
       if (allocated(error)) return
       call chain_faces(mesh, mesh%surfaces(definition%master), master, error)

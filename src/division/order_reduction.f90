@@ -51,8 +51,20 @@ contains
       end do
       model%couplings%reference = new_index(model%couplings%reference)
       do i = 1, size(model%couplings)
-         if (model%couplings(i)%rotation > 0) model%couplings(i)%rotation = &
-            new_index(model%couplings(i)%rotation)
+         associate (coupling => model%couplings(i))
+            if (coupling%rotation > 0) coupling%rotation = new_index(coupling%rotation)
+            if (coupling%rotation_node > 0) coupling%rotation_node = &
+               new_index(coupling%rotation_node)
+            if (allocated(coupling%nodes)) coupling%nodes = pack(new_index(coupling%nodes), &
+               new_index(coupling%nodes) > 0)
+         end associate
+      end do
+      do i = 1, size(model%mesh%surfaces)
+         if (.not. allocated(model%mesh%surfaces(i)%drawing)) cycle
+         associate (line => model%mesh%surfaces(i)%drawing)
+            if (line%reference > 0) line%reference = new_index(line%reference)
+            if (line%rotation > 0) line%rotation = new_index(line%rotation)
+         end associate
       end do
       if (model%load_node > 0) model%load_node = new_index(model%load_node)
       call reduce_mesh(new_index, model%mesh)

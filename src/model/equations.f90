@@ -1,6 +1,6 @@
-!> Linear equations between degrees of freedom, as a deck gives them; kinematic couplings: faces
-!> that follow a reference node as a rigid body does; and pre-tension sections: cuts through a body
-!> whose two faces a reference node pulls together.
+!> Linear equations between degrees of freedom, as a deck gives them; kinematic couplings: faces or
+!> bodies that follow a reference node as a rigid body does; and pre-tension sections: cuts through
+!> a body whose two faces a reference node pulls together.
 module equations
    use element_kinds, only: axisymmetric, side_nodes
    use kinds, only: dp
@@ -9,7 +9,7 @@ module equations
    implicit none
    private
    public :: equation_type, equation_nodes, coupling_type, coupling_equations, constrained_nodes, &
-      fill_equation, surface_nodes, facing_nodes, section_nodes
+      fill_equation, surface_nodes, facing_nodes, section_nodes, coupled_nodes
 
    !> A sum of coefficient*degree of freedom that is zero, of displacements or of temperatures.
    type :: equation_type
@@ -25,14 +25,19 @@ module equations
       procedure :: add_term
    end type equation_type
 
-   !> One *COUPLING with *KINEMATIC, or one *PRE-TENSION SECTION.
+   !> One *COUPLING with *KINEMATIC, one *RIGID BODY, or one *PRE-TENSION SECTION.
    type :: coupling_type
       character(:), allocatable :: title       !! card and line, for messages
       integer :: card = 0                      !! card image
       integer :: reference = 0                 !! index of the reference node
       !> index of the node whose first degree of freedom is its rotation; 0 at a section
       integer :: rotation = 0
+      integer :: rotation_node = 0             !! index of ROT NODE=, 0 for none
       integer :: surface = 0                   !! index of the surface
+      integer :: element_set = 0               !! index of the element set
+      integer, allocatable :: node_sets(:)     !! indexes of node sets
+      integer, allocatable :: nodes(:)         !! nodes of line elements
+      logical :: is_rigid = .false.            !! whether it is a *RIGID BODY
       integer :: opposite = 0   !! surface of the other face of a section; 0 at a coupling
       real(dp) :: normal(2) = 0.0_dp           !! of a section, unit vector
       logical :: follows(2) = .false.          !! displacements along x and y
@@ -148,7 +153,8 @@ contains
       end do
    end function coupling_equations
 
-   !> The equations of the nodes of a surface, in linear theory: u = u_r + theta x (x - x_r).
+   !> The equations of its nodes, in linear theory: u = u_r + theta x (x - x_r). The node of the
+   !> rotation has no second degree of freedom, which contact points of a rigid surface name.
    pure function rigid_equations(coupling, mesh) result(equations)
       type(coupling_type), intent(in) :: coupling
       type(mesh_type), intent(in) :: mesh
@@ -157,9 +163,10 @@ contains
       integer :: c, k, n
       real(dp) :: arm(2)
 
-      nodes = surface_nodes(mesh, coupling%surface)
+      nodes = coupled_nodes(mesh, coupling)
       nodes = pack(nodes, nodes /= coupling%reference)
-      allocate (equations(size(nodes)*(count(coupling%follows) + merge(1, 0, coupling%is_warm))))
+      allocate (equations(size(nodes)*(count(coupling%follows) + merge(1, 0, coupling%is_warm)) + &
+         merge(1, 0, coupling%is_rigid)))
       n = 0
       do k = 1, size(nodes)
          arm = mesh%coordinates(:, nodes(k)) - mesh%coordinates(:, coupling%reference)
@@ -174,6 +181,9 @@ contains
          call fill_equation([nodes(k), coupling%reference], [dof_temperature, dof_temperature], &
             [1.0_dp, -1.0_dp], equations(n))
       end do
+      if (.not. coupling%is_rigid) return
+      n = n + 1
+      call fill_equation([coupling%rotation], [2], [1.0_dp], equations(n))
    end function rigid_equations
 
    !> The equations of the nodes of both faces of a section: u = u' + n u_r, where u' is that of the
@@ -235,8 +245,11 @@ contains
 
       related = equation_nodes(equations, nodes)
       do i = 1, size(couplings)
-         related(pack([couplings(i)%reference, couplings(i)%rotation], &
-            [couplings(i)%reference, couplings(i)%rotation] > 0)) = .true.
+         associate (nodes => [couplings(i)%reference, couplings(i)%rotation, &
+            couplings(i)%rotation_node])
+            related(pack(nodes, nodes > 0)) = .true.
+         end associate
+         if (allocated(couplings(i)%nodes)) related(couplings(i)%nodes) = .true.
       end do
    end function constrained_nodes
 
@@ -270,5 +283,26 @@ contains
       end associate
       nodes = pack([(i, i=1, size(found))], found)
    end function surface_nodes
+
+   !> Nodes that follow the reference node, each once.
+   pure function coupled_nodes(mesh, coupling) result(nodes)
+      type(mesh_type), intent(in) :: mesh
+      type(coupling_type), intent(in) :: coupling
+      integer, allocatable :: nodes(:)
+      logical :: found(0:size(mesh%node_number))
+      integer :: i
+
+      found = .false.
+      if (coupling%surface > 0) found(surface_nodes(mesh, coupling%surface)) = .true.
+      if (coupling%element_set > 0) found([mesh%element_nodes(:, &
+         mesh%element_sets(coupling%element_set)%members)]) = .true.
+      if (allocated(coupling%node_sets)) then
+         do i = 1, size(coupling%node_sets)
+            found(mesh%node_sets(coupling%node_sets(i))%members) = .true.
+         end do
+      end if
+      if (allocated(coupling%nodes)) found(coupling%nodes) = .true.
+      nodes = pack([(i, i=1, size(mesh%node_number))], found(1:))
+   end function coupled_nodes
 
 end module equations

@@ -2,6 +2,7 @@
 !> Nodes and elements are known inside the program by their index; the deck's numbers are kept for
 !> messages and output.
 module mesh
+   use drawn_lines, only: drawn_line_type
    use kinds, only: dp
    use named_items, only: named_type
    implicit none
@@ -22,10 +23,11 @@ module mesh
       logical :: of_lines = .false.
    end type set_type
 
-   !> A named set of element faces.
+   !> A named set of element faces, or a line of a rigid body.
    type, extends(named_type) :: surface_type
       integer, allocatable :: faces(:, :)   !! (2, face count): element index, face 1..4
       integer :: card = 0                   !! card image of the *SURFACE
+      type(drawn_line_type), allocatable :: drawing   !! of a rigid surface, which has no faces
    end type surface_type
 
    !> Nodes and elements, with what is grouped over them.

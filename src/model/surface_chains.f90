@@ -18,6 +18,8 @@ module surface_chains
       integer :: side_nodes = 0          !! nodes of a side, 2 or 3
       logical :: closed = .false.        !! closed: the last side leads back to the first node
       logical :: turned = .false.        !! whether it runs against its faces
+      !> (2, nodes) unit tangents of a drawing, 0 beyond its ends; unallocated: those of the sides
+      real(dp), allocatable :: tangent(:, :)
    end type surface_chain_type
 
 contains

@@ -42,7 +42,7 @@ contains
          call take_section(cards%keywords(card(i)), i, context, model, report, of_line)
       end do
       do i = 1, size(of_line)
-         if (context%line_kind(i) == drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle
+         if (context%line_kind(i) <= drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle
          if (.not. report%has_errors()) call report%error(field_place(cards%data(places(i)), 1), &
             'element '//to_text(context%line_number(i))//' has no '//trim(merge('*SOLID SECTION', &
             '*SPRING       ', context%line_kind(i) == truss)))

@@ -134,9 +134,24 @@ contains
       if (faces%slave > 0 .and. faces%slave == faces%master) call report%error( &
          field_place(data, 2), 'a surface cannot be '//trim(merge('tied to itself           ', &
          'in contact with itself   ', faces%is_tied)))
+      call refuse_rigid(data, 1, faces%slave)
+      if (faces%is_tied) call refuse_rigid(data, 2, faces%master)
       if (has_parameter(card, 'NAME')) return
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
       call context%note('*'//card%name//' without NAME=: '//faces%name//', the slave surface')
+   contains
+      !> Refuses a rigid surface.
+      subroutine refuse_rigid(data, position, surface)
+         type(data_card_type), intent(in) :: data
+         integer, intent(in) :: position, surface
+
+         if (surface == 0) return
+         if (.not. allocated(mesh%surfaces(surface)%drawing)) return
+         call report%error(field_place(data, position), 'surface '//mesh%surfaces(surface)%name// &
+            ' is rigid: it has no faces; '//trim(merge( &
+            'nodes that it holds are TIE NSET= of *RIGID BODY        ', &
+            'let it be the master, and the face of the body the slave', faces%is_tied)))
+      end subroutine refuse_rigid
    end subroutine read_faces
 
    !> A name stands for a group of the result file: it is used once, and is one that HDF5

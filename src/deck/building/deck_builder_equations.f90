@@ -1,9 +1,10 @@
-!> *EQUATION, and *COUPLING with *KINEMATIC -> linear equations between degrees of freedom;
+!> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom;
 !> *TRANSFORM -> nodes with axes of their own, and what cards say of them.
 module deck_builder_equations
-   use card_parameters, only: choose, need_parameter, parameter_place
+   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use deck_builder_rigid, only: build_rigid_body, check_rigid_masters
    use equations, only: coupling_type, equation_type
    use deck_context, only: deck_context_type, need_named, read_target
    use deck_report, only: deck_report_type
@@ -196,8 +197,8 @@ contains
       end do
    end subroutine add_equations
 
-   !> Builds all couplings. Each has a node for its rotation, which the builder of nodes left behind
-   !> those of the deck.
+   !> Builds all couplings and rigid bodies. Each has a node for its rotation, which the builder of
+   !> nodes left behind those of the deck.
    subroutine build_couplings(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! numbers -> indexes; receives notes
@@ -206,21 +207,20 @@ contains
       integer :: errors, k, n
 
       errors = report%error_count()
-      allocate (model%couplings(card_count(cards, 'COUPLING')))
+      allocate (model%couplings(card_count(cards, 'COUPLING') + card_count(cards, 'RIGID BODY')))
       n = 0
       do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name == 'COUPLING') then
+         if (cards%keywords(k)%name == 'RIGID BODY') then
             n = n + 1
-            model%couplings(n)%rotation = size(model%mesh%node_number) - size(model%couplings) + n
-            associate (card => cards%keywords(k), coupling => model%couplings(n))
-               coupling%card = card%place%image
-               coupling%title = '*COUPLING, '//report%source%words_of(card%place)
-               call find_reference('REF NODE', card, context, model, report, coupling%reference)
-               if (coupling%reference > 0) model%mesh%coordinates(:, coupling%rotation) = &
-                  model%mesh%coordinates(:, coupling%reference)
-               call need_named(card, 'SURFACE', 'surface', model%mesh%surfaces, report, &
-                  coupling%surface)
-            end associate
+            call begin_coupling(cards%keywords(k), n, context, model, report)
+            if (has_parameter(cards%keywords(k), 'ROT NODE')) call find_reference('ROT NODE', &
+               cards%keywords(k), context, model, report, model%couplings(n)%rotation_node)
+            call build_rigid_body(cards%keywords(k), context, model, report, model%couplings(n))
+         else if (cards%keywords(k)%name == 'COUPLING') then
+            n = n + 1
+            call begin_coupling(cards%keywords(k), n, context, model, report)
+            call need_named(cards%keywords(k), 'SURFACE', 'surface', model%mesh%surfaces, report, &
+               model%couplings(n)%surface)
             if (is_keyword(cards, k + 1, 'KINEMATIC') .or. is_keyword(cards, k + 1, '')) cycle
             call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
                'directly follow *COUPLING and name the degrees of freedom')
@@ -234,9 +234,28 @@ contains
          end if
       end do
       if (report%error_count() > errors) call report%lose('equation')
+      call check_rigid_masters(model, report)
    end subroutine build_couplings
 
-   !> The reference node that a parameter names: its number, or a set of one node.
+   !> Title and reference node of a coupling, and the node of its rotation.
+   subroutine begin_coupling(card, n, context, model, report)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: n                     ! index of the coupling
+      type(deck_context_type), intent(in) :: context
+      type(model_type), intent(inout) :: model
+      type(deck_report_type), intent(inout) :: report
+
+      associate (coupling => model%couplings(n))
+         coupling%rotation = size(model%mesh%node_number) - size(model%couplings) + n
+         coupling%card = card%place%image
+         coupling%title = '*'//card%name//', '//report%source%words_of(card%place)
+         call find_reference('REF NODE', card, context, model, report, coupling%reference)
+         if (coupling%reference > 0) model%mesh%coordinates(:, coupling%rotation) = &
+            model%mesh%coordinates(:, coupling%reference)
+      end associate
+   end subroutine begin_coupling
+
+   !> The node that a parameter names, which the card must have: its number, or a set of one node.
    subroutine find_reference(parameter, card, context, model, report, node)
       character(*), intent(in) :: parameter
       type(keyword_card_type), intent(in) :: card

@@ -20,6 +20,8 @@ module deck_builder_loads
    public :: build_load_card, build_boundary, dof_rotation
 
    integer, parameter :: dof_rotation = 6   !! about z, of the reference node of a coupling
+   integer, parameter :: dof_turn = 3       !! the same, of CalculiX' node of the rotation
+   real(dp), parameter :: large_turn = 0.1_dp   !! [rad]; the motion errs by half of it
 
    character(*), parameter :: out_of_plane = &
       '*BOUNDARY: 0 on degrees of freedom 3 to 6 is ignored'
@@ -198,7 +200,8 @@ contains
       end if
       if (.not. valid) return
       request%component = dof
-      if (keyword == 'CLOAD' .and. dof == dof_rotation) then
+      if (keyword == 'CLOAD' .and. (dof == dof_rotation .or. (dof == dof_turn .and. &
+         names_rotation(request, model)))) then
          call add_moment(data, request, model, context, report)
       else if (keyword == 'CLOAD' .and. all(dof /= [1, 2])) then
          call report%error(field_place(data, 2), 'a force acts on degree of freedom 1 or 2')
@@ -225,11 +228,13 @@ contains
             if (size(members) == 1) node = members(1)
          end associate
       end if
-      i = findloc(model%couplings%reference == node .and. .not. model%couplings%is_section(), &
+      i = findloc((model%couplings%reference == node .or. model%couplings%rotation_node == node) &
+         .and. .not. model%couplings%is_section(), &
          .true., dim=1)
       if (i == 0 .or. node == 0) then
          call report%error(field_place(data, 2), &
-            'a moment acts on the reference node of a *COUPLING; forces act on 1 and 2')
+            'a moment acts on the reference node of a *COUPLING or *RIGID BODY; forces act on '// &
+            '1 and 2')
          return
       end if
       request%set = 0
@@ -268,6 +273,15 @@ contains
       call read_degrees(data, report, first, last, request%value, valid)
       if (.not. valid) return
       do dof = first, last
+         if (names_rotation(request, model)) then
+            if (dof == dof_turn) then
+               call add_rotations(request, model, context)
+               call warn_of_turn(data, request%value, report)
+            else
+               call context%note(out_of_plane)
+            end if
+            cycle
+         end if
          select case (dof)
          case (1, 2, dof_temperature)
             request%component = dof
@@ -275,6 +289,7 @@ contains
          case (3:6)
             if (dof == dof_rotation .and. turns(request, model)) then
                call add_rotations(request, model, context)
+               call warn_of_turn(data, request%value, report)
                cycle
             end if
             if (abs(request%value) > 0.0_dp) then
@@ -398,6 +413,21 @@ contains
          model%couplings%is_section())
    end function turns
 
+   !> Whether a request is for the ROT NODE= of a rigid body.
+   pure logical function names_rotation(request, model)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      integer :: node
+
+      node = request%item
+      if (request%set > 0) then
+         associate (members => model%mesh%node_sets(request%set)%members)
+            if (size(members) == 1) node = members(1)
+         end associate
+      end if
+      names_rotation = node > 0 .and. any(model%couplings%rotation_node == node)
+   end function names_rotation
+
    elemental logical function is_target(node, request, model)
       integer, intent(in) :: node
       type(request_type), intent(in) :: request
@@ -406,6 +436,18 @@ contains
       is_target = node > 0 .and. node == request%item
       if (request%set > 0) is_target = any(model%mesh%node_sets(request%set)%members == node)
    end function is_target
+
+   !> Warns of a rotation that is not small.
+   subroutine warn_of_turn(data, angle, report)
+      type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: angle                        ! [rad]
+      type(deck_report_type), intent(inout) :: report
+
+      if (abs(angle) > large_turn) call report%warning(field_place(data, 4), 'a rotation of '// &
+         to_text(angle)//' rad is large: points move along their tangents, and gaps '// &
+         'and normals stay those of the undeformed model; turn the drawing, and let the '// &
+         'rotation be below '//to_text(large_turn))
+   end subroutine warn_of_turn
 
    !> Requests the rotations of reference nodes.
    subroutine add_rotations(request, model, context)
@@ -420,7 +462,8 @@ contains
       rotation%component = 1
       do i = 1, size(model%couplings)
          if (model%couplings(i)%is_section()) cycle
-         if (.not. is_target(model%couplings(i)%reference, request, model)) cycle
+         if (.not. (is_target(model%couplings(i)%reference, request, model) .or. &
+            is_target(model%couplings(i)%rotation_node, request, model))) cycle
          rotation%item = model%couplings(i)%rotation
          call context%boundaries%add(rotation)
       end do

@@ -56,7 +56,7 @@ contains
       call add_rotations(cards, context, mesh)
    end subroutine build_nodes
 
-   !> Adds a node for the rotation of each coupling, which no card can name.
+   !> Adds a node for the rotation of each coupling and rigid body, which no card can name.
    subroutine add_rotations(cards, context, mesh)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context
@@ -66,7 +66,7 @@ contains
 
       if (size(mesh%node_number) == 0) return
       do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'COUPLING') cycle
+         if (all(cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
          place = mesh%coordinates(:, 1)
          call add_node(mesh, place)
          context%node_place = [context%node_place, cards%keywords(k)%place]

@@ -6,6 +6,7 @@ module deck_builder_sets
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
    use deck_builder_lines, only: find_line_faces, is_line_card
+   use deck_builder_rigid, only: build_drawing, build_line_surface, is_rigid_side
    use deck_context, only: deck_context_type, name_last, place_list_type, read_target, take_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -262,13 +263,23 @@ contains
       kind = 'ELEMENT'
       surface%card = card%place%image
       errors = report%error_count()
-      call choose(card, 'TYPE', 'ELEMENT/NODE', report, kind)
+      call choose(card, 'TYPE', 'ELEMENT/NODE/SEGMENTS', report, kind)
       if (kind == 'NODE') call report%error(parameter_place(card, 'TYPE'), 'TYPE=NODE is '// &
          'refused on *SURFACE: contact needs the areas and normals of faces; name elements and '// &
          'faces S1 to S4')
-      if (report%error_count() > errors) then
-         ! The data of another type have other fields.
-         allocate(surface%faces(2, 0))
+      allocate(surface%faces(2, 0))
+      ! The data of another type have other fields.
+      if (report%error_count() > errors) return
+      if (kind == 'SEGMENTS') then
+         call build_drawing(cards, card, report, surface)
+      else if (card%last_data >= card%first_data) then
+         if (is_rigid_side(cards%data(card%first_data), context)) then
+            call build_line_surface(cards, card, context, mesh, report, surface)
+            kind = 'RIGID'
+         end if
+      end if
+      if (kind /= 'ELEMENT') then
+         if (.not. allocated(surface%drawing)) call report%lose('surface')
          return
       end if
       allocate(keys(0), named(0))

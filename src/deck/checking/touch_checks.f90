@@ -6,7 +6,7 @@ module touch_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_sides, only: element_sides_type, find_sides
-   use equations, only: equation_nodes, surface_nodes
+   use equations, only: coupled_nodes, equation_nodes, surface_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
@@ -141,7 +141,7 @@ contains
       end do
       constrained = equation_nodes(model%equations, size(constrained))
       do i = 1, size(model%couplings)
-         constrained(surface_nodes(model%mesh, model%couplings(i)%surface)) = .true.
+         constrained(coupled_nodes(model%mesh, model%couplings(i))) = .true.
          if (model%couplings(i)%is_section()) constrained(surface_nodes(model%mesh, &
             model%couplings(i)%opposite)) = .true.
       end do

@@ -354,7 +354,8 @@ contains
       character(*), intent(in) :: keyword, parameter
 
       select case (parameter)
-      case ('NSET', 'ELSET', 'SURFACE', 'ORIENTATION', 'REF NODE', 'NODE')
+      case ('NSET', 'ELSET', 'SURFACE', 'ORIENTATION', 'REF NODE', 'NODE', 'ROT NODE', 'TIE NSET', &
+         'PIN NSET', 'ANALYTICAL SURFACE')
          is_name = .true.
       case ('NAME')
          is_name = keyword == 'SURFACE' .or. keyword == 'ORIENTATION'
@@ -402,7 +403,12 @@ contains
       case ('NGEN')
          call prefix_fields(1, min(2, n), 1)
       case ('ELGEN', 'SURFACE')
-         call prefix_fields(1, min(1, n), 1)
+         if (to_upper(parameter_text(card, 'TYPE')) == 'SEGMENTS') then
+            if (instance%moves) call move_point(data, 2, instance, fields)
+            if (instance%moves .and. n > 3) call move_point(data, 4, instance, fields)
+         else
+            call prefix_fields(1, min(1, n), 1)
+         end if
       case ('EQUATION')
          if (n > 1) call prefix_fields(1, n, 3)
       case ('TIE', 'CONTACT PAIR')

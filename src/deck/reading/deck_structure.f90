@@ -163,7 +163,7 @@ contains
          call report%lose('surface interaction')
       case ('CONTACT PAIR')
          call report%lose('contact pair')
-      case ('EQUATION', 'COUPLING', 'KINEMATIC', 'PRE-TENSION SECTION')
+      case ('EQUATION', 'COUPLING', 'KINEMATIC', 'RIGID BODY', 'PRE-TENSION SECTION')
          call report%lose('equation')
       case default
          return

@@ -7,11 +7,12 @@ module element_types
    implicit none
    private
    public :: take_element_type, element_type_fields, line_node_count, line_kind
-   public :: drawn_line, truss, axial_spring, ground_spring, relative_spring
+   public :: rigid_line, drawn_line, truss, axial_spring, ground_spring, relative_spring
 
-   ! Kinds of elements with the nodes of a line: curves of a drawing, trusses, springs.
-   integer, parameter :: drawn_line = 0, truss = 1, axial_spring = 2, ground_spring = 3, &
-      relative_spring = 4
+   ! Kinds of elements with the nodes of a line: of rigid bodies, curves of a drawing, trusses,
+   ! springs.
+   integer, parameter :: rigid_line = -1, drawn_line = 0, truss = 1, axial_spring = 2, &
+      ground_spring = 3, relative_spring = 4
 
    character(3), parameter :: plane_names(3) = ['CPE', 'CPS', 'CAX']
    integer, parameter :: planes(3) = [plane_strain, plane_stress, axisymmetric]
@@ -129,21 +130,22 @@ contains
       character(*), intent(in) :: name   !! TYPE= in upper case, of a line
 
       line_kind = drawn_line
+      if (name == 'R2D2' .or. name == 'RAX2') line_kind = rigid_line
       if (name == 'T2D2') line_kind = truss
       if (name == 'SPRINGA') line_kind = axial_spring
       if (name == 'SPRING1') line_kind = ground_spring
       if (name == 'SPRING2') line_kind = relative_spring
    end function line_kind
 
-   !> Nodes of a spring, a truss, or a line element, such as gmsh writes for a physical curve; 0 for
-   !> all other types.
+   !> Nodes of a spring, a truss, a line of a rigid body, or a line element, such as gmsh writes for
+   !> a physical curve; 0 for all other types.
    pure integer function line_node_count(name)
       character(*), intent(in) :: name   !! TYPE= in upper case
 
       select case (name)
       case ('SPRING1')
          line_node_count = 1
-      case ('T3D2', 'T2D2', 'SPRINGA', 'SPRING2')
+      case ('T3D2', 'T2D2', 'SPRINGA', 'SPRING2', 'R2D2', 'RAX2')
          line_node_count = 2
       case ('T3D3')
          line_node_count = 3

@@ -68,7 +68,7 @@ module keywords
 
    integer, parameter :: shortest = 3   !! letters of an abbreviation
 
-   type(keyword_type), parameter :: known_keywords(87) = [ &
+   type(keyword_type), parameter :: known_keywords(88) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
@@ -135,6 +135,9 @@ module keywords
       keyword_type('ACCURACY', built, in_model, 1, many, 'ROUNDS='), &
       keyword_type('EQUATION', built, in_model, 1, many, ''), &
       keyword_type('COUPLING', built, in_model, 0, 0, 'REF NODE=/SURFACE=/CONSTRAINT NAME='), &
+      keyword_type('RIGID BODY', built, in_model, 0, 0, &
+         'REF NODE=/ROT NODE=/ELSET=/NSET=/TIE NSET=/PIN NSET=/'// &
+         'ANALYTICAL SURFACE=/ISOTHERMAL=/POSITION='), &
       keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
       keyword_type('PRE-TENSION SECTION', built, in_model, 0, 1, 'NODE=/SURFACE='), &
       keyword_type('STEP', built, in_both, 0, 0, &
@@ -227,7 +230,6 @@ module keywords
          'SYMMETRY MODEL/SUBMODEL/DASHPOT', &
          'bodies are held by *BOUNDARY, contact, *TIE, *EQUATION and *COUPLING'), &
       advice_type(refused, '', 'MPC', 'give its relations by *EQUATION or *COUPLING'), &
-      advice_type(refused, '', 'RIGID BODY', 'every body is elastic; give it a high modulus'), &
       advice_type(refused, '', 'GAP', 'name the faces of a *CONTACT PAIR'), &
       advice_type(refused, '', 'MASS', 'weight is *DENSITY with GRAV on *DLOAD'), &
       advice_type(refused, '', 'CHANGE MATERIAL/CHANGE SOLID SECTION/CHANGE SURFACE BEHAVIOR', &
@@ -240,6 +242,7 @@ module keywords
       advice_type(of_parameter, 'EQUATION', 'REMOVE', 'equations hold in all steps'), &
       advice_type(of_parameter, 'EQUATION', 'INPUT', 'take *INCLUDE behind the keyword'), &
       advice_type(of_parameter, 'INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &
+      advice_type(of_parameter, 'SURFACE', 'FILLET RADIUS', 'draw the fillets by CIRCL'), &
       advice_type(of_parameter, 'COUPLING', 'ORIENTATION', 'faces follow along x and y'), &
       advice_type(of_parameter, 'COUPLING', 'ALPHA', 'small rotations need no penalty'), &
       advice_type(of_parameter, 'GAP CONDUCTANCE', 'USER', &

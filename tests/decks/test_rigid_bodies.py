@@ -1,0 +1,193 @@
+"""Rigid bodies: drawings and lines as masters of contact, and elements that follow a node."""
+
+from math import pi
+
+import h5py
+import numpy as np
+import pytest
+from blocks import write
+from deck_runs import run, solve
+from physics import follows, judge, material, mesh
+
+YOUNG, POISSON, RADIUS, SIZE = 7e4, 0.33, 100.0, 40.0
+SMOOTH = ["*SURFACE INTERACTION, NAME=SMOOTH"]
+STATIC = ["*STEP", "*STATIC", "1., 1."]
+
+
+def graded(fine, count, end, ratio=1.35):
+    """Return places from 0: `count` sides of equal length, then growing ones to the end."""
+    places, side = [fine * k for k in range(count + 1)], fine
+    while places[-1] + side * ratio < end - side * ratio / 2:
+        side *= ratio
+        places.append(places[-1] + side)
+    return [*places[:-1], end]
+
+
+def roller(kind, force, pairing, arc="CIRCL, -60., 20., 0., 100."):
+    """Return the half of a rigid cylinder or a sphere that a force presses on a block."""
+    across, down = graded(0.25, 8, SIZE), graded(0.25, 6, SIZE)
+    return [*mesh("BLOCK", across, [-y for y in down[::-1]], kind), "*NODE", "90001, 0., 100.",
+            "*SURFACE, NAME=ROLL, TYPE=SEGMENTS", "START, 60., 20.", arc,
+            "*RIGID BODY, REF NODE=90001, ANALYTICAL SURFACE=ROLL",
+            *material("BLOCK", (YOUNG, POISSON)), *SMOOTH,
+            f"*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, PAIRING={pairing}", "BLOCK.TOP, ROLL",
+            "*REFINE, LEVELS=1", *STATIC, "*BOUNDARY", "BLOCK.LEFT, 1", "BLOCK.BOTTOM, 2",
+            "90001, 1", "90001, 6", "*CLOAD", f"90001, 2, {-force!r}", "*END STEP"]
+
+
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+@pytest.mark.parametrize("kind", ["CPE8", "CAX8"])
+def test_rigid_cylinder_and_sphere_press_as_hertz_says(tmp_path, kind, pairing):
+    """K. L. Johnson, Contact Mechanics, 1985, section 4.2: half-width 1. The normal force counts
+    along normals that lean by x/(2 R)."""
+    modulus = YOUNG / (1 - POISSON**2)
+    force, peak = pi * modulus / 8 / RADIUS, modulus / 2 / RADIUS
+    if kind == "CAX8":
+        force, peak = 4 * modulus / 3 / RADIUS, 2 * modulus / pi / RADIUS
+    judge(tmp_path, roller(kind, force, pairing), [
+        ("normal_force", "FACE", "LAST", force, 1e-5),
+        ("edge_contact", "FACE", "LAST", 1.0, 0.01),
+        ("pressure", "FACE@0.", "LAST", peak, 0.01)])
+
+
+PLATE = ["*NODE", "9001, 0.5, 3.25", "9002, 2., 3.", "9003, 0., 3.", "9004, -2., 3."]
+DRAWN = [*PLATE, "*SURFACE, NAME=PLATE, TYPE=SEGMENTS", "START, 2., 3.", "LINE, 0., 3.",
+         "LINE, -2., 3.", "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=PLATE"]
+LINES = [*PLATE, "*ELEMENT, TYPE=R2D2, ELSET=LINES", "9001, 9002, 9003", "9002, 9003, 9004",
+         "*SURFACE, NAME=PLATE", "LINES, SPOS", "*RIGID BODY, REF NODE=9001, ELSET=LINES"]
+
+
+@pytest.mark.parametrize("rigid", [DRAWN, LINES], ids=["drawing", "lines"])
+def test_rigid_plate_tilts_under_a_moment(tmp_path, rigid):
+    """A block without lateral contraction, 2 wide and 3 high, is a bar in bending; force and
+    moment act 0.5 beside its middle."""
+    force, moment = 20.0, -7.0
+    cards = [*mesh("BLOCK", [-1.0, -0.5, 0.2, 1.0], [0.0, 1.0, 2.0, 3.0]), *rigid,
+             *material("BLOCK", (1000.0, 0.0)), *SMOOTH,
+             "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE", "BLOCK.TOP, PLATE", *STATIC,
+             "*BOUNDARY", "BLOCK.BOTTOM, 2", "1, 1", "9001, 1", "*CLOAD",
+             f"9001, 2, {-force!r}", f"9001, 6, {-moment!r}", "*END STEP"]
+    pressure, bending = force / 2, (moment + force * 0.5) / (2.0**3 / 12)
+    judge(tmp_path, cards, [
+        ("normal_force", "FACE", "LAST", force, 1e-9),
+        ("S22", "BLOCK.LEFT", "LAST", -pressure + bending, 1e-9),
+        ("S22", "BLOCK.RIGHT", "LAST", -pressure - bending, 1e-9),
+        ("U2", "9001", "LAST", -3.0 * (pressure + 0.5 * bending) / 1000.0, 1e-9)])
+
+
+def test_rigid_elements_are_as_elements_of_a_far_larger_modulus(tmp_path):
+    """Cylinder of a modulus 1e6 times that of the block, or rigid; same force at its top."""
+    def deck(stiff):
+        across = graded(0.25, 8, SIZE)
+        up = graded(0.25, 6, SIZE)
+        cards = [*mesh("ROLL", across, up, "CPE8", first=50001,
+                       to=lambda x, y: (x, y + (x * x / 2 / RADIUS) * (1 - y / SIZE))),
+                 *mesh("BLOCK", across, [-y for y in up[::-1]], "CPE8"), "*NODE", "90001, 0., 40.",
+                 *material("ROLL", (YOUNG * 1e6, POISSON)), *material("BLOCK", (YOUNG, POISSON)),
+                 *SMOOTH, "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE", "BLOCK.TOP, ROLL.BOTTOM"]
+        if not stiff:
+            cards += ["*RIGID BODY, REF NODE=90001, ELSET=ROLL"]
+        moved = ["ROLL.TOP, 1", "ROLL.TOP, 2, 2, -0.05"] if stiff else [
+            "90001, 1", "90001, 6", "90001, 2, 2, -0.05"]
+        return [*cards, *STATIC, "*BOUNDARY", "BLOCK.LEFT, 1", "BLOCK.BOTTOM, 2", *moved,
+                *(["ROLL.LEFT, 1"] if stiff else []), "*END STEP"]
+
+    found = []
+    for stiff in (True, False):
+        with h5py.File(solve(write(tmp_path / f"stiff{stiff}.inp", deck(stiff)))) as file:
+            face = file["contact/FACE"]
+            found.append([face[name][-1] for name in
+                          ("normal_force", "edge_contact", "pressure")])
+    assert found[0][0] == pytest.approx(found[1][0], rel=1e-5)
+    assert found[0][1] == pytest.approx(found[1][1], rel=1e-5)
+    assert np.abs(found[0][2] - found[1][2]).max() < 1e-5 * found[1][2].max()
+
+
+def heated(value):
+    """Return a bar, 2 high, between 0 and a rigid plate of a temperature, h = 4 in between."""
+    cards = [*mesh("BLOCK", [-1.0, 0.0, 1.0], [0.0, 1.0, 3.0]), *DRAWN,
+             *material("BLOCK", (1000.0, 0.0), conductivity=6.0), *SMOOTH, "*GAP CONDUCTANCE",
+             "4., 0.", "4., 100.", "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE",
+             "BLOCK.TOP, PLATE", "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE",
+             "1., 1.", "*BOUNDARY", "BLOCK.BOTTOM, 1, 2", "BLOCK.BOTTOM, 11", "9001, 1, 1",
+             "9001, 6", "9001, 2, 2, -0.01", f"9001, 11, 11, {value!r}", "*END STEP"]
+    flux = value / (3.0 / 6.0 + 1.0 / 4.0)
+    return cards, [("master_temperature", "FACE", "LAST", value, 1e-9),
+                   ("heat_rate", "FACE", "LAST", -2.0 * flux, 1e-9),
+                   ("slave_temperature", "FACE", "LAST", value - flux / 4.0, 1e-9)]
+
+
+def test_heat_comes_from_the_reference_node(tmp_path):
+    judge(tmp_path, *heated(60.0))
+
+
+def test_rotation_that_is_large_is_warned_of(tmp_path):
+    cards, _ = heated(60.0)
+    deck = tmp_path / "deck.inp"
+    deck.write_text("\n".join(cards).replace("9001, 6", "9001, 6, 6, 0.5") + "\n")
+    assert "a rotation of 0.5 rad is large" in run("check", deck).stderr
+
+
+BLOCK = [*mesh("BLOCK", [-1.0, 0.0, 1.0], [0.0, 1.0, 3.0]),
+         *material("BLOCK", (1000.0, 0.0), conductivity=6.0), "*NODE", "9001, 0., 2.",
+         "9002, 0., 2.", "9003, 0., 2.", "9004, 0., 2.", "*ELSET, ELSET=TWO", "2",
+         "*ELSET, ELSET=THREE", "3", "*NSET, NSET=TWO, ELSET=TWO", "*NSET, NSET=THREE, ELSET=THREE"]
+
+
+@pytest.mark.parametrize(("parameter", "values"), [
+    pytest.param("NSET", ("BLOCK.TOP", "BLOCK.RIGHT"), marks=pytest.mark.changes(
+        "RIGID BODY, NSET")),
+    pytest.param("TIE NSET", ("BLOCK.TOP", "BLOCK.RIGHT"), marks=pytest.mark.changes(
+        "RIGID BODY, TIE NSET")),
+    pytest.param("PIN NSET", ("BLOCK.TOP", "BLOCK.RIGHT"), marks=pytest.mark.changes(
+        "RIGID BODY, PIN NSET")),
+    pytest.param("ELSET", ("TWO", "THREE"), marks=pytest.mark.changes("RIGID BODY, ELSET"))])
+def test_what_is_named_follows(tmp_path, parameter, values):
+    follows(tmp_path, lambda value: (
+        [*BLOCK, f"*RIGID BODY, REF NODE=9001, {parameter}={value}", *STATIC, "*BOUNDARY",
+         "1, 1, 2", "9001, 1, 1, 0.02", "9001, 2", "9001, 6", "*END STEP"],
+        [("U1", value, "LAST", 0.02, 1e-9)]), *values)
+
+
+@pytest.mark.changes("RIGID BODY, REF NODE")
+def test_reference_node_is_the_one_named(tmp_path):
+    follows(tmp_path, lambda value: (
+        [*BLOCK, f"*RIGID BODY, REF NODE={value}, NSET=BLOCK.TOP",
+         f"*RIGID BODY, REF NODE={18003 - value}, NSET=BLOCK.BOTTOM", *STATIC, "*BOUNDARY",
+         "9001, 1, 1, 0.02", "9001, 2", "9001, 6", "9002, 1, 2", "9002, 6", "*END STEP"],
+        [("U1", "BLOCK.TOP", "LAST", 0.02 * (value == 9001), 1e-9, "ABS")]), 9001, 9002)
+
+
+@pytest.mark.changes("RIGID BODY, ROT NODE")
+def test_node_of_the_rotation_is_the_one_named(tmp_path):
+    """The face is 1 above the reference node."""
+    follows(tmp_path, lambda value: (
+        [*BLOCK, f"*RIGID BODY, REF NODE=9001, ROT NODE={value}, NSET=BLOCK.TOP",
+         f"*RIGID BODY, REF NODE=9002, ROT NODE={18007 - value}, NSET=BLOCK.BOTTOM", *STATIC,
+         "*BOUNDARY", "9001, 1, 2", "9002, 1, 2", "9003, 1, 3, 0.01", "9004, 3", "*END STEP"],
+        [("U1", "BLOCK.TOP", "LAST", -0.01 * (value == 9003), 1e-9, "ABS")]), 9003, 9004)
+
+
+@pytest.mark.changes("RIGID BODY, ISOTHERMAL")
+def test_rigid_body_has_one_temperature_if_asked_for(tmp_path):
+    follows(tmp_path, lambda value: (
+        [*BLOCK, f"*RIGID BODY, REF NODE=9001, NSET=BLOCK.TOP, ISOTHERMAL={value}", "*STEP",
+         "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "BLOCK.BOTTOM, 11",
+         "9001, 11, 11, 60.", "*END STEP"],
+        [("NT", "BLOCK.TOP", "LAST", 60.0 * (value == "YES"), 1e-9, "ABS")]), "YES", "NO")
+
+
+@pytest.mark.changes("RIGID BODY, ANALYTICAL SURFACE")
+def test_drawing_is_the_one_named(tmp_path):
+    corner = next(card.split(",")[0] for card in BLOCK if card.endswith(", -1, 3"))
+    follows(tmp_path, lambda value: (
+        [*BLOCK, "*SURFACE, NAME=WEST", "3, S3", "*SURFACE, NAME=EAST", "4, S3",
+         "*SURFACE, NAME=ONE, TYPE=SEGMENTS", "START, 0., 3.", "LINE, -1., 3.",
+         "*SURFACE, NAME=TWO, TYPE=SEGMENTS", "START, 1., 3.", "LINE, 0., 3.",
+         f"*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE={value}",
+         f"*RIGID BODY, REF NODE=9002, ANALYTICAL SURFACE={dict(ONE='TWO', TWO='ONE')[value]}",
+         *SMOOTH, "*CONTACT PAIR, INTERACTION=SMOOTH, PAIRING=NODES", "WEST, ONE",
+         "*CONTACT PAIR, INTERACTION=SMOOTH, PAIRING=SURFACES", "EAST, TWO", *STATIC,
+         "*BOUNDARY", "BLOCK.BOTTOM, 1, 2", "9001, 1", "9001, 6", "9002, 1", "9002, 6",
+         "9001, 2, 2, -0.01", "9002, 2, 2, -0.012", "*END STEP"],
+        [("U2", corner, "LAST", -0.01 if value == "ONE" else -0.012, 1e-9)]), "ONE", "TWO")
