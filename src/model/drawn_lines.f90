@@ -136,7 +136,7 @@ contains
       real(dp), allocatable :: samples(:, :)   !! (2, 2 sides + 1), or (2, 2 sides) of a closed line
       real(dp), allocatable :: ends(:), feet(:)
       real(dp) :: beyond, foot(2), t
-      integer :: i, k, n, piece, pieces(size(x, 2))
+      integer :: i, k, n, pieces(size(x, 2))
 
       allocate (feet(size(x, 2)))
       do k = 1, size(feet)
