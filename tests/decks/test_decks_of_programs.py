@@ -2,6 +2,8 @@
 with the answers of theory. Those of Abaqus/CAE are in test_abaqus_cae.py, the first ones of all in
 test_foreign.py."""
 
+import math
+
 import pytest
 from deck_runs import DECKS, run
 from physics import judge
@@ -66,6 +68,14 @@ CHECKS = {
                     ("U2", "1201", LAST, 60 / 210e3 * (5 / 3 + 0.3), 3e-3)],
     "abaqus_cylinder": [
         ("U1", "OUTSIDE", LAST, lame_in_plane_strain(20, 10, 20, 30, 1000, 0.3), 0.01)],
+    "abaqus_rod": [
+        (f"U{c}", corner, LAST, 0.01 * lame_in_plane_strain(20, 10, 20, 1, 1000, 0.3)
+         / lame_in_plane_strain(10, 10, 20, 1, 1000, 0.3), 2e-3)
+        for c, corner in ((1, "OUTMOST"), (2, "TOPMOST"))],
+    "abaqus_platen": [("S22", "MIN", LAST, -10.0, 1e-9), ("S22", "MAX", LAST, -10.0, 1e-9),
+                      ("normal_force", "TOP", LAST, 40.0, 1e-9)],
+    "abaqus_stamp": [("S22", "MIN", LAST, -100 / (4 * math.pi), 1e-9),
+                     ("U2", "REF", LAST, -2 * 100 / (4 * math.pi) / 1000, 1e-9)],
     "abaqus_gap": [("heat_flux", "SL", LAST, FLUX, 1e-9),
                    ("slave_temperature", "SL", LAST, 900 - FLUX * 0.04 / 20, 1e-9)],
 }
