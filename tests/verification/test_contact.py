@@ -82,6 +82,25 @@ def hertz_sphere(level):
         SPHERE_WIDTH, peak, SPHERE_FORCE, level)
 
 
+RIGID = 7e4 / (1 - 0.33**2)
+
+
+def rigid(kind, level):
+    """Return a rigid cylinder or sphere, an arc, on a block, pressed to a half-width of 1."""
+    across, down = graded(FIRST_SIDE, 8, SIZE), graded(FIRST_SIDE, 6, SIZE)
+    force, peak = pi * RIGID / 8 / CURVATURE, RIGID / 2 / CURVATURE
+    if kind == "CAX8":
+        force, peak = 4 * RIGID / 3 / CURVATURE, 2 * RIGID / pi / CURVATURE
+    cards = [*mesh("BLOCK", across, [-y for y in down[::-1]], kind), "*NODE", "90001, 0., 100.",
+             "*SURFACE, NAME=ARC, TYPE=SEGMENTS", "START, 60., 20.", "CIRCL, -60., 20., 0., 100.",
+             "*RIGID BODY, REF NODE=90001, ANALYTICAL SURFACE=ARC",
+             *material("BLOCK", (7e4, 0.33)), *SMOOTH,
+             "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, PAIRING=NODES", "BLOCK.TOP, ARC",
+             f"*REFINE, LEVELS={level}", *STATIC, "*BOUNDARY", "BLOCK.LEFT, 1", "BLOCK.BOTTOM, 2",
+             "90001, 1", "90001, 6", "*CLOAD", f"90001, 2, {-force!r}", "*END STEP"]
+    return cards, hertz_checks(1.0, peak, force, level)
+
+
 ROLLER = 50.0
 
 
@@ -187,6 +206,18 @@ def cases():
              """The same section about the axis: a sphere on a cylinder, with the force for which a
              = 1 mm.""", "Johnson, section 4.2.", edges + "Pressures and force as above.",
              [0, 1, 2], hertz_sphere, lambda n: f"a/{4 * 2**n}", short=1),
+        Case("Hertz, rigid cylinder",
+             """A rigid cylinder of radius 100 mm, an arc of `*SURFACE, TYPE=SEGMENTS`, on a block of
+             E 70 GPa, nu 0.33, 40 mm wide and high, that the force of a = 1 mm presses down at its
+             reference node; node pairs.""",
+             "H. Hertz; K. L. Johnson, Contact Mechanics, 1985, section 4.2.",
+             edges + """Pressures: 2 %, 1 % and 0.5 %, as of two elastic bodies.""",
+             [0, 1, 2], lambda n: rigid("CPE8", n), lambda n: f"a/{4 * 2**n}", short=1),
+        Case("Hertz, rigid sphere",
+             "The same about the axis.",
+             "H. Hertz; K. L. Johnson, Contact Mechanics, 1985, section 4.2.",
+             edges + """Pressures: 2 %, 1 % and 0.5 %.""",
+             [0, 1, 2], lambda n: rigid("CAX8", n), lambda n: f"a/{4 * 2**n}", short=1),
         Case("NAFEMS, cylinder on block",
              """A steel cylinder of radius 50 mm (E 210 GPa, nu 0.3) is pressed on an aluminium
              block of 200 x 200 mm (70 GPa, 0.3) with 35 kN/mm; plane strain, right half,
