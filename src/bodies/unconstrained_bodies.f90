@@ -119,6 +119,13 @@ contains
       of_bars = joints_of(points%elongations)
       call find_free_motions(model%mesh, held, [joints(:n), of_ties, of_equations, of_bars], &
          motions)
+      if (.not. allocated(model%couplings)) return
+      do k = 1, size(motions)
+         if (motions(k)%node == 0) cycle
+         if (all(model%couplings%rotation /= motions(k)%node)) cycle
+         motions(k)%turns = .true.
+         motions(k)%way = 'about its reference node'
+      end do
    end subroutine free_motions
 
    !> Condition of a contact point along a direction.
@@ -314,16 +321,29 @@ contains
          0.0_dp)) = .true.
    end function with_source
 
+   !> The *RIGID BODY whose reference node, or node of its rotation, a node is; 0 for none.
+   pure integer function rigid_body_of(model, node)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: node
+
+      rigid_body_of = 0
+      if (allocated(model%couplings)) rigid_body_of = findloc(model%couplings%is_rigid .and. &
+         (model%couplings%reference == node .or. model%couplings%rotation == node), .true., dim=1)
+   end function rigid_body_of
+
    !> The moving part, in words.
    function mover(model, motion) result(name)
       type(model_type), intent(in) :: model
       type(free_motion_type), intent(in) :: motion
       character(:), allocatable :: name
+      integer :: i
 
       if (motion%body > 0) then
          name = body_name(model, motion%body)
       else
          name = 'node '//to_text(model%mesh%node_number(motion%node))//' of an equation'
+         i = rigid_body_of(model, motion%node)
+         if (i > 0) name = 'the body of '//model%couplings(i)%title//','
       end if
    end function mover
 

@@ -191,3 +191,11 @@ def test_drawing_is_the_one_named(tmp_path):
          "*BOUNDARY", "BLOCK.BOTTOM, 1, 2", "9001, 1", "9001, 6", "9002, 1", "9002, 6",
          "9001, 2, 2, -0.01", "9002, 2, 2, -0.012", "*END STEP"],
         [("U2", corner, "LAST", -0.01 if value == "ONE" else -0.012, 1e-9)]), "ONE", "TWO")
+
+
+def test_a_body_that_nothing_keeps_from_turning_is_named(tmp_path):
+    cards = [card for card in roller("CPE8", 300.0, "SURFACES") if card != "90001, 6"]
+    process = run("run", "--quiet", write(tmp_path / "deck.inp", cards), "--out", tmp_path)
+    assert process.returncode == 2
+    assert "is free to turn about its reference node" in process.stderr
+    assert "the body of *RIGID BODY, line" in process.stderr
