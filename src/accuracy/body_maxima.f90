@@ -40,29 +40,28 @@ contains
          do e = 1, size(counts, 2)
             n = element_node_count(mesh%element_kind(e))
             associate (places => points%element_points(:n, e))
-               if (size(stress) > 0 .and. counts(of_stress, e)) call take(of_stress, stress(places))
-               if (counts(of_temperature, e)) call take(of_temperature, &
-                  fields%temperature(points%node(places)))
+               if (size(stress) > 0 .and. counts(of_stress, e)) call take(of_stress, &
+                  mesh%element_body(e), places, stress(places), found)
+               if (counts(of_temperature, e)) call take(of_temperature, mesh%element_body(e), &
+                  places, fields%temperature(points%node(places)), found)
             end associate
          end do
       end associate
-
-   contains
-
-      pure subroutine take(q, values)
-         integer, intent(in) :: q
-         real(dp), intent(in) :: values(:)
-         integer :: k
-
-         associate (b => mesh%element_body(e))
-            k = maxloc(values, dim=1)
-            if (values(k) <= found%value(q, b)) return
-            found%value(q, b) = values(k)
-            found%point(q, b) = points%element_points(k, e)
-         end associate
-      end subroutine take
-
    end function places_of
+
+   !> Keeps the largest value at some points of a body where it exceeds what was found.
+   pure subroutine take(q, body, places, values, found)
+      integer, intent(in) :: q, body
+      integer, intent(in) :: places(:)           ! (n) points
+      real(dp), intent(in) :: values(:)          ! (n)
+      type(places_type), intent(inout) :: found
+      integer :: k
+
+      k = maxloc(values, dim=1)
+      if (values(k) <= found%value(q, body)) return
+      found%value(q, body) = values(k)
+      found%point(q, body) = places(k)
+   end subroutine take
 
    !> The maxima where some elements are divided, of the children of those looked at.
    pure function divided_places(divided, counts) result(found)

@@ -297,11 +297,14 @@ contains
             end if
             do q = 1, size(estimated)
                if (estimated(q)%is_of_friction .or. estimated(q)%resolution > 0.0_dp) cycle
-               if (ieee_is_nan(errors%value(q)) .or. .not. abs(errors%value(q)) > 0.0_dp) cycle
+               if (ieee_is_nan(errors%value(q))) cycle
+               if (abs(errors%value(q)) <= 0.0_dp) cycle
                if (ieee_is_nan(part + errors%increment(q))) then
                   part = part + errors%increment(q)
                else
-                  part = max(part, errors%increment(q)/abs(errors%value(q)))
+                  part = max(part, merge(1.0_dp, errors%increment(q)/ &
+                     max(abs(errors%value(q)), errors%increment(q), tiny(part)), &
+                     errors%increment(q) >= abs(errors%value(q))))
                end if
             end do
          end associate

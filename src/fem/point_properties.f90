@@ -21,7 +21,7 @@ contains
       integer :: j
 
       e = in_global_axes(material, axes)
-      if (plane /= plane_stress) return
+      if (plane /= plane_stress .or. e(3, 3) <= 0.0_dp) return
       across = e(:, 3)/e(3, 3)
       do j = 1, 4
          e(:, j) = e(:, j) - across*e(3, j)
