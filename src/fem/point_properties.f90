@@ -42,8 +42,8 @@ contains
 
       beta = matmul(material%elasticity, [expansion, 0.0_dp])
       if (.not. are_x_and_y(axes)) beta = matmul(transpose(strain_rotation(axes)), beta)
-      if (plane /= plane_stress) return
       e = in_global_axes(material, axes)
+      if (plane /= plane_stress .or. e(3, 3) <= 0.0_dp) return
       beta = beta - e(:, 3)*(beta(3)/e(3, 3))
       beta(3) = 0.0_dp
    end function thermal_modulus_in
