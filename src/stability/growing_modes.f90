@@ -2,8 +2,8 @@
 !> fastest one.
 !>
 !> The number is that of the bodies projected on their responses at rates from a tenth of the
-!> slowest conduction on, up to where the gain of the coupling is small, and, where some grow, once
-!> more above the fastest one. That is found on the bodies themselves (fastest_motion), where the
+!> slowest conduction on, up to where the gain of the coupling is small, and, where some grow or
+!> swing with little decay, once more above the fastest of these. That is found on the bodies themselves (fastest_motion), where the
 !> growing ones are counted again: the one checks the other.
 module growing_modes
    use dense, only: eigenvalues
@@ -26,6 +26,7 @@ module growing_modes
    real(dp), parameter :: ratio = 10.0_dp      !! of one rate to the next
    integer, parameter :: least_rates = 3, most_rates = 8
    real(dp), parameter :: above = 1.5_dp       !! the fastest rate: where it is sought
+   real(dp), parameter :: light = 0.5_dp       !! decay in a modulus, below which a motion may grow
    real(dp), parameter :: neutral = 1.0e-8_dp  !! part of the slowest conduction that is no growth
    real(dp), parameter :: small_gain = 0.3_dp  !! largest modulus, beyond which nothing grows
 
@@ -58,7 +59,7 @@ contains
    end subroutine analyse_stability
 
    !> Counts the growing motions and finds the fastest one: at the first rate where none seems to
-   !> grow, else at one above the growing ones, which is one more of the projection.
+   !> grow or nearly so, else at one above those, which is one more of the projection.
    !> Errors: as small_motion_type's begin and motion_response_type's make.
    subroutine find_motions(model, simulation, record, error)
       type(model_type), intent(in) :: model
@@ -85,9 +86,9 @@ contains
          if (allocated(error)) return
          call projection%rates(rates, is_known)
       end if
-      if (any(real(rates) > neutral*slowest)) then
-         fastest = abs(rates(maxloc(real(rates), dim=1)))
-         call response%make(model, simulation, motion, above*fastest, error)
+      if (any(real(rates) > -light*abs(rates))) then
+         fastest = abs(rates(maxloc(real(rates), dim=1, mask=real(rates) > -light*abs(rates))))
+         call response%make(model, simulation, motion, above*max(fastest, slower*slowest), error)
          if (allocated(error)) return
          call sample(simulation, motion, response, projection)
          call projection%rates(rates, is_known)

@@ -21,7 +21,7 @@ module projected_motions
    public :: projected_motions_type
 
    !> Part of the energy A'/sigma + E of a response, beside others, that is rounding.
-   real(dp), parameter :: rounding = 1.0e-10_dp
+   real(dp), parameter :: rounding = 1.0e-8_dp
    real(dp), parameter :: beyond = 3.0_dp   !! times the largest sigma: no rates farther from it
 
    !> The projection, rate by rate.

@@ -408,6 +408,10 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     """Names in the first columns of its tables are datasets, or attributes of /run."""
     shutil.copy(EXAMPLES / "press_fit.inp", tmp_path)
     shutil.copy(EXAMPLES / "press_fit.mesh", tmp_path)
+    for ending in "inp", "mesh":
+        shutil.copy(EXAMPLES / f"bolted_flange.{ending}", tmp_path)
+    status, said = run(tmp_path / "bolted_flange.inp")
+    assert status == 0, said
     status, said = run(tmp_path / "press_fit.inp", "--accuracy", "1%")
     assert status == 0, said
     rods = EXAMPLES.parent / "rods"
@@ -419,8 +423,8 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
         assert status == 0, said
     names = set()
     for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
-                 *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "stretched", "rubbed",
-                                                      "branch"))):
+                 *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "bolted_flange",
+                                                            "stretched", "rubbed", "branch"))):
         with h5py.File(path) as file:
             names |= {name.rpartition("/")[2] for name in every_dataset(file)}
             names |= set(file["run"].attrs) if "run" in file else set()
