@@ -26,7 +26,7 @@ module growing_modes
    real(dp), parameter :: ratio = 10.0_dp      !! of one rate to the next
    integer, parameter :: least_rates = 3, most_rates = 8
    real(dp), parameter :: above = 1.5_dp       !! the fastest rate: where it is sought
-   real(dp), parameter :: light = 0.5_dp       !! decay in a modulus, below which a motion may grow
+   real(dp), parameter :: light = 0.5_dp       !! decay in a modulus, below which it may be growth
    real(dp), parameter :: neutral = 1.0e-8_dp  !! part of the slowest conduction that is no growth
    real(dp), parameter :: small_gain = 0.3_dp  !! largest modulus, beyond which nothing grows
 
@@ -88,7 +88,8 @@ contains
       end if
       if (any(real(rates) > -light*abs(rates))) then
          fastest = abs(rates(maxloc(real(rates), dim=1, mask=real(rates) > -light*abs(rates))))
-         call response%make(model, simulation, motion, above*max(fastest, slower*slowest), error)
+         call response%make(model, simulation, motion, above*max(fastest, slower*slowest), &
+            error)
          if (allocated(error)) return
          call sample(simulation, motion, response, projection)
          call projection%rates(rates, is_known)
