@@ -3,8 +3,8 @@
 !>
 !> The number is that of the bodies projected on their responses at rates from a tenth of the
 !> slowest conduction on, up to where the gain of the coupling is small, and, where some grow or
-!> swing with little decay, once more above the fastest of these. That is found on the bodies themselves (fastest_motion), where the
-!> growing ones are counted again: the one checks the other.
+!> swing with little decay, once more above the fastest of these. That is found on the bodies
+!> themselves (fastest_motion), where the growing ones are counted again: the one checks the other.
 module growing_modes
    use dense, only: eigenvalues
    use due_output, only: stability_is_due
