@@ -182,9 +182,7 @@ contains
          do b = 1, size(record%body_errors)
             if (self%found%point(q, b) == 0) cycle
             associate (errors => record%body_errors(b))
-               if (q == of_stress) left = of_energy*energies(1)*errors%value(q)
-               if (q == of_temperature) left = left_in_heat(simulation, record, errors%node(q), &
-                  energies(2))
+               left = left_at(simulation, record, errors%value(q), q, errors%node(q), energies)
                change = max(fine%value(q, b) - errors%value(q), vertex_near(divided, values, &
                   errors%node(q)) - errors%value(q), change_at(self, model, divided, record, &
                   self%found%point(q, b), trim(maxima(q)%name)))
@@ -194,19 +192,24 @@ contains
       end do
    end subroutine bound
 
-   !> What the temperature at a node may be off by beyond its change; 0 where it is given.
-   pure real(dp) function left_in_heat(simulation, record, node, energy) result(left)
+   !> What the elements that are not divided leave of the error at a node: of a temperature that is
+   !> given, nothing.
+   pure real(dp) function left_at(simulation, record, largest, q, node, energies) result(left)
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(in) :: record
-      integer, intent(in) :: node
-      real(dp), intent(in) :: energy
+      real(dp), intent(in) :: largest            ! of q in the body
+      integer, intent(in) :: q, node             ! of_stress or of_temperature, where
+      real(dp), intent(in) :: energies(2)        ! as for `bound`
 
       left = 0.0_dp
-      associate (t => record%fields%temperature)
-         if (.not. simulation%loads%temperature%active(node)) left = of_energy_in_heat*energy* &
-            (maxval(t) - minval(t))
-      end associate
-   end function left_in_heat
+      if (q == of_stress) then
+         left = of_energy*energies(1)*largest
+      else if (.not. simulation%loads%temperature%active(node)) then
+         associate (t => record%fields%temperature)
+            left = of_energy_in_heat*energies(2)*(maxval(t) - minval(t))
+         end associate
+      end if
+   end function left_at
 
    !> How much a quantity changes at a point, of stress at least the von Mises stress of the change.
    pure real(dp) function change_at(self, model, divided, record, point, name) result(change)
@@ -243,7 +246,6 @@ contains
       real(dp), intent(in) :: energies(2)                    !! as for `bound`
       type(increment_record_type), intent(inout) :: record   !! with all parts of its bounds
       character(:), allocatable :: name
-      real(dp) :: left
       integer :: i, q
 
       allocate (record%check_bounds(size(self%checked)), source=ieee_value(1.0_dp, ieee_quiet_nan))
@@ -254,9 +256,8 @@ contains
             q = merge(of_temperature, of_stress, name == 'NT')
             if (q == of_stress .and. self%is_singular(node)) cycle
             associate (errors => record%body_errors(model%mesh%node_body(node)))
-               if (q == of_stress) left = of_energy*energies(1)*errors%value(q)
-               if (q == of_temperature) left = left_in_heat(simulation, record, node, energies(2))
-               record%check_bounds(i) = left + errors%increment(q) + errors%iteration(q) + &
+               record%check_bounds(i) = left_at(simulation, record, errors%value(q), q, node, &
+                  energies) + errors%increment(q) + errors%iteration(q) + &
                   of_change*change_at(self, model, divided, record, node, name)
             end associate
          end associate
