@@ -16,6 +16,7 @@ module connections
    use mesh, only: mesh_type
    use model, only: model_type
    use mortar_segments, only: hat_geometry_type
+   use overlap_laws, only: overlap_law_type
    use sum_lists, only: sum_list_type
    use temperature_laws, only: face_temperatures_type, law_at, law_jumps
    use transforms, only: partner_type
@@ -64,6 +65,8 @@ module connections
       !> (m) the same of nodal forces, with the largest one for a shear; unlimited at contact points
       !> of weight 0, over which no traction acts
       type(friction_law_type), allocatable :: nodal_friction(:)
+      !> (m) how faces overlap; unallocated where all are hard
+      type(overlap_law_type), allocatable :: overlap(:)
       !> (m) whether the interface is removed: its contact points are open whatever their gaps, and
       !> have neither friction nor conductance
       logical, allocatable :: removed(:)
@@ -282,12 +285,16 @@ contains
       associate (m => size(points%weight))
          allocate (laws%conductance(m), laws%friction(m))
          allocate (laws%removed(m), source=.false.)
+         if (any(model%interactions(model%contacts%interaction)%overlap%is_soft())) then
+            allocate (laws%overlap(m))
+         end if
       end associate
       do i = 1, size(model%contacts)
          associate (first => points%interface_start(i), last => points%interface_start(i + 1) - 1, &
             interaction => model%interactions(model%contacts(i)%interaction))
             laws%removed(first:last) = is_removed(model%steps(:step)%changes, i)
             if (any(laws%removed(first:last))) cycle
+            if (allocated(laws%overlap)) laws%overlap(first:last) = interaction%overlap
             laws%conductance(first:last) = interaction%law
             laws%friction(first:last) = latest_friction(model%steps(:step)%changes, &
                model%contacts(i)%interaction, interaction%friction)

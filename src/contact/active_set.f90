@@ -25,6 +25,7 @@ module active_set
    public :: solve_contact
 
    integer, parameter :: most_sets = 200           !! active sets tried before giving up
+   integer, parameter :: most_tangents = 100       !! of soft faces before giving up
    integer, parameter :: soft_steps = 12           !! steps in which a softly held body is let go
    !> of the contact points' stiffness, in the first of them
    real(dp), parameter :: first_hold = 1.0e-3_dp
@@ -38,14 +39,50 @@ contains
 
    !> Contact state under a condensed load, the references of friction being given, and its idle
    !> contact points. Motions that nothing drives or holds are least from the positions of the
-   !> guess, whatever sets are tried.
-   !> Errors: no active set satisfies all conditions; the bodies are not held, and then driven is
-   !> set, and the state is the one in which they are driven away.
+   !> guess, whatever sets are tried. Gaps of soft faces are negative where these overlap.
+   !> Errors: no active set satisfies all conditions; pressures of soft faces do not settle; the
+   !> bodies are not held, and then driven is set, and the state is the one in which they are driven
+   !> away.
    subroutine solve_contact(system, load, work, state, error)
       type(contact_system_type), intent(in) :: system     !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
       type(contact_workspace_type), intent(inout) :: work !! laws in, factors of the solution out
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
+      type(error_type), allocatable, intent(out) :: error
+      real(dp), dimension(size(state%gap)) :: initial_gap, start
+      integer :: i
+      logical :: settled
+
+      if (.not. any(work%soft%is_soft)) then
+         call solve_tangents(system, load, work, state, error)
+         return
+      end if
+      initial_gap = work%initial_gap
+      start = state%gap
+      call work%soft%press(state%force)
+      settled = .false.
+      do i = 1, most_tangents
+         work%initial_gap = initial_gap + work%soft%onset
+         state%gap = start + work%soft%onset
+         call solve_tangents(system, load, work, state, error)
+         if (allocated(error)) exit
+         call work%soft%follow(state%approach - initial_gap, state%force, settled)
+         if (settled) exit
+      end do
+      work%initial_gap = initial_gap
+      if (allocated(error)) return
+      if (.not. settled) call set_error(error, status_no_convergence, &
+         'the pressures of soft faces do not settle')
+      where (work%soft%is_soft) state%gap = initial_gap - state%approach
+   end subroutine solve_contact
+
+   !> The same with the tangents of soft faces, from the onset of which their gaps count.
+   !> Errors: as solve_contact.
+   subroutine solve_tangents(system, load, work, state, error)
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(inout) :: work
+      type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
 
       call find_state(system, load, work, state, error)
@@ -58,7 +95,7 @@ contains
          state%force = 0.0_dp
          state%shear_force = 0.0_dp
       end where
-   end subroutine solve_contact
+   end subroutine solve_tangents
 
    !> A state that satisfies all contact conditions.
    !> Errors: as solve_contact.

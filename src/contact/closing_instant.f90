@@ -17,6 +17,9 @@
 !> frozen, A := (1 - phi) A + phi C_R. Both are computed anew from each solution, until they stay.
 !> They follow the load alone where all closed contact points stick, whatever their friction.
 !>
+!> Soft faces that close count with their overlap: y is that of their bodies and their overlap
+!> together, C_R their compliance likewise, and other soft faces that are closed give way.
+!>
 !> A body that nothing else holds goes straight to where it touches, in no time: f = 0, and d_t,i is
 !> where it then is.
 !>
@@ -128,6 +131,7 @@ contains
          if (allocated(error)) return
          if (work%keeps_laws) exit
          holds = state%contact_state /= contact_open .or. (holds .and. pass > free_passes)
+         held%soft = work%soft
          laws = work%closing
          call find_laws(system, previous, state, holds, held, laws, error)
          if (allocated(error)) return
@@ -182,10 +186,12 @@ contains
          previous%contact_state /= contact_open)
       way%point = pack([(k, k=1, size(closes))], closes)
       allocate (way%is_open(size(way%point)), source=.true.)
-      way%last_gap = merge(max(state%gap(way%point), 0.0_dp), 0.0_dp, &
-         state%contact_state(way%point) == contact_open)
-      way%y = [way%last_gap - max(previous%gap(way%point), 0.0_dp), &
-         previous%tangential(way%point) - state%tangential(way%point)]
+      associate (reach => held%soft%reach(way%point))
+         way%last_gap = merge(max(state%gap(way%point) - reach, 0.0_dp), 0.0_dp, &
+            state%contact_state(way%point) == contact_open)
+         way%y = [way%last_gap - max(previous%gap(way%point) - reach, 0.0_dp), &
+            previous%tangential(way%point) - state%tangential(way%point)]
+      end associate
       way%lambda = [-state%force(way%point), state%shear_force(way%point)]
       way%least_gap = together*maxval(previous%gap(way%point)) + system%least_length
       do k = 1, size(way%point)
@@ -284,6 +290,8 @@ contains
                if (rows(2, i) > 0) way%compliance(n + i, [j, n + j]) = &
                   relief%response(rows(2, i), :)
             end do
+            way%compliance(j, j) = way%compliance(j, j) + held%soft%compliance(way%point(j), &
+               -way%lambda(j))
          end associate
       end do
       way%own = [(way%compliance(i, i), i=1, 2*n)]

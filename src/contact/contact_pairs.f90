@@ -183,6 +183,7 @@ contains
             call chain_faces(mesh, master_surface, master, error)
             if (allocated(error)) return
             call aligned_chains(mesh, slave, master)
+            if (definition%either_side) master%turned = .not. slave%turned
             call check_shared(mesh, definition, slave, master, error)
             if (allocated(error)) return
             call find_points(mesh, definition, slave, master, thickness, points, error)

@@ -10,6 +10,12 @@
 !>    slip   d_n = h                                 lambda_t = direction mu (-lambda_n)
 !>    capped d_n = h                                 lambda_t = direction times the largest shear
 !>
+!> On soft faces (soft_faces) d_n is sought where a contact point is closed, too, and its row is
+!>
+!>    lambda_n + stiffness (d_n - h) = 0,
+!>
+!> h being the distance to where the tangent of its law begins to press.
+!>
 !> A contact point that closes within the increment sticks where it closed, a position that depends
 !> on forces (closing_instant):
 !>
@@ -40,6 +46,7 @@ module contact_system
    use dense, only: least_squares, null_space, product_of
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
+   use soft_faces, only: soft_faces_type
    implicit none
    private
    public :: contact_system_type, contact_rows_type, rows_of, free_motions, is_driven, &
@@ -137,11 +144,12 @@ module contact_system
 contains
 
    !> The rows of an active set.
-   pure function rows_of(system, friction, state, closing) result(rows)
+   pure function rows_of(system, friction, state, closing, soft) result(rows)
       type(contact_system_type), intent(in) :: system     !! the reduced system
       real(dp), intent(in) :: friction(:)                 !! (m) mu [-]
       type(contact_state_type), intent(in) :: state       !! states and directions
       type(closing_law_type), intent(in) :: closing(:)    !! (m) laws of closing contact points
+      type(soft_faces_type), intent(in) :: soft           !! tangents of soft faces
       type(contact_rows_type) :: rows
       logical :: sought(2, size(state%contact_state))
       integer :: c, k, tail
@@ -150,7 +158,10 @@ contains
       allocate (rows%partner(tail), source=0)
       allocate (rows%share(tail), rows%spring(tail), source=0.0_dp)
       allocate (rows%own(tail), source=1.0_dp)
-      sought(1, :) = state%contact_state == contact_open
+      sought(1, :) = state%contact_state == contact_open .or. soft%is_soft
+      where (state%contact_state /= contact_open .and. soft%is_soft)
+         rows%spring(system%normal) = soft%stiffness
+      end where
       sought(2, :) = system%tangent > 0
       rows%closing = pack(system%tangent, system%tangent > 0 .and. closing%acts .and. &
          state%contact_state == contact_stick)

@@ -9,6 +9,8 @@ module contact_workspace
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use friction_laws, only: friction_law_type
    use kinds, only: dp
+   use overlap_laws, only: overlap_law_type
+   use soft_faces, only: soft_faces_type
    implicit none
    private
    public :: contact_workspace_type, relief_type
@@ -27,6 +29,7 @@ module contact_workspace
    type :: contact_workspace_type
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
       type(friction_law_type), allocatable :: friction(:)   !! (m) of nodal forces
+      type(soft_faces_type) :: soft               !! tangents of soft faces
       logical, allocatable :: removed(:)          !! (m) open whatever the gap
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
       !> Largest sum of the terms that make a force of the last solution, S d - c, without their
@@ -51,6 +54,7 @@ module contact_workspace
       type(contact_factors_type) :: factors       !! of these rows
       integer, allocatable, private :: factored(:)   !! (m) state codes of the factors
       type(closing_law_type), allocatable, private :: factored_closing(:) !! (m) and their laws
+      real(dp), allocatable, private :: factored_stiffness(:) !! (m) and those of soft faces
    contains
       procedure :: another
       procedure :: solve_set
@@ -69,16 +73,20 @@ module contact_workspace
 contains
 
    !> A workspace for contact points with these gaps and laws, on which nothing acts.
-   pure function new_workspace(system, initial_gap, friction, removed) result(work)
+   pure function new_workspace(system, initial_gap, friction, removed, overlap, area) result(work)
       type(contact_system_type), intent(in) :: system  !! the reduced system
       real(dp), intent(in) :: initial_gap(:)           !! (m) h [length]
       type(friction_law_type), intent(in) :: friction(:) !! (m) of nodal forces
       logical, intent(in) :: removed(:)                !! (m) open whatever the gap
+      !> (m) laws of soft faces; absent where all are hard
+      type(overlap_law_type), intent(in), optional :: overlap(:)
+      real(dp), intent(in), optional :: area(:)        !! (m) with these laws [length^2]
       type(contact_workspace_type) :: work             !! nothing closed, nothing factored
 
       work%initial_gap = initial_gap
       work%friction = friction
       work%removed = removed
+      work%soft = soft_faces_type(size(initial_gap), overlap, area)
       allocate (work%least_drive(size(system%schur, 1)), source=0.0_dp)
       allocate (work%anchor(size(system%schur, 1)), source=0.0_dp)
       allocate (work%closing(size(initial_gap)))
@@ -93,6 +101,7 @@ contains
       work%initial_gap = self%initial_gap
       work%friction = self%friction
       work%removed = self%removed
+      work%soft = self%soft
       work%load_scale = self%load_scale
       work%least_drive = self%least_drive
       work%closing = self%closing
@@ -285,7 +294,7 @@ contains
       logical :: singular
 
       if (is_factored(self, state)) return
-      self%rows = rows_of(system, self%friction%coefficient, state, self%closing)
+      self%rows = rows_of(system, self%friction%coefficient, state, self%closing, self%soft)
       if (self%hold > 0.0_dp) then
          self%unconstrained = reshape([real(dp) ::], [size(self%rows%free), 0])
       else
@@ -299,6 +308,7 @@ contains
       else
          self%factored = state_code(state)
          self%factored_closing = self%closing
+         self%factored_stiffness = self%soft%stiffness
       end if
    end subroutine factor_set
 
@@ -312,6 +322,8 @@ contains
       is_factored = .false.
       if (.not. allocated(self%factored)) return
       if (any(self%factored /= state_code(state))) return
+      if (any(state%contact_state /= contact_open .and. &
+         abs(self%soft%stiffness - self%factored_stiffness) > 0.0_dp)) return
       do k = 1, size(self%closing)
          associate (law => self%closing(k), factored => self%factored_closing(k))
             if (state%contact_state(k) /= contact_stick) cycle

@@ -360,7 +360,8 @@ contains
       call bodies%equilibrium%condense_load(bodies%mechanical, workspace%force, &
          workspace%known(of_mechanics))
       workspace%contact = contact_workspace_type(bodies%equilibrium%contact, &
-         loads%present_gaps(bodies%points), bodies%laws%nodal_friction, bodies%laws%removed)
+         loads%present_gaps(bodies%points), bodies%laws%nodal_friction, bodies%laws%removed, &
+         bodies%laws%overlap, bodies%points%weight)
       workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
       associate (applied => next%force_load, rigid => bodies%rigid, &
          contact => bodies%equilibrium%contact)
@@ -399,7 +400,7 @@ contains
       associate (contact => bodies%equilibrium%contact)
          on_tail(contact%normal) = merge(next%contact%approach, &
             workspace%contact%initial_gap - next%contact%gap, next%contact%contact_state == &
-            contact_open)
+            contact_open .or. workspace%contact%soft%is_soft)
          do k = 1, size(next%contact%contact_state)
             if (contact%tangent(k) > 0) on_tail(contact%tangent(k)) = next%contact%tangential(k)
          end do
@@ -455,7 +456,8 @@ contains
    end subroutine remember_slip
 
    !> Instant at which a contact point without a tangential unknown closed, as a fraction of the
-   !> increment: relieved of its force alone it would overlap by force/stiffness. One that carries
+   !> increment: relieved of its force alone it would overlap by force/stiffness; a soft face has
+   !> its own overlap in series with the bodies. One that carries
    !> no force, as at rest, closes at the end.
    pure function closing_fraction(system, solved, k, gap, force) result(fraction)
       type(contact_system_type), intent(in) :: system
@@ -463,13 +465,22 @@ contains
       integer, intent(in) :: k
       real(dp), intent(in) :: gap, force
       real(dp) :: fraction
-      real(dp) :: stiffness(1, 1)
+      real(dp) :: response(size(system%schur, 1), 1), stiffness(1, 1), way
 
-      fraction = merge(1.0_dp, 0.0_dp, gap > 0.0_dp)
-      if (gap <= 0.0_dp .or. force <= 0.0_dp) return
+      way = gap - solved%soft%reach(k)
+      fraction = merge(1.0_dp, 0.0_dp, way > 0.0_dp)
+      if (way <= 0.0_dp .or. force <= 0.0_dp) return
       ! Zero where the contact point alone holds a body, but for rounding: it then closes at once.
-      stiffness = max(solved%stiffness(system, [system%normal(k)]), 0.0_dp)
-      fraction = gap*stiffness(1, 1)/(gap*stiffness(1, 1) + force)
+      if (solved%soft%is_soft(k)) then
+         response = 0.0_dp
+         response(system%normal(k), 1) = 1.0_dp
+         call solved%solve_free(response)
+         stiffness = max(1.0_dp/response(system%normal(k), 1) - solved%soft%stiffness(k), 0.0_dp)
+         stiffness = stiffness/(1.0_dp + stiffness*solved%soft%compliance(k, force))
+      else
+         stiffness = max(solved%stiffness(system, [system%normal(k)]), 0.0_dp)
+      end if
+      fraction = way*stiffness(1, 1)/(way*stiffness(1, 1) + force)
    end function closing_fraction
 
 end module increment_solution

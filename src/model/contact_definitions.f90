@@ -5,6 +5,7 @@ module contact_definitions
    use friction_laws, only: friction_heat_type, friction_law_type
    use kinds, only: dp
    use named_items, only: named_type
+   use overlap_laws, only: overlap_law_type
    implicit none
    private
    public :: interaction_type, contact_definition_type, tie_definition_type
@@ -21,6 +22,7 @@ module contact_definitions
       type(friction_law_type) :: friction     !! Coulomb's law
       type(friction_heat_type) :: heat        !! heat of this friction
       type(conductance_law_type) :: law       !! conductance law
+      type(overlap_law_type) :: overlap       !! of hard faces, or of soft ones
    end type interaction_type
 
    !> One *CONTACT PAIR: two surfaces that may meet; or the faces of one *TIE.
@@ -36,6 +38,9 @@ module contact_definitions
       real(dp) :: adjusted = 0.0_dp           !! those up to this gap [length]; without a set
       integer :: adjusted_set = 0             !! index of their node set, 0 for none
       logical :: is_tied = .false.            !! whether they are the faces of a *TIE
+      !> Whether its bodies may be on the same side of the faces: POSITION TOLERANCE= tells then
+      !> which points belong to each other
+      logical :: either_side = .false.
    contains
       procedure :: title
    end type contact_definition_type

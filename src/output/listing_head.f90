@@ -7,7 +7,7 @@ module listing_head
    use listing_text, only: page_width, print_title, print_wrapped
    use model, only: model_type
    use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
-      open_law_words, open_words, pairing_words, points_words
+      open_law_words, open_words, overlap_words, pairing_words, points_words
    use run_summaries, only: in_listing, or_blank, run_entries, run_entry_type, run_summary_type
    use steps, only: solves_heat
    use summary, only: summary_type
@@ -129,6 +129,8 @@ contains
             from_to(gap_range(model%mesh, interfaces(i))))
          associate (interaction => model%interactions(model%contacts(i)%interaction))
             call print_entry(unit, 'coefficient of friction', friction_words(interaction%friction))
+            if (interaction%overlap%is_soft()) call print_entry(unit, 'pressure', &
+               overlap_words(interaction%overlap))
             if (.not. has_heat) cycle
             if (makes_friction_heat(model%interactions, model%contacts(i:i))) call print_entry( &
                unit, 'heat of friction', friction_heat_words(interaction%heat))

@@ -8,11 +8,12 @@ module model_words
    use friction_laws, only: friction_heat_type, friction_law_type, rough_coefficient, unlimited
    use materials, only: follows_temperature, material_type, of_expansion, thermal_strain
    use model, only: model_type
+   use overlap_laws, only: overlap_law_type
    use steps, only: analysis_heat, analysis_static
    use text, only: append, counted, string_type, to_text
    implicit none
    private
-   public :: expansion_words, material_words, friction_words, friction_heat_words
+   public :: expansion_words, material_words, friction_words, friction_heat_words, overlap_words
    public :: open_law_words, closed_law_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
 
@@ -194,6 +195,19 @@ contains
       if (friction%largest_shear < unlimited) words = words//', no shear above '// &
          to_text(friction%largest_shear)
    end function friction_words
+
+   !> The pressure of soft faces.
+   pure function overlap_words(law) result(words)
+      type(overlap_law_type), intent(in) :: law
+      character(:), allocatable :: words   !! such as 0 at 0, 100 at 0.01 over the overlap
+
+      if (allocated(law%overlap)) then
+         words = table_words(law%pressure, law%overlap)//' over the overlap'
+      else
+         words = to_text(law%touching_pressure)//' at the touch, a hundredth of it at gap '// &
+            to_text(law%clearance)//', exponential'
+      end if
+   end function overlap_words
 
    !> The heat of friction.
    pure function friction_heat_words(heat) result(words)

@@ -15,7 +15,7 @@ module run_description
    use messages, only: print_line
    use model, only: model_type
    use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
-      open_law_words, open_words, pairing_words, points_words
+      open_law_words, open_words, overlap_words, pairing_words, points_words
    use run_summaries, only: in_check, run_entries, run_entry_type, run_summary_type
    use steps, only: analysis_coupled, solves_heat, solves_mechanics
    use text, only: counted, to_text
@@ -189,8 +189,8 @@ contains
          associate (interaction => model%interactions(i))
             call line('interaction '//interaction%name, 'friction '// &
                friction_words(interaction%friction)//heat_of_friction(interaction)// &
-               '; conductance, open: '//open_law_words(interaction%law)//'; closed: '// &
-               closed_law_words(interaction%law))
+               pressure_of(interaction)//'; conductance, open: '// &
+               open_law_words(interaction%law)//'; closed: '//closed_law_words(interaction%law))
          end associate
       end do
       do i = 1, size(simulation%bodies%interfaces)
@@ -203,6 +203,15 @@ contains
       if (run%has_biot) call line('contact Biot number', from_to(run%contact_biot)// &
          ' at the initial gaps')
    end subroutine print_deck
+
+   !> Words on the pressure of soft faces; empty for hard ones.
+   pure function pressure_of(interaction) result(words)
+      type(interaction_type), intent(in) :: interaction
+      character(:), allocatable :: words
+
+      words = ''
+      if (interaction%overlap%is_soft()) words = '; pressure '//overlap_words(interaction%overlap)
+   end function pressure_of
 
    !> Words on the heat of friction of an interaction; empty for none.
    pure function heat_of_friction(interaction) result(words)

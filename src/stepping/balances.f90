@@ -14,6 +14,7 @@ module balances
    use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
+   use overlap_laws, only: overlap_law_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
@@ -239,6 +240,8 @@ contains
          positions = reshape([loads%present_gaps(bodies%points) - sum(positions* &
             bodies%points%normal, dim=1), sum(positions*bodies%points%tangent, dim=1)], &
             shape(positions), order=[2, 1])
+         if (allocated(bodies%laws%overlap)) call add_overlaps(bodies%laws%overlap, &
+            bodies%points%weight, next%contact%force, positions(1, :))
          where (bodies%laws%removed) positions(1, :) = 0.0_dp
          friction = bodies%laws%nodal_friction
          where (bodies%equilibrium%contact%tangent == 0) friction%coefficient = 0.0_dp
@@ -248,6 +251,25 @@ contains
             0.0_dp, held), [2, size(next%temperature)]))
       end associate
    end subroutine balance_forces
+
+   !> Makes gaps of soft faces those that are left beside the overlap of their law; those without
+   !> an area have no law.
+   pure subroutine add_overlaps(law, area, force, gap)
+      type(overlap_law_type), intent(in) :: law(:)   !! (m)
+      real(dp), intent(in) :: area(:)                !! (m) [length^2]
+      real(dp), intent(in) :: force(:)               !! (m) compressive [force]
+      real(dp), intent(inout) :: gap(:)              !! (m) by the displacements [length]
+      integer :: k
+
+      do k = 1, size(law)
+         if (.not. law(k)%is_soft()) cycle
+         if (area(k) > 0.0_dp) then
+            gap(k) = gap(k) + law(k)%overlap_under(force(k)/area(k))
+         else
+            gap(k) = 0.0_dp
+         end if
+      end do
+   end subroutine add_overlaps
 
    !> Force that the supports of each degree of freedom must supply: K u - f less the contact forces
    !> of the reduced system.

@@ -49,7 +49,8 @@ CHECKS = {
     "ccx_sheet": [("S11", "MIN", LAST, 10.0, 1e-9), ("S11", "MAX", LAST, 10.0, 1e-9),
                   ("U1", "Nload", LAST, 0.03, 1e-9), ("U2", "MAX", LAST, 0.0, 1e-12, "ABS")],
     "ccx_blocks": BLOCKS,
-    "ccx_exponential": BLOCKS,
+    "ccx_exponential": [*(row for row in BLOCKS if row[0] != "U2"), (
+        "U2", "MIN", LAST, -4 * 40.0 / 210e3 - 1e-5 * math.log(40.0 / 10.0) / math.log(100.0), 1e-9)],
     "ccx_wall": [("NT", "nhot", LAST, HOT, 1e-9), ("NT", "ncold", LAST, COLD, 1e-9)],
     "ccx_shaft": [("S22", "MIN", LAST, 1e8, 1e-9), ("S22", "MAX", LAST, 1e8, 1e-9),
                   ("U2", "TOP", LAST, 0.04 * (1.25e-5 * 200 + 1e8 / 2e11), 1e-9)],

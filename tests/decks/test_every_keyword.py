@@ -61,7 +61,7 @@ def described():
             for span in re.findall(r"`([^`]+)`", line):
                 if span.startswith(("*", "--")):   # of another card, of the command line
                     continue
-                names = re.findall(r"([A-Z][A-Z ]*?)=", span) + [f for f in FLAGS if f == span]
+                names = re.findall(r"([A-Z][A-Z -]*?)=", span) + [f for f in FLAGS if f == span]
                 found |= {f"{owner.strip()}, {name}" for owner in owners for name in names}
     return found - VALUES
 

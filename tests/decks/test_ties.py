@@ -6,7 +6,7 @@ import pytest
 from blocks import without_unused_surfaces, write
 from changes import note_changes
 from deck_runs import run, solve
-from physics import material, mesh, nodes_of
+from physics import judge, material, mesh, nodes_of
 from test_physics_rings import polar
 
 import lame
@@ -430,3 +430,21 @@ def test_supports_that_disagree_at_the_end_of_the_faces_only(tmp_path):
     move apart."""
     message = prescribed(tmp_path, 2e-3, 1, names=("UPPER.LEFT",))
     assert "at nodes" in message
+
+
+def test_a_tolerance_ties_bodies_on_the_same_side(tmp_path):
+    """Two bars of different meshes side by side, tied where both end: they share the pull as their
+    stiffnesses. Without a tolerance they are refused, because their faces do not face each other."""
+    cards = [*mesh("LOWER", parts(2), [-1.0, -0.5, 0.0], "CPS8"),
+             *mesh("UPPER", parts(3), [-1.0, -0.4, 0.0], "CPS8", 5001),
+             *material("LOWER", (YOUNG, 0.0)), *material("UPPER", (3.0 * YOUNG, 0.0))]
+    step = [*STATIC, "*BOUNDARY", "LOWER.BOTTOM, 2", "UPPER.BOTTOM, 2", "LOWER, 1", "UPPER, 1",
+            "*DSLOAD", "UPPER.TOP, P, -8."]
+    tie = ["*TIE, NAME=GLUE, POSITION TOLERANCE=0.01", "UPPER.TOP, LOWER.TOP"]
+    judge(tmp_path, [*cards, *tie, *step, "*END STEP"], [
+        ("U2", "UPPER.TOP", "LAST", 8.0 / (4.0 * YOUNG), 1e-9),
+        ("S22", "LOWER", "LAST", 2.0, 1e-8), ("S22", "UPPER", "LAST", 6.0, 1e-8)])
+    refused = run("check", write(tmp_path / "far.inp", cards, ["*TIE, NAME=GLUE", tie[1]], step,
+                                 ["*END STEP"]))
+    assert refused.returncode == 1
+    assert "GLUE" in refused.stderr

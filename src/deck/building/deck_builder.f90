@@ -17,6 +17,7 @@ module deck_builder
    use deck_builder_lines, only: build_lines, split_line_sets
    use deck_builder_materials, only: build_materials, build_orientations, build_sections
    use deck_builder_mesh, only: build_elements, build_nodes
+   use deck_builder_node_surfaces, only: build_node_surfaces
    use deck_builder_options, only: build_load_axis, build_options, build_regions
    use deck_builder_sections, only: build_pre_tensions
    use deck_builder_sets, only: build_sets, build_surfaces
@@ -126,6 +127,7 @@ contains
       errors = report%error_count()
       call build_sets('node', cards, context, mesh, report, sets)
       call move_alloc(sets, mesh%node_sets)
+      call build_node_surfaces(cards, context, mesh, report)
       context%sets_sound = context%sets_sound .and. report%error_count() == errors .and. &
          .not. report%has_lost('node set')
    end subroutine build_mesh

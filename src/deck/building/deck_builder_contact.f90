@@ -193,6 +193,7 @@ contains
                   tie%faces%card = card%place%image
                   tie%faces%name = parameter_text(card, 'NAME')
                   tie%has_tolerance = has_parameter(card, 'POSITION TOLERANCE')
+                  tie%faces%either_side = tie%has_tolerance
                   call take_parameter(card, 'POSITION TOLERANCE', report, tie%tolerance)
                   if (tie%tolerance < 0.0_dp) call report%error(parameter_place(card, &
                      'POSITION TOLERANCE'), 'POSITION TOLERANCE is a distance, 0 or more')

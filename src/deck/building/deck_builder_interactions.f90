@@ -1,11 +1,12 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
-   use card_parameters, only: choose, has_parameter, parameter_place, parameter_text, take_parameter
+   use card_parameters, only: has_parameter, parameter_place, take_parameter
    use card_values, only: check_extra, check_unneeded, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
+   use deck_builder_behavior, only: build_behavior
    use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance, &
       join_gap_conductance
    use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
@@ -19,7 +20,7 @@ module deck_builder_interactions
    use model, only: model_type
    use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
       radiation_ends
-   use text, only: to_text, to_upper
+   use text, only: to_text
    implicit none
    private
    public :: build_interactions, build_friction
@@ -105,17 +106,17 @@ contains
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
       type(conductance_law_type) :: table
-      integer :: friction, heat, k, radiation
+      integer :: behavior, friction, heat, k, radiation
 
+      behavior = 0
       friction = 0
       heat = 0
       radiation = 0
       do k = place + 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
-            if (card%name == 'SURFACE BEHAVIOR') call check_behavior(card, context, report)
             if (card%last_data < card%first_data .and. .not. any(card%name == &
-               ['FRICTION           ', 'GAP HEAT GENERATION'])) cycle
+               ['FRICTION           ', 'GAP HEAT GENERATION', 'SURFACE BEHAVIOR   '])) cycle
             if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
                law_place = field_place(cards%data(card%first_data), 1)
             end if
@@ -123,6 +124,9 @@ contains
             case ('FRICTION')
                call count_once(cards, k, friction, report)
                call build_friction(cards, card, context, report, interaction%friction)
+            case ('SURFACE BEHAVIOR')
+               call count_once(cards, k, behavior, report)
+               call build_behavior(cards, card, context, report, interaction%overlap)
             case ('GAP HEAT GENERATION')
                call count_once(cards, k, heat, report)
                call build_friction_heat(cards, card, model, report, interaction%heat)
@@ -176,32 +180,6 @@ contains
       end associate
       taken = k
    end subroutine count_once
-
-   !> Ignores parameters of a penalty, with a warning one whose faces press from afar; laws of
-   !> pressure and overclosure that are no penalty are refused.
-   subroutine check_behavior(card, context, report)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: kind
-
-      kind = to_upper(parameter_text(card, 'PRESSURE-OVERCLOSURE'))
-      select case (kind)
-      case ('EXPONENTIAL')
-         call report%warning(parameter_place(card, 'PRESSURE-OVERCLOSURE'), 'faces of '// &
-            'PRESSURE-OVERCLOSURE=EXPONENTIAL would press before they touch, and more as they '// &
-            'come closer; contact is exact here: they press where they touch')
-      case ('TABULAR')
-         call report%error(parameter_place(card, 'PRESSURE-OVERCLOSURE'), &
-            'PRESSURE-OVERCLOSURE='//kind//' is refused: closed faces do not overlap')
-      case ('TIED')
-         call report%error(parameter_place(card, 'PRESSURE-OVERCLOSURE'), &
-            'PRESSURE-OVERCLOSURE='//kind//' is refused: tied faces do not open; take *TIE')
-      case default
-         call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD', report, kind)
-         call context%note('*SURFACE BEHAVIOR is ignored: contact is exact')
-      end select
-   end subroutine check_behavior
 
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
    subroutine build_friction(cards, card, context, report, friction)

@@ -264,12 +264,9 @@ contains
       surface%card = card%place%image
       errors = report%error_count()
       call choose(card, 'TYPE', 'ELEMENT/NODE/SEGMENTS', report, kind)
-      if (kind == 'NODE') call report%error(parameter_place(card, 'TYPE'), 'TYPE=NODE is '// &
-         'refused on *SURFACE: contact needs the areas and normals of faces; name elements and '// &
-         'faces S1 to S4')
       allocate(surface%faces(2, 0))
-      ! The data of another type have other fields.
-      if (report%error_count() > errors) return
+      ! The data of another type have other fields; node sets are made of surfaces, too.
+      if (report%error_count() > errors .or. kind == 'NODE') return
       if (kind == 'SEGMENTS') then
          call build_drawing(cards, card, report, surface)
       else if (card%last_data >= card%first_data) then

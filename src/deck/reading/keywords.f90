@@ -108,7 +108,7 @@ module keywords
       keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
       keyword_type('GAP HEAT GENERATION', built, in_model, 0, 1, 'ANGULAR VELOCITY='), &
       keyword_type('GAP RADIATION', built, in_model, 1, many, ''), &
-      keyword_type('SURFACE BEHAVIOR', not_needed, in_model, 0, many, &
+      keyword_type('SURFACE BEHAVIOR', built, in_model, 0, many, &
          'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT'), &
       keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
          'INTERACTION=/NAME=/PAIRING=/ADJUST=/~TYPE=/~SMALL SLIDING/~NO THICKNESS/~CPSET=/'// &

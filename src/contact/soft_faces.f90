@@ -1,0 +1,120 @@
+!> Contact points of soft faces (overlap_laws). A closed one has the tangent of its law,
+!>
+!>    force = stiffness (overlap - onset),
+!>
+!> and the contact system is solved with these tangents until they are those of the solution
+!> (Newton). From one to the next a contact point goes to the overlap that was found, or to that
+!> under the pressure that was found, whichever is nearer to where it was: an exponential law would
+!> overflow on the way to the former from a small pressure, and lose its pressure on the way to the
+!> latter from a large one.
+module soft_faces
+   use kinds, only: dp
+   use overlap_laws, only: overlap_law_type
+   implicit none
+   private
+   public :: soft_faces_type
+
+   !> Change of a tangent, relative, that counts as none: the law is then met to its square.
+   real(dp), parameter :: settled_change = 1.0e-7_dp
+
+   !> The tangents of all contact points.
+   type :: soft_faces_type
+      logical, allocatable :: is_soft(:)         !! (m)
+      real(dp), allocatable :: stiffness(:)      !! (m) 0 without area [force/length]
+      real(dp), allocatable :: onset(:)          !! (m) 0 of hard faces [length]
+      real(dp), allocatable :: reach(:) !! (m) gap below which faces press, 0 of hard ones [length]
+      type(overlap_law_type), allocatable, private :: law(:)   !! (m) none where all are hard
+      real(dp), allocatable, private :: area(:)  !! (m) [length^2]
+      real(dp), allocatable, private :: at(:)    !! (m) overlaps of the tangents [length]
+      logical :: follows = .false.               !! whether the tangents are those of a solution
+   contains
+      procedure :: press
+      procedure :: follow
+      procedure :: compliance
+   end type soft_faces_type
+
+   interface soft_faces_type
+      module procedure new_soft_faces
+   end interface soft_faces_type
+
+contains
+
+   !> Contact points without pressure.
+   pure function new_soft_faces(points, law, area) result(soft)
+      integer, intent(in) :: points                            !! m
+      type(overlap_law_type), intent(in), optional :: law(:)   !! (m) absent where all are hard
+      real(dp), intent(in), optional :: area(:)                !! (m) [length^2], with the laws
+      type(soft_faces_type) :: soft
+      integer :: k
+
+      allocate (soft%is_soft(points), source=.false.)
+      allocate (soft%stiffness(points), soft%onset(points), soft%reach(points), source=0.0_dp)
+      if (.not. present(law)) return
+      soft%law = law
+      soft%area = max(area, 0.0_dp)
+      soft%is_soft = law%is_soft()
+      do k = 1, points
+         if (soft%is_soft(k)) soft%reach(k) = -law(k)%overlap_under(0.0_dp)
+      end do
+      soft%at = -soft%reach
+   end function new_soft_faces
+
+   !> The tangents under given forces, unless they are those of a solution.
+   pure subroutine press(self, force)
+      class(soft_faces_type), intent(inout) :: self
+      real(dp), intent(in) :: force(:)           !! (m) compressive [force]
+      integer :: k
+
+      if (self%follows) return
+      self%follows = .true.
+      do k = 1, size(force)
+         if (.not. self%is_soft(k)) cycle
+         if (self%area(k) > 0.0_dp) self%at(k) = self%law(k)%overlap_under(force(k)/self%area(k))
+         call self%law(k)%tangent(self%at(k), self%stiffness(k), self%onset(k))
+         self%stiffness(k) = self%stiffness(k)*self%area(k)
+      end do
+   end subroutine press
+
+   !> The next tangents, unless the solution has settled on the present ones.
+   pure subroutine follow(self, overlap, force, settled)
+      class(soft_faces_type), intent(inout) :: self
+      real(dp), intent(in) :: overlap(:)         !! (m) of the solution [length]
+      real(dp), intent(in) :: force(:)           !! (m) compressive [force]
+      logical, intent(out) :: settled
+      real(dp), dimension(size(force)) :: next, onset, stiffness
+      integer :: k
+
+      settled = .true.
+      next = self%at
+      onset = self%onset
+      stiffness = self%stiffness
+      do k = 1, size(force)
+         if (.not. self%is_soft(k) .or. self%area(k) <= 0.0_dp) cycle
+         next(k) = self%law(k)%overlap_under(force(k)/self%area(k))
+         if (abs(overlap(k) - self%at(k)) < abs(next(k) - self%at(k))) next(k) = overlap(k)
+         call self%law(k)%tangent(next(k), stiffness(k), onset(k))
+         stiffness(k) = stiffness(k)*self%area(k)
+         settled = settled .and. abs(stiffness(k) - self%stiffness(k)) <= &
+            settled_change*self%stiffness(k) .and. abs(onset(k) - self%onset(k)) <= &
+            settled_change*abs(next(k) - onset(k))
+      end do
+      if (settled) return
+      self%at = next
+      self%onset = onset
+      self%stiffness = stiffness
+   end subroutine follow
+
+   !> Overlap of a contact point since it began to press, over its force; 0 of hard faces, and where
+   !> there is no area.
+   pure real(dp) function compliance(self, k, force)
+      class(soft_faces_type), intent(in) :: self
+      integer, intent(in) :: k                   !! the contact point
+      real(dp), intent(in) :: force              !! compressive [force]
+
+      compliance = 0.0_dp
+      if (self%stiffness(k) > 0.0_dp) compliance = 1.0_dp/self%stiffness(k)
+      if (self%stiffness(k) > 0.0_dp .and. force > 0.0_dp) compliance = &
+         (self%law(k)%overlap_under(force/self%area(k)) + self%reach(k))/force
+   end function compliance
+
+end module soft_faces

@@ -1,0 +1,112 @@
+!> *SURFACE BEHAVIOR: parameters of a penalty, which are ignored, and laws of faces that overlap.
+module deck_builder_behavior
+   use card_parameters, only: choose, parameter_place, parameter_text
+   use card_values, only: check_extra, need_field
+   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use deck_context, only: deck_context_type
+   use deck_report, only: deck_report_type
+   use kinds, only: dp
+   use overlap_laws, only: overlap_law_type
+   use text, only: to_text, to_upper
+   implicit none
+   private
+   public :: build_behavior
+
+contains
+
+   !> Reads one *SURFACE BEHAVIOR.
+   subroutine build_behavior(cards, card, context, report, law)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(overlap_law_type), intent(out) :: law           !! of hard faces, or of soft ones
+      character(:), allocatable :: kind
+
+      kind = to_upper(parameter_text(card, 'PRESSURE-OVERCLOSURE'))
+      if (kind == 'TIED') then
+         call report%error(parameter_place(card, 'PRESSURE-OVERCLOSURE'), &
+            'PRESSURE-OVERCLOSURE='//kind//' is refused: tied faces do not open; take *TIE')
+         return
+      end if
+      call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD/EXPONENTIAL/TABULAR', report, kind)
+      select case (kind)
+      case ('EXPONENTIAL', 'TABULAR')
+         if (card%last_data < card%first_data) then
+            call report%error(card%place, '*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE='//kind// &
+               ' has no data: '//trim(merge('c0, p0                                ', &
+               'pressure, overlap; a card for each row', kind == 'EXPONENTIAL')))
+         else if (kind == 'EXPONENTIAL') then
+            call read_exponential(cards, card, report, law)
+         else
+            call read_table(cards%data(card%first_data:card%last_data), report, law)
+         end if
+      case default
+         call context%note('*SURFACE BEHAVIOR is ignored: contact is exact')
+      end select
+   end subroutine build_behavior
+
+   !> c0, at which the pressure is a hundredth of p0, and p0.
+   subroutine read_exponential(cards, card, report, law)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_report_type), intent(inout) :: report
+      type(overlap_law_type), intent(inout) :: law
+      logical :: valid
+
+      valid = .true.
+      associate (data => cards%data(card%first_data))
+         call need_positive(data, 1, 'clearance c0', report, law%clearance, valid)
+         call need_positive(data, 2, 'pressure p0', report, law%touching_pressure, valid)
+         call check_extra(data, 2, 'clearance c0, pressure p0', report)
+      end associate
+      if (card%last_data > card%first_data) call report%error( &
+         field_place(cards%data(card%first_data + 1), 1), 'an exponential law has one card: c0, p0')
+   end subroutine read_exponential
+
+   !> Reads a field that is above 0.
+   subroutine need_positive(data, position, name, report, value, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position
+      character(*), intent(in) :: name
+      type(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: value
+      logical, intent(inout) :: valid
+
+      call need_field(data, position, name, report, value, valid)
+      if (.not. valid .or. value > 0.0_dp) return
+      call report%error(field_place(data, position), 'the '//name//' must be positive')
+      valid = .false.
+   end subroutine need_positive
+
+   !> Rows of pressure, from 0 on, and overlap; both rise.
+   subroutine read_table(rows, report, law)
+      type(data_card_type), intent(in) :: rows(:)
+      type(deck_report_type), intent(inout) :: report
+      type(overlap_law_type), intent(inout) :: law
+      integer :: i
+      logical :: valid
+
+      allocate (law%pressure(size(rows)), law%overlap(size(rows)), source=0.0_dp)
+      valid = .true.
+      do i = 1, size(rows)
+         call need_field(rows(i), 1, 'pressure', report, law%pressure(i), valid)
+         call need_field(rows(i), 2, 'overlap', report, law%overlap(i), valid)
+         call check_extra(rows(i), 2, 'pressure, overlap', report)
+      end do
+      if (.not. valid) return
+      if (abs(law%pressure(1)) > 0.0_dp) call report%error(field_place(rows(1), 1), &
+         'the first row must have pressure 0, and the overlap from which faces press')
+      if (size(rows) == 1) call report%error(field_place(rows(1), 1), 'a table of pressure and '// &
+         'overlap needs two rows or more')
+      do i = 2, size(rows)
+         if (law%pressure(i) <= law%pressure(i - 1)) call report%error(field_place(rows(i), 1), &
+            'pressures must rise: '//to_text(law%pressure(i))//' follows '// &
+            to_text(law%pressure(i - 1)))
+         if (law%overlap(i) <= law%overlap(i - 1)) call report%error(field_place(rows(i), 2), &
+            'overlaps must rise: '//to_text(law%overlap(i))//' follows '// &
+            to_text(law%overlap(i - 1))//'; each card is pressure, overlap')
+      end do
+   end subroutine read_table
+
+end module deck_builder_behavior

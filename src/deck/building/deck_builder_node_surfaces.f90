@@ -1,0 +1,111 @@
+!> *SURFACE, TYPE=NODE: the faces whose nodes the surface names.
+module deck_builder_node_surfaces
+   use card_parameters, only: parameter_text
+   use card_values, only: check_extra, take_field
+   use cards, only: cards_type, field_place, has_field, keyword_card_type
+   use deck_context, only: deck_context_type, read_target
+   use deck_report, only: deck_report_type
+   use deck_structure, only: cards_of
+   use element_kinds, only: element_corner_count
+   use element_sides, only: element_sides_type, find_sides
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use text, only: to_text, to_upper
+   implicit none
+   private
+   public :: build_node_surfaces
+
+contains
+
+   !> Finds the faces of all surfaces of nodes.
+   subroutine build_node_surfaces(cards, context, mesh, report)
+      type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(inout) :: context    !! receives their places, and notes
+      type(mesh_type), intent(inout) :: mesh               !! with its node sets; receives the faces
+      type(deck_report_type), intent(inout) :: report      !! receives errors
+      integer, allocatable :: places(:)
+      logical, allocatable :: named(:)
+      integer :: n, errors
+
+      places = cards_of(cards, 'SURFACE')
+      do n = 1, size(places)
+         associate (card => cards%keywords(places(n)))
+            if (to_upper(parameter_text(card, 'TYPE')) /= 'NODE') cycle
+            errors = report%error_count()
+            call read_nodes(cards, card, context, mesh, report, named)
+            if (report%error_count() == errors .and. all(context%element_valid)) then
+               call find_faces(cards, card, named, mesh, report, n, context)
+            end if
+            if (size(mesh%surfaces(n)%faces, 2) == 0) call report%lose('surface')
+         end associate
+      end do
+   end subroutine build_node_surfaces
+
+   !> The nodes that a surface names.
+   subroutine read_nodes(cards, card, context, mesh, report, named)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(inout) :: context
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      logical, allocatable, intent(out) :: named(:)      ! (nodes)
+      integer :: j, node, set
+      logical :: valid
+      real(dp) :: area
+
+      allocate (named(size(mesh%node_number)), source=.false.)
+      do j = card%first_data, card%last_data
+         associate (data => cards%data(j))
+            valid = .true.
+            call read_target(data, 1, 'node', context%node_index, mesh%node_sets, report, node, &
+               set, valid)
+            if (has_field(data, 2)) then
+               call take_field(data, 2, 'area', report, area, valid)
+               call context%note('*SURFACE, TYPE=NODE: areas are ignored: those of the faces '// &
+                  'are taken')
+            end if
+            call check_extra(data, 2, 'node or set, area', report)
+            if (.not. valid) cycle
+            if (node > 0) named(node) = .true.
+            if (set > 0) named(mesh%node_sets(set)%members) = .true.
+         end associate
+      end do
+   end subroutine read_nodes
+
+   !> The outer sides of elements all of whose nodes are named. A node on none of them is an error.
+   subroutine find_faces(cards, card, named, mesh, report, surface, context)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      logical, intent(in) :: named(:)
+      type(mesh_type), intent(inout) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      integer, intent(in) :: surface
+      type(deck_context_type), intent(inout) :: context
+      type(element_sides_type) :: sides
+      logical :: taken(0:size(named))
+      integer :: e, f
+
+      sides = find_sides(mesh)
+      taken = .false.
+      do e = 1, size(mesh%element_number)
+         do f = 1, element_corner_count(mesh%element_kind(e))
+            associate (side => sides%of_element(f, e))
+               associate (nodes => pack(sides%ends(:, side), sides%ends(:, side) > 0))
+                  if (sides%elements(2, side) > 0 .or. .not. all(named(nodes))) cycle
+                  taken(nodes) = .true.
+               end associate
+            end associate
+            mesh%surfaces(surface)%faces = reshape([mesh%surfaces(surface)%faces, e, f], &
+               [2, size(mesh%surfaces(surface)%faces, 2) + 1])
+         end do
+      end do
+      context%face_places(surface)%items = spread(card%place, 1, &
+         size(mesh%surfaces(surface)%faces, 2))
+      e = findloc(named .and. .not. taken(1:), .true., dim=1)
+      if (e > 0) call report%error(field_place(cards%data(card%first_data), 1), 'node '// &
+         to_text(mesh%node_number(e))//' of surface '//mesh%surfaces(surface)%name// &
+         ' is on no side of an element, at the edge of its body, whose nodes are all in the '// &
+         'surface: add the nodes that are missing, or name elements and faces S1 to S4')
+   end subroutine find_faces
+
+end module deck_builder_node_surfaces
