@@ -1,6 +1,6 @@
 """Faces that overlap under pressure, `*SURFACE BEHAVIOR`: closed forms, and CalculiX."""
 
-from math import log
+from math import log, sqrt
 
 import h5py
 import numpy as np
@@ -178,6 +178,26 @@ def test_a_layer_opens_where_the_force_leaves_the_kern(tmp_path):
     judge(tmp_path, punch(1.2, 40), [
         ("pressure", "MAX", "LAST", 2.0 * 8.0 / closed, 2e-3),
         ("normal_force", "FACE", "LAST", 8.0, 1e-7)])
+
+
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_a_rigid_roller_on_a_layer_presses_as_a_parabola(tmp_path, pairing):
+    """p = K (a^2 - x^2)/(2 R), whose sum 2 K a^3/(3 R) is the force: a = 1."""
+    radius, force = 50.0, 2.0 * LAYER / (3.0 * 50.0)
+    end = radius - sqrt(radius**2 - 9.0)
+    xs = np.linspace(-WIDTH / 2, WIDTH / 2, 81).tolist()
+    judge(tmp_path, [
+        *mesh("LOW", xs, [-1.0, 0.0]), *material("LOW", (STIFF, 0.0)),
+        "*NODE", "9001, 0., 1.", "*SURFACE, NAME=ROLLER, TYPE=SEGMENTS", f"START, 3., {end!r}",
+        f"CIRCL, -3., {end!r}, 0., {radius!r}",
+        "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=ROLLER",
+        "*SURFACE INTERACTION, NAME=I", *table([(0.0, 0.0), (LAYER, 1.0)]),
+        f"*CONTACT PAIR, INTERACTION=I, NAME=FACE, PAIRING={pairing}", "LOW.TOP, ROLLER",
+        "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "LOW, 1", "LOW.BOTTOM, 2", "9001, 1", "9001, 6",
+        "*CLOAD", f"9001, 2, {-force!r}", "*END STEP"],
+        [("pressure", "MAX", "LAST", LAYER / (2.0 * radius), 2e-3),
+         ("edge_contact", "FACE", "LAST", WIDTH / 2 + 1.0, 2e-3),
+         ("U2", "9001", "LAST", -1.0 / (2.0 * radius), 2e-3)])
 
 
 @pytest.mark.parametrize(("theirs", "ours"), [
