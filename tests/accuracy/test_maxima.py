@@ -50,7 +50,7 @@ WORDS = {"tube": "hot tube under pressures", "bent": "bent ring", "rotor": "turn
          "hole": "elliptic hole", "sphere": "sphere under pressure", "rod": "rod with a source",
          "warm_tube": "tube with a source", "bar": "rectangle with a source", "fin": "plate with films"}
 HEAD = ["problem", "largest", "held, chosen on", "held, kept aside", "median bound/error",
-        "kept aside", "least bound/error", "largest"]
+        "kept aside", "least bound/error", "largest bound/error"]
 CURVED = "tube", "bent", "rotor", "hole", "sphere"
 
 
