@@ -393,7 +393,7 @@ contains
          contact%reference = contact%tangential
          contact%slip_origin = contact%tangential
          contact%gap = merge(0.0_dp, max(0.0_dp, self%run%loads%present_gaps(fine) - &
-            contact%approach), contact%contact_state /= contact_open)
+            self%run%bodies%laws%reach - contact%approach), contact%contact_state /= contact_open)
          divided%omega = state%omega(nearest)
          divided%omega_before = divided%omega
          divided%jump = fine%jumps(divided%temperature)

@@ -67,6 +67,7 @@ module connections
       type(friction_law_type), allocatable :: nodal_friction(:)
       !> (m) how faces overlap; unallocated where all are hard
       type(overlap_law_type), allocatable :: overlap(:)
+      real(dp), allocatable :: reach(:)   !! (m) gap from which on they press [length]
       !> (m) whether the interface is removed: its contact points are open whatever their gaps, and
       !> have neither friction nor conductance
       logical, allocatable :: removed(:)
@@ -300,6 +301,8 @@ contains
                model%contacts(i)%interaction, interaction%friction)
          end associate
       end do
+      allocate (laws%reach(size(points%weight)), source=0.0_dp)
+      if (allocated(laws%overlap)) laws%reach = laws%overlap%reach()
       laws%nodal_friction = laws%friction
       laws%nodal_friction%largest_shear = unlimited
       where (laws%friction%largest_shear < unlimited .and. points%weight > 0.0_dp) &

@@ -39,7 +39,8 @@ contains
 
    !> Contact state under a condensed load, the references of friction being given, and its idle
    !> contact points. Motions that nothing drives or holds are least from the positions of the
-   !> guess, whatever sets are tried. Gaps of soft faces are negative where these overlap.
+   !> guess, whatever sets are tried. Gaps of soft faces count from where they begin to press, and
+   !> are negative where they do.
    !> Errors: no active set satisfies all conditions; pressures of soft faces do not settle; the
    !> bodies are not held, and then driven is set, and the state is the one in which they are driven
    !> away.
@@ -63,7 +64,7 @@ contains
       settled = .false.
       do i = 1, most_tangents
          work%initial_gap = initial_gap + work%soft%onset
-         state%gap = start + work%soft%onset
+         state%gap = start + work%soft%onset + work%soft%reach
          call solve_tangents(system, load, work, state, error)
          if (allocated(error)) exit
          call work%soft%follow(state%approach - initial_gap, state%force, settled)
@@ -73,7 +74,7 @@ contains
       if (allocated(error)) return
       if (.not. settled) call set_error(error, status_no_convergence, &
          'the pressures of soft faces do not settle')
-      where (work%soft%is_soft) state%gap = initial_gap - state%approach
+      where (work%soft%is_soft) state%gap = initial_gap - work%soft%reach - state%approach
    end subroutine solve_contact
 
    !> The same with the tangents of soft faces, from the onset of which their gaps count.

@@ -186,12 +186,10 @@ contains
          previous%contact_state /= contact_open)
       way%point = pack([(k, k=1, size(closes))], closes)
       allocate (way%is_open(size(way%point)), source=.true.)
-      associate (reach => held%soft%reach(way%point))
-         way%last_gap = merge(max(state%gap(way%point) - reach, 0.0_dp), 0.0_dp, &
-            state%contact_state(way%point) == contact_open)
-         way%y = [way%last_gap - max(previous%gap(way%point) - reach, 0.0_dp), &
-            previous%tangential(way%point) - state%tangential(way%point)]
-      end associate
+      way%last_gap = merge(max(state%gap(way%point), 0.0_dp), 0.0_dp, &
+         state%contact_state(way%point) == contact_open)
+      way%y = [way%last_gap - max(previous%gap(way%point), 0.0_dp), &
+         previous%tangential(way%point) - state%tangential(way%point)]
       way%lambda = [-state%force(way%point), state%shear_force(way%point)]
       way%least_gap = together*maxval(previous%gap(way%point)) + system%least_length
       do k = 1, size(way%point)

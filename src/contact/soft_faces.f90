@@ -22,7 +22,7 @@ module soft_faces
       logical, allocatable :: is_soft(:)         !! (m)
       real(dp), allocatable :: stiffness(:)      !! (m) 0 without area [force/length]
       real(dp), allocatable :: onset(:)          !! (m) 0 of hard faces [length]
-      real(dp), allocatable :: reach(:) !! (m) gap below which faces press, 0 of hard ones [length]
+      real(dp), allocatable :: reach(:)          !! (m) gap from which on they press [length]
       type(overlap_law_type), allocatable, private :: law(:)   !! (m) none where all are hard
       real(dp), allocatable, private :: area(:)  !! (m) [length^2]
       real(dp), allocatable, private :: at(:)    !! (m) overlaps of the tangents [length]
@@ -45,7 +45,6 @@ contains
       type(overlap_law_type), intent(in), optional :: law(:)   !! (m) absent where all are hard
       real(dp), intent(in), optional :: area(:)                !! (m) [length^2], with the laws
       type(soft_faces_type) :: soft
-      integer :: k
 
       allocate (soft%is_soft(points), source=.false.)
       allocate (soft%stiffness(points), soft%onset(points), soft%reach(points), source=0.0_dp)
@@ -53,9 +52,7 @@ contains
       soft%law = law
       soft%area = max(area, 0.0_dp)
       soft%is_soft = law%is_soft()
-      do k = 1, points
-         if (soft%is_soft(k)) soft%reach(k) = -law(k)%overlap_under(0.0_dp)
-      end do
+      soft%reach = law%reach()
       soft%at = -soft%reach
    end function new_soft_faces
 

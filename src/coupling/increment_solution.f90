@@ -465,11 +465,10 @@ contains
       integer, intent(in) :: k
       real(dp), intent(in) :: gap, force
       real(dp) :: fraction
-      real(dp) :: response(size(system%schur, 1), 1), stiffness(1, 1), way
+      real(dp) :: response(size(system%schur, 1), 1), stiffness(1, 1)
 
-      way = gap - solved%soft%reach(k)
-      fraction = merge(1.0_dp, 0.0_dp, way > 0.0_dp)
-      if (way <= 0.0_dp .or. force <= 0.0_dp) return
+      fraction = merge(1.0_dp, 0.0_dp, gap > 0.0_dp)
+      if (gap <= 0.0_dp .or. force <= 0.0_dp) return
       ! Zero where the contact point alone holds a body, but for rounding: it then closes at once.
       if (solved%soft%is_soft(k)) then
          response = 0.0_dp
@@ -480,7 +479,7 @@ contains
       else
          stiffness = max(solved%stiffness(system, [system%normal(k)]), 0.0_dp)
       end if
-      fraction = way*stiffness(1, 1)/(way*stiffness(1, 1) + force)
+      fraction = gap*stiffness(1, 1)/(gap*stiffness(1, 1) + force)
    end function closing_fraction
 
 end module increment_solution

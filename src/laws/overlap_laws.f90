@@ -23,6 +23,7 @@ module overlap_laws
       real(dp) :: touching_pressure = 0.0_dp   !! p0 [stress]
    contains
       procedure :: is_soft
+      procedure :: reach
       procedure :: overlap_under
       procedure :: tangent
    end type overlap_law_type
@@ -35,6 +36,14 @@ contains
 
       is_soft = allocated(self%overlap) .or. self%clearance > 0.0_dp
    end function is_soft
+
+   !> Gap from which on faces press; 0 of hard ones.
+   elemental real(dp) function reach(self)
+      class(overlap_law_type), intent(in) :: self
+
+      reach = 0.0_dp
+      if (self%is_soft()) reach = -self%overlap_under(0.0_dp)
+   end function reach
 
    !> Overlap under a pressure; the first one where there is none.
    elemental function overlap_under(self, pressure) result(overlap)

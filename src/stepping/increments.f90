@@ -664,7 +664,7 @@ contains
          allocate (contact%direction(m), source=0)
          allocate (contact%reference(m), contact%tangential(m), contact%slip_origin(m), &
             contact%force(m), contact%shear_force(m), source=0.0_dp)
-         contact%gap = bodies%points%initial_gap
+         contact%gap = bodies%points%initial_gap - bodies%laws%reach
          state%smallest_gap = contact%gap
          allocate (state%resting(m), state%idle(m), source=.false.)
          state%jump = bodies%points%jumps(model%initial_temperature)

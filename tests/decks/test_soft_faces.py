@@ -101,6 +101,7 @@ def test_faces_press_and_part_along_the_law(tmp_path, law):
     reach of 1.217 c0 across the gap where the law is exponential."""
     behavior, overlap = LAWS[law]
     way, gap = 0.02, 0.0025
+    reach = {"table": 0.0, "exponential": CLEARANCE * (1.0 + 1.0 / log(100.0))}[law]
     pressure = root(lambda p: 3.0 * p / YOUNG + gap + overlap(p) - way, 1e-12, 20.0)
     half = root(lambda p: 3.0 * p / YOUNG + gap + overlap(p) - way / 2.0, 1e-12, 20.0)
     step = ["*STATIC", "0.5, 1.", "*BOUNDARY", "LOW.BOTTOM, 2", "UP, 1", "LOW, 1",
@@ -108,7 +109,7 @@ def test_faces_press_and_part_along_the_law(tmp_path, law):
             "*BOUNDARY", "UP.TOP, 2, 2, 0."]
     judge(tmp_path, pressed("CPE8", behavior, gap, step), [
         ("pressure", "FACE", 0.5, half, 1e-9), ("pressure", "FACE", 1.0, pressure, 1e-9),
-        ("gap", "FACE", 2.0, gap, 1e-9), ("pressure", "FACE", 2.0, 0.0, 1e-12, "ABS")])
+        ("gap", "FACE", 2.0, gap - reach, 1e-9), ("pressure", "FACE", 2.0, 0.0, 1e-12, "ABS")])
 
 
 def test_the_exponential_law_ends_in_its_tangent(tmp_path):
@@ -145,6 +146,22 @@ def test_heat_across_soft_faces_follows_their_pressure(tmp_path, law):
                                 ["*GAP LAW, TYPE=POWER", "0., 0.05, 1."]),
               [("pressure", "FACE", "LAST", pressure, 1e-7),
                ("heat_flux", "FACE", "LAST", flux(pressure), 1e-7)], name=pairing.lower())
+
+
+def test_gaps_count_from_where_faces_begin_to_press(tmp_path):
+    """So the conductance of the gas has no jump there: in heat alone, and as the blocks part."""
+    gap, reach = 0.004, CLEARANCE * (1.0 + 1.0 / log(100.0))
+    laws = ["*GAP LAW, TYPE=GAS", "0.001, 0.002", "*GAP LAW, TYPE=POWER", "0.5, 0.05, 1."]
+    ends = ["*BOUNDARY", "UP.TOP, 11, 11, 100.", "LOW.BOTTOM, 11, 11, 0."]
+    flux = 100.0 / (3.0 + (0.002 + gap - reach) / 0.001)
+    expansion = 1e-4 * (2.0 * (100.0 - flux) + 0.5 * flux)
+    coupled = ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", *ends, "UP, 1", "LOW, 1",
+               "LOW.BOTTOM, 2", f"UP.TOP, 2, 2, {expansion!r}"]
+    for name, step in (("heat", ["*HEAT TRANSFER, STEADY STATE", "1., 1.", *ends]),
+                       ("coupled", coupled)):
+        judge(tmp_path, pressed("CPE8", exponential(), gap, step, "NODES", laws),
+              [("gap", "FACE", "LAST", gap - reach, 1e-9), ("heat_flux", "FACE", "LAST", flux, 1e-9)],
+              name=name)
 
 
 STIFF, LAYER, WIDTH = 1e8, 100.0, 4.0
