@@ -41,6 +41,15 @@ def lame_in_plane_strain(radius, inner, outer, pressure, young, poisson):
     return factor * ((1 - 2 * poisson) * radius + outer**2 / radius)
 
 
+def coil(radius, inner=1.0, outer=2.0, force=3e8, young=1e11):
+    """Return the radial displacement of a ring under a radial force per volume, nu = 0."""
+    # u = A r + B/r - f r^2/(3 E): E u' is 0 at both radii.
+    steep = 2 * force / (3 * young)
+    b = steep * (outer - inner) / (1 / inner**2 - 1 / outer**2)
+    a = steep * inner + b / inner**2
+    return a * radius + b / radius - steep * radius**2 / 2
+
+
 HOT, COLD = wall()
 FLUX = across_a_gap()
 BLOCKS = [("pressure", "SSLAVE", LAST, 40.0, 1e-9), ("U2", "MIN", LAST, -4 * 40.0 / 210e3, 1e-9),
@@ -77,6 +86,15 @@ CHECKS = {
                       ("normal_force", "TOP", LAST, 40.0, 1e-9)],
     "abaqus_stamp": [("S22", "MIN", LAST, -100 / (4 * math.pi), 1e-9),
                      ("U2", "REF", LAST, -2 * 100 / (4 * math.pi) / 1000, 1e-9)],
+    "abaqus_panel": [("S12", "MIN", LAST, 8.0, 1e-9), ("S12", "MAX", LAST, 8.0, 1e-9),
+                     ("U1", "CORNER", LAST, 2 * 8.0 / 80.0, 1e-9),
+                     ("S12", "MAX", 0.5, 4.0, 1e-9)],
+    "abaqus_disk": [("U1", "85", LAST, 4e-3 * math.sqrt(0.5), 1e-9),
+                    ("U2", "25", LAST, 2.5e-3 * math.sqrt(0.5), 1e-9),
+                    ("S11", "MAX", LAST, 0.0, 1e-6, "ABS")],
+    "cae_coil": [("U1", "Coil-1.Bore", LAST, coil(1.0), 1e-3),
+                 ("U1", "Coil-1.Rim", LAST, coil(2.0), 1e-3),
+                 ("U2", "Coil-1.Rim", LAST, 5e10 * 0.1**2 / 2e11, 1e-3)],
     "abaqus_gap": [("heat_flux", "SL", LAST, FLUX, 1e-9),
                    ("slave_temperature", "SL", LAST, 900 - FLUX * 0.04 / 20, 1e-9)],
 }

@@ -7,7 +7,7 @@ from blocks import write
 from calculix import thercon
 from changes import note_changes
 from deck_runs import DECKS, run
-from physics import judge, material
+from physics import judge, material, mesh
 
 FOREIGN = DECKS / "foreign"
 
@@ -213,10 +213,25 @@ def test_a_reflected_mesh_is_the_one_that_is_written_out(tmp_path):
                        quarter(fill, given + ends))
 
 
+def test_pairs_without_names_may_share_a_slave_surface(tmp_path):
+    """A block on two others: each carries its half."""
+    cards = [*mesh("UP", [0.0, 1.0, 3.0], [0.0, 0.5]), *mesh("A", [0.0, 1.0], [-1.0, 0.0], first=101),
+             *mesh("B", [1.0, 3.0], [-1.0, 0.0], first=201), "*SURFACE INTERACTION, NAME=DRY"]
+    for name in ("UP", "A", "B"):
+        cards += material(name, (1000.0, 0.0), 1e-5)
+    for name in ("A", "B"):
+        cards += ["*CONTACT PAIR, INTERACTION=DRY", f"UP.BOTTOM, {name}.TOP"]
+    cards += ["*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "A.BOTTOM, 1, 2", "B.BOTTOM, 1, 2",
+              "UP.LEFT, 1", "*DSLOAD", "UP.TOP, P, 5.", "*END STEP"]
+    judge(tmp_path, cards, [("normal_force", "UP.BOTTOM", "LAST", 5.0, 1e-9),
+                            ("normal_force", "UP.BOTTOM-B.TOP", "LAST", 10.0, 1e-9)])
+
+
 @pytest.mark.changes("NGEN, LINE")
-@pytest.mark.parametrize("center", ["400", ", 0., 0., 0.", ", 0., 0., 0., 0., 0., 1."])
+@pytest.mark.parametrize("center", ["", "400", ", 0., 0., 0.", ", 0., 0., 0., 0., 0., 1."])
 def test_nodes_on_a_circle_are_those_that_are_written_out(tmp_path, center):
-    """Half a turn goes anticlockwise about the normal z; elsewhere the shorter way."""
+    """Half a turn goes anticlockwise about the normal z; elsewhere the shorter way. The origin is
+    the center of a card without one."""
     half = "0., 0., 1." in center
     places, given = ring_nodes((1.0, 1.5, 2.0)), []
     if not half:   # the same nodes, from a quarter each

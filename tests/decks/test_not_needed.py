@@ -65,6 +65,18 @@ CHANGES = {
                            "without data prints nothing"),
     "node beside the plane": ("*STEP", "*NODE\n9999, 3., 3., 3.\n*STEP", "third coordinates"),
     "points of a section": (SECTION, SECTION + "\n1., 5", "behind the thickness"),
+    "fields": ("*STEP", "*INITIAL CONDITIONS, TYPE=FIELD, VARIABLE=1\nUP, 3.\n*STEP", "TYPE=FIELD"),
+    "states": ("*STEP", "*INITIAL CONDITIONS, TYPE=SOLUTION\nUP, 3., 4.\n*STEP", "TYPE=SOLUTION"),
+    "speeds": ("*STEP", "*INITIAL CONDITIONS, TYPE=VELOCITY\nUP, 1, 4.\n*STEP", "TYPE=VELOCITY"),
+    "techniques": ("*STATIC", "*SOLUTION TECHNIQUE, TYPE=QUASI-NEWTON\n*STATIC",
+                   "SOLUTION TECHNIQUE"),
+    "sensitivities": ("*STEP", "*DESIGN PARAMETER\nE\n*STEP, DSA", "DSA"),
+    "responses": ("*END STEP", "*DESIGN RESPONSE, FREQ=1\n*NODE RESPONSE, NSET=UP\nU\n*END STEP",
+                  "*NODE RESPONSE"),
+    "followers": ("*DSLOAD", "*DSLOAD, FOLLOWER=NO, CONSTANT RESULTANT=YES", "CONSTANT RESULTANT"),
+    "force that follows": ("*DSLOAD", "*CLOAD, FOLLOWER\nUP, 2, 0.\n*DSLOAD", "FOLLOWER"),
+    "limits of stress": ("*EXPANSION", "*FAIL STRESS\n1., -1., 1., -1., 1.\n*EXPANSION",
+                         "FAIL STRESS"),
     "temperature": ("1e-05", "1e-05, 20.", "temperature"),
 }
 

@@ -38,7 +38,7 @@ contains
       do n = 1, size(places)
          call build_contact(cards, cards%keywords(places(n)), context, model, report, &
             model%contacts(n))
-         call check_name(cards%keywords(places(n)), model%contacts(:n), report)
+         call check_name(cards%keywords(places(n)), model%mesh, context, model%contacts(:n), report)
       end do
       places = cards_of(cards, 'CLEARANCE')
       do n = 1, size(places)
@@ -138,7 +138,8 @@ contains
       if (faces%is_tied) call refuse_rigid(data, 2, faces%master)
       if (has_parameter(card, 'NAME')) return
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
-      call context%note('*'//card%name//' without NAME=: '//faces%name//', the slave surface')
+      if (faces%is_tied) call context%note('*'//card%name//' without NAME=: '//faces%name// &
+         ', the slave surface')
    contains
       !> Refuses a rigid surface.
       subroutine refuse_rigid(data, position, surface)
@@ -155,14 +156,26 @@ contains
    end subroutine read_faces
 
    !> A name stands for a group of the result file: it is used once, and is one that HDF5
-   !> allows for a group.
-   subroutine check_name(card, contacts, report)
+   !> allows for a group. The last pair has the name of its slave surface only if no other has it.
+   subroutine check_name(card, mesh, context, contacts, report)
       type(keyword_card_type), intent(in) :: card
-      type(contact_definition_type), intent(in) :: contacts(:)
+      type(mesh_type), intent(in) :: mesh
+      type(deck_context_type), intent(inout) :: context
+      type(contact_definition_type), intent(inout) :: contacts(:)
       type(deck_report_type), intent(inout) :: report
+      integer :: n
+      logical :: is_taken
 
-      associate (place => parameter_place(card, 'NAME'), name => contacts(size(contacts))%name)
-         if (find_named(contacts(:size(contacts) - 1), name) > 0) call report%error(place, &
+      n = size(contacts)
+      if (.not. has_parameter(card, 'NAME') .and. contacts(n)%master > 0) then
+         is_taken = find_named(contacts(:n - 1), contacts(n)%name) > 0
+         if (is_taken) contacts(n)%name = contacts(n)%name//'-'// &
+            mesh%surfaces(contacts(n)%master)%name
+         call context%note('*CONTACT PAIR without NAME=: '//contacts(n)%name//', '//trim(merge( &
+            'its surfaces     ', 'the slave surface', is_taken)))
+      end if
+      associate (place => parameter_place(card, 'NAME'), name => contacts(n)%name)
+         if (find_named(contacts(:n - 1), name) > 0) call report%error(place, &
             'contact pair '//name//' is defined twice')
          if (scan(name, '/@') > 0) call report%error(place, &
             'the name of a contact pair must not contain / or @')

@@ -5,7 +5,7 @@ module deck_builder_element_loads
    use cards, only: data_card_type, field_place, field_text
    use deck_context, only: deck_context_type, read_surface, read_target
    use deck_report, only: deck_report_type
-   use element_kinds, only: element_corner_count
+   use element_kinds, only: axisymmetric, element_corner_count, side_nodes
    use kinds, only: dp
    use load_requests, only: request_type
    use mesh, only: mesh_type, surface_type
@@ -20,6 +20,8 @@ module deck_builder_element_loads
    private
    public :: build_element_load, build_on_faces, report_label, build_gravity, build_rotation, &
       build_surface_load
+
+   real(dp), parameter :: straight = 1.0e-6_dp   !! bow of a side, by its length
 
 contains
 
@@ -45,7 +47,7 @@ contains
       label = to_upper(label)
       select case (keyword)
       case ('DLOAD')
-         labels = 'P1/P2/P3/P4/BX/BY/GRAV/CENTRIF'
+         labels = 'P1/P2/P3/P4/BX/BY/BR/BZ/GRAV/CENTRIF'
       case ('DFLUX')
          labels = 'S1/S2/S3/S4/BF'
       case default
@@ -68,6 +70,8 @@ contains
          request%component = index('1234', label(2:2))
          call check_face(data, request, model, context, report, valid)
       end if
+      if (label == 'BR' .or. label == 'BZ') call check_axis(data, request, model%mesh, report, &
+         valid)
       call build_values(label, data, request, film_amplitude, context, report, valid)
    end subroutine build_element_load
 
@@ -179,6 +183,23 @@ contains
       end do
    end subroutine check_face
 
+   !> Every element of the request is axisymmetric.
+   subroutine check_axis(data, request, mesh, report, valid)
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(in) :: request
+      type(mesh_type), intent(in) :: mesh
+      type(deck_report_type), intent(inout) :: report
+      logical, intent(inout) :: valid
+      integer, allocatable :: elements(:)
+
+      if (.not. valid) return
+      elements = [request%item]
+      if (request%set > 0) elements = mesh%element_sets(request%set)%members
+      valid = all(mesh%element_plane(elements) == axisymmetric)
+      if (.not. valid) call report%error(field_place(data, 2), 'BR and BZ are forces on '// &
+         'axisymmetric elements; those of a plane are BX and BY')
+   end subroutine check_axis
+
    !> A load with one value.
    subroutine build_simple_load(label, data, request, context, report, valid)
       character(*), intent(in) :: label
@@ -190,9 +211,9 @@ contains
       character(:), allocatable :: what
 
       select case (label)
-      case ('BX', 'BY')
+      case ('BX', 'BY', 'BR', 'BZ')   ! the radius is x, the axis y
          request%kind = load_body_force
-         request%component = index('XY', label(2:2))
+         request%component = mod(index('XYRZ', label(2:2)) - 1, 2) + 1
          what = 'force per volume'
       case ('BF')
          request%kind = load_body_heat
@@ -225,6 +246,7 @@ contains
       sink%kind = load_film_sink
       film%kind = load_film_coefficient
       call need_field(data, 3, 'sink temperature', report, sink%value, valid)
+      if (report%has_lost(name=field_text(data, 4))) return   ! a refused *FILM PROPERTY
       call need_field(data, 4, 'film coefficient', report, film%value, valid)
       call check_extra(data, 4, 'element or set, face, sink temperature, film coefficient', report)
       if (.not. valid) return
@@ -326,7 +348,7 @@ contains
          labels = 'F'
          call check_extra(data, 4, 'surface, F, sink temperature, film coefficient', report)
       case default
-         labels = 'P/TRVEC'
+         labels = 'P/TRVEC/TRSHR'
       end select
       call need_field(data, 2, labels, report, label, valid)
       if (len(label) == 0) return
@@ -350,12 +372,59 @@ contains
             request%value = vector(i)
             call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, context)
          end do
+      case ('TRSHR')
+         call need_plane_vector(data, 3, report, vector, valid)
+         call check_extra(data, 6, 'surface, TRSHR, magnitude, direction x, y, z', report)
+         request%kind = load_traction
+         if (valid) call add_shear(model%mesh, model%mesh%surfaces(surface), vector, data, &
+            request, context, report)
       case default
          if (surface == 0 .or. report%error_count() > errors) return
          call build_on_faces(label//'1', model%mesh%surfaces(surface), data, &
             request, film_amplitude, context, report)
       end select
    end subroutine build_surface_load
+
+   !> Tractions of one magnitude along straight sides, in the sense of a vector.
+   subroutine add_shear(mesh, surface, vector, data, request, context, report)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_type), intent(in) :: surface
+      real(dp), intent(in) :: vector(2)                    ! of that magnitude
+      type(data_card_type), intent(in) :: data
+      type(request_type), intent(inout) :: request
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: nodes(:)
+      real(dp) :: chord(2), bow(2), along
+      integer :: i, j, n
+
+      do i = 1, size(surface%faces, 2)
+         associate (element => surface%faces(1, i), face => surface%faces(2, i))
+            if (.not. context%element_valid(element)) cycle
+            nodes = mesh%element_nodes(side_nodes(mesh%element_kind(element), face), element)
+            n = size(nodes)
+            chord = mesh%coordinates(:, nodes(n)) - mesh%coordinates(:, nodes(1))
+            chord = chord/norm2(chord)
+            bow = mesh%coordinates(:, nodes(n - 1)) - mesh%coordinates(:, nodes(1))
+            along = dot_product(chord, vector)
+            if (abs(chord(1)*bow(2) - chord(2)*bow(1)) > straight*norm2(bow)) then
+               call report%error(field_place(data, 2), 'TRSHR acts on straight sides, but that '// &
+                  'of element '//to_text(mesh%element_number(element))//' is curved; give TRVEC')
+               return
+            else if (abs(along) <= straight*norm2(vector) .and. norm2(vector) > 0.0_dp) then
+               call report%error(field_place(data, 4), 'the direction is normal to the side of '// &
+                  'element '//to_text(mesh%element_number(element)))
+               return
+            end if
+            do j = 1, 2
+               request%item = element
+               request%component = 2*face + j - 2
+               request%value = sign(norm2(vector), along)*chord(j)
+               call context%loads%add(request)
+            end do
+         end associate
+      end do
+   end subroutine add_shear
 
    !> One request a face, its component a multiple of the face's number and an offset.
    subroutine add_faces(surface, request, multiple, offset, context)

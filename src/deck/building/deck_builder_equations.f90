@@ -409,7 +409,7 @@ contains
          transform%sense = sign(1.0_dp, across)
          if (maxval(abs(x(3, :))) > negligible*maxval(abs(x)) .or. &
             abs(across) <= negligible*norm2(x(:, 1))*norm2(x(:, 2))) call report%error( &
-            field_place(data, 1), 'TYPE=R of a plane has two points in it that are '// &
+            field_place(data, 1), 'TYPE=R of a plane has two points of z = 0 that are '// &
             'not in line with the origin, such as 1., 1., 0., -1., 1., 0.')
       end if
    end subroutine read_points

@@ -229,12 +229,17 @@ contains
       places = cards_of(cards, 'INITIAL CONDITIONS')
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
-            kind = ''
             if (lacks_parameter(card, 'TYPE')) then
                call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE '// &
                   'or TYPE=STRESS')
             end if
-            call choose(card, 'TYPE', 'TEMPERATURE/STRESS', report, kind)
+            kind = to_upper(parameter_text(card, 'TYPE'))
+            if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) then
+               call context%note('*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing '// &
+                  'depends on it')
+            else
+               call choose(card, 'TYPE', 'TEMPERATURE/STRESS', report, kind)
+            end if
             if (kind /= 'TEMPERATURE') cycle
             do j = card%first_data, card%last_data
                valid = .true.
@@ -261,7 +266,7 @@ contains
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (card%name /= 'INITIAL CONDITIONS') cycle
-            if (to_upper(parameter_text(card, 'TYPE')) /= 'STRESS') cycle
+            if (to_upper(parameter_text(card, 'TYPE')) /= 'STRESS' .or. card%flawed) cycle
             if (.not. allocated(mesh%initial_stress)) allocate (mesh%initial_stress(4, &
                size(mesh%element_number)), source=0.0_dp)
             points = spread(0, 1, size(mesh%element_number))

@@ -144,11 +144,14 @@ contains
       logical, intent(out) :: valid                       ! whether it has no errors
       integer, parameter :: moduli(6) = [1, 2, 3, 7, 8, 9]   ! of the engineering constants
       character(:), allocatable :: kind
-      integer :: row
+      integer :: errors, row
 
       kind = 'ISO'
+      errors = report%error_count()
       call choose(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/'// &
          'ANISOTROPIC', report, kind)
+      valid = report%error_count() == errors
+      if (.not. valid) return
       select case (kind)
       case ('ENGINEERING CONSTANTS')
          property%symmetry = engineering
@@ -276,7 +279,8 @@ contains
       n = (card%last_data - card%first_data)/cards_of_row(property) + 1
       allocate (property%values(size(property%names), n), property%temperature(n), source=0.0_dp)
       behind = mod(size(property%names) - 1, per_card) + 2
-      valid = .true.
+      valid = .not. card%flawed
+      if (.not. valid) return
       do row = 1, n
          call read_constants(cards, card, first_card(card, property, row), property%names, report, &
             property%values(:, row), valid)

@@ -33,7 +33,7 @@ contains
       type(mesh_type), intent(inout) :: mesh               !! receives the nodes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), allocatable :: heights(:)
-      integer, allocatable :: card(:), places(:)
+      integer, allocatable :: card(:)
       integer :: j, n
 
       card = data_cards_of(cards, 'NODE')
@@ -47,14 +47,42 @@ contains
       end do
       call move_alloc(heights, context%node_height)
       call warn_of_decimals(cards, card, report)
-      call check_repeated('node', cards, card, mesh%node_number, report, places)
-      do j = 1, size(places)
-         context%node_valid = context%node_valid .and. mesh%node_number /= &
-            mesh%node_number(places(j))
-      end do
+      call drop_repeated(mesh, context, report)
       call context%node_index%build(mesh%node_number)
       call add_rotations(cards, context, mesh)
    end subroutine build_nodes
+
+   !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
+   subroutine drop_repeated(mesh, context, report)
+      type(mesh_type), intent(inout) :: mesh
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+      integer, allocatable :: kept(:), places(:)
+      logical :: keeps(size(mesh%node_number))
+      integer :: i, first
+
+      places = repeated(mesh%node_number)
+      places = pack(places, mesh%node_number(places) > 0)
+      if (size(places) == 0) return
+      keeps = .true.
+      keeps(places) = .false.
+      do i = 1, size(places)
+         first = findloc(mesh%node_number, mesh%node_number(places(i)), dim=1)
+         if (norm2(mesh%coordinates(:, places(i)) - mesh%coordinates(:, first)) > 0.0_dp) call &
+            report%warning(context%node_place(places(i)), 'node '// &
+            to_text(mesh%node_number(first))//' is defined twice, first on '// &
+            report%source%words_of(context%node_place(first))//': the last place is used')
+         mesh%coordinates(:, first) = mesh%coordinates(:, places(i))
+         context%node_height(first) = context%node_height(places(i))
+         context%node_valid(first) = context%node_valid(places(i))
+      end do
+      kept = pack([(i, i=1, size(keeps))], keeps)
+      mesh%node_number = mesh%node_number(kept)
+      mesh%coordinates = mesh%coordinates(:, kept)
+      context%node_place = context%node_place(kept)
+      context%node_valid = context%node_valid(kept)
+      context%node_height = context%node_height(kept)
+   end subroutine drop_repeated
 
    !> Adds a node for the rotation of each coupling and rigid body, which no card can name.
    subroutine add_rotations(cards, context, mesh)
@@ -165,9 +193,8 @@ contains
       if (number == 0) call report%lose(noun)
    end subroutine read_number
 
-   !> Reports numbers that are given twice: one of the two may stand for a number that is missing.
-   subroutine check_repeated(noun, cards, card, numbers, report, places)
-      character(*), intent(in) :: noun
+   !> Reports elements that are given twice: one of the two may stand for one that is missing.
+   subroutine check_repeated(cards, card, numbers, report, places)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: card(:), numbers(:)
       type(deck_report_type), intent(inout) :: report
@@ -179,9 +206,9 @@ contains
       do i = 1, size(places)
          first = findloc(numbers, numbers(places(i)), dim=1)
          call report%twice(field_place(cards%data(card(places(i))), 1), &
-            noun//' '//to_text(numbers(places(i))), field_place(cards%data(card(first)), 1))
+            'element '//to_text(numbers(places(i))), field_place(cards%data(card(first)), 1))
       end do
-      if (size(places) > 0) call report%lose(noun)
+      if (size(places) > 0) call report%lose('element')
    end subroutine check_repeated
 
    !> Builds the elements, in the order of the deck; one of a type that cannot be used keeps its
@@ -233,7 +260,7 @@ contains
       call check_heights(cards, context, mesh, report)
       call context%element_index%build(mesh%element_number)
       ! Elements and lines have different numbers.
-      call check_repeated('element', cards, [card, element_cards(cards, of_lines=.true.)], &
+      call check_repeated(cards, [card, element_cards(cards, of_lines=.true.)], &
          [mesh%element_number, context%line_number], report, places)
       call context%member_index%build([mesh%element_number, context%line_number])
    end subroutine build_elements

@@ -214,7 +214,7 @@ contains
          found = found + 1
       end do
       range = 'from '//to_text(first)//' to '//to_text(last)
-      if (found == 0) then
+      if (found == 0 .and. draft%counts(set) == 0) then
          call report%missing(field_place(data, 1), 'there is no '//draft%noun//' '//range, &
             draft%noun)
       else if (found < count .and. .not. report%has_lost(draft%noun)) then

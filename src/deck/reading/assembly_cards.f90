@@ -43,6 +43,7 @@ module assembly_cards
       integer, allocatable :: first(:), last(:)          !! (parts) keyword cards within each
       type(instance_type), allocatable :: instances(:)   !! those so far
       type(instance_type) :: assembly                    !! cards of the assembly itself
+      character(:), allocatable :: prefix                !! the name of the assembly and a dot
       integer :: step = 0                                !! power of ten between instances
    end type reading_type
 
@@ -61,6 +62,7 @@ contains
          has_parameter(cards%keywords(k), 'INSTANCE'), k=1, size(cards%keywords))])) return
       allocate (open%parts(0), open%first(0), open%last(0), open%instances(0))
       open%assembly%name = ''
+      open%prefix = '.'
       n = count([(cards%keywords(k)%name == 'INSTANCE', k=1, size(cards%keywords))])
       call find_step(cards, n, report, open%step)
       open%assembly%offset = n*open%step
@@ -172,6 +174,8 @@ contains
                open%last = [open%last, k]
             else if (level == at_instance) then
                call open_instance(cards, card, open, all, report)
+            else
+               open%prefix = to_upper(parameter_text(card, 'NAME'))//'.'
             end if
          end if
       end associate
@@ -246,12 +250,12 @@ contains
             ! The set of the assembly, whose members are those of an instance.
             if (copy%parameters(k)%name == card%name) copy%parameters(k)%text = &
                card%parameters(k)%text
-            call members_of_instance(open%instances, copy%parameters(k)%text)
+            call members_of_instance(open, copy%parameters(k)%text)
          end do
       end associate
       do k = all%keywords(first)%first_data, all%data_count
          do i = 1, size(all%data(k)%fields)
-            call members_of_instance(open%instances, all%data(k)%fields(i)%text)
+            call members_of_instance(open, all%data(k)%fields(i)%text)
          end do
       end do
    end subroutine take_flat
@@ -456,21 +460,25 @@ contains
       end do
    end subroutine move_point
 
-   !> Writes INSTANCE.number as the number that the node or element has in the whole deck.
-   subroutine members_of_instance(instances, text)
-      type(instance_type), intent(in) :: instances(:)
+   !> Writes INSTANCE.number as the number that the node or element has in the whole deck. The name
+   !> of the assembly may be before that of the instance or set.
+   subroutine members_of_instance(open, text)
+      type(reading_type), intent(in) :: open
       character(:), allocatable, intent(inout) :: text
       integer :: dot, i, number
       logical :: is_number
 
+      if (len(open%prefix) > 1 .and. index(to_upper(text), open%prefix) == 1) then
+         text = text(len(open%prefix) + 1:)
+      end if
       dot = index(text, '.', back=.true.)
       if (dot < 2 .or. dot == len(text)) return
       if (verify(text(dot + 1:), '0123456789') > 0) return
-      do i = 1, size(instances)
-         if (len(instances(i)%name) /= dot - 1) cycle
-         if (instances(i)%name /= to_upper(text(:dot - 1))) cycle
+      do i = 1, size(open%instances)
+         if (len(open%instances(i)%name) /= dot - 1) cycle
+         if (open%instances(i)%name /= to_upper(text(:dot - 1))) cycle
          call read_integer(text(dot + 1:), number, is_number)
-         if (is_number) text = to_text(number + instances(i)%offset)
+         if (is_number) text = to_text(number + open%instances(i)%offset)
          return
       end do
    end subroutine members_of_instance

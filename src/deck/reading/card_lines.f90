@@ -12,7 +12,7 @@ module card_lines
    use element_types, only: element_type_fields
    use fixed_columns, only: fixed_columns_type
    use keyword_cards, only: is_parameter, make_keyword_card
-   use keywords, only: built, known_keywords
+   use keywords, only: built, is_output, known_keywords
    use spelling, only: find_look_alike
    use text, only: read_integer, to_text, to_upper
    implicit none
@@ -51,13 +51,17 @@ contains
       type(cards_type), intent(inout) :: cards             !! receives the card that it completes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
-      logical :: continues, is_text, title
+      logical :: continues, is_text, is_variable, title
 
       if (is_blank(line)) return
       if (is_comment(line)) return
       title = .false.
       is_text = .false.
+      is_variable = .false.
       if (allocated(self%keyword)) then
+         ! FILM, a keyword, is also a quantity.
+         is_variable = is_output(self%keyword) .and. &
+            scan(line(first_text(line):last_text(line)), ' ,=') == 0
          title = self%keyword == 'HEADING'
          is_text = title .or. self%keyword == 'STEP'
       end if
@@ -68,7 +72,7 @@ contains
       end if
       if (is_keyword(line) .or. .not. (is_text .or. self%skips_data)) call &
          suspect_look_alike(line, image, report)
-      if (is_keyword(line) .or. lacks_star(line, title, cards)) then
+      if (is_keyword(line) .or. (.not. is_variable .and. lacks_star(line, title, cards))) then
          call self%finish(cards, report)
          call split_fields(line, image, report, fields)
          if (.not. is_keyword(line)) then

@@ -71,11 +71,13 @@ contains
    pure integer function end_of_keyword(string)
       character(*), intent(in) :: string
       type(known_parameter_type) :: parameter
+      type(advice_type) :: advice
       character(:), allocatable :: rest
       integer :: i, known
 
       end_of_keyword = 0
-      if (find_keyword(string(2:)) > 0) return
+      advice = find_advice(string(2:))
+      if (find_keyword(string(2:)) > 0 .or. advice%kind /= no_advice) return
       do i = len(string), 2, -1
          if (scan(string(i:i), blanks) == 0) cycle
          known = find_keyword(string(2:i - 1))

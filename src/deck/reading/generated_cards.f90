@@ -175,8 +175,8 @@ contains
       if (has_field(data, 4)) then
          call need_given_node(data, 4, 'center', nodes, all, report, circle%given_point_type)
       else
-         call need_field(data, 5, 'x of the center', report, circle%x(1), circle%valid)
-         call need_field(data, 6, 'y of the center', report, circle%x(2), circle%valid)
+         call take_field(data, 5, 'x of the center', report, circle%x(1), circle%valid)
+         call take_field(data, 6, 'y of the center', report, circle%x(2), circle%valid)
       end if
       call take_field(data, 10, 'z of the normal', report, normal, circle%valid)
       call check_extra(data, 10, 'first node, last node, increment, center: node or x, y, z, '// &

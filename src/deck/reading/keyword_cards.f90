@@ -86,6 +86,7 @@ contains
             trim(advice%words))
       case (refused)
          card%meant = trim(advice%keyword)
+         if (len(card%meant) > 0) call report%lose('*'//card%meant)
          call report%error(card%place, message)
       case (refused_with_data)
          card%refusal_of_data = message

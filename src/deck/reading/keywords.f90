@@ -29,6 +29,10 @@ module keywords
 
    integer, parameter :: many = huge(1)
 
+   !> Why laws of other materials are refused.
+   character(*), parameter :: linear = &
+      'materials are linear: *ELASTIC, *EXPANSION, *CONDUCTIVITY; leave it out'
+
    !> One keyword. Its parameters are separated by slashes; `=` marks one that needs a value and `?`
    !> one that may have one; `~` is before one that is not needed.
    type :: keyword_type
@@ -66,8 +70,6 @@ module keywords
    !> How the keywords end that ask for output.
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
-   integer, parameter :: shortest = 3   !! letters of an abbreviation
-
    type(keyword_type), parameter :: known_keywords(88) = [ &
       keyword_type('HEADING', built, in_model, 0, many, ''), &
       keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
@@ -83,11 +85,12 @@ module keywords
       keyword_type('ELGEN', built, in_model, 1, many, 'ELSET='), &
       keyword_type('ELCOPY', built, in_model, 0, 0, &
          'OLD SET=/ELEMENT SHIFT=/SHIFT NODES=/NEW SET=/REFLECT'), &
-      keyword_type('NSET', built, in_model, 1, many, &
+      keyword_type('NSET', built, in_both, 1, many, &
          'NSET=/GENERATE/ELSET=/SURFACE=/INSTANCE=/~INTERNAL/~UNSORTED'), &
-      keyword_type('ELSET', built, in_model, 1, many, &
+      keyword_type('ELSET', built, in_both, 1, many, &
          'ELSET=/GENERATE/INSTANCE=/~INTERNAL/~UNSORTED'), &
-      keyword_type('SURFACE', built, in_model, 1, many, 'NAME=/TYPE=/~INTERNAL'), &
+      keyword_type('SURFACE', built, in_model, 1, many, &
+         'NAME=/TYPE=/~INTERNAL/~TRIM=/~MAX RATIO='), &
       keyword_type('MATERIAL', built, in_model, 0, 0, 'NAME='), &
       keyword_type('ELASTIC', built, in_model, 1, many, 'TYPE='), &
       keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/ZERO='), &
@@ -98,9 +101,9 @@ module keywords
       keyword_type('SOLID SECTION', built, in_model, 0, 1, &
          'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
       keyword_type('SPRING', built, in_model, 1, 2, 'ELSET='), &
-      keyword_type('AMPLITUDE', built, in_model, 1, many, &
+      keyword_type('AMPLITUDE', built, in_both, 1, many, &
          'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH='), &
-      keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE='), &
+      keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE=/~VARIABLE='), &
       keyword_type('SURFACE INTERACTION', built, in_model, 0, 1, 'NAME='), &
       keyword_type('FRICTION', built, in_both, 1, 1, &
          'ROUGH/TAUMAX=/~SLIP TOLERANCE=/~ELASTIC SLIP=/~LAGRANGE'), &
@@ -141,11 +144,11 @@ module keywords
       keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
       keyword_type('PRE-TENSION SECTION', built, in_model, 0, 1, 'NODE=/SURFACE='), &
       keyword_type('STEP', built, in_both, 0, 0, &
-         'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM?/~EXTRAPOLATION=/~CONVERT SDI='), &
+         'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM?/~EXTRAPOLATION=/~CONVERT SDI=/~DSA?'), &
       keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
       keyword_type('NO ANALYSIS', built, in_step, 0, 0, ''), &
       keyword_type('STABILITY', built, in_step, 0, 0, 'FREQUENCY='), &
-      keyword_type('TIME POINTS', built, in_model, 1, many, 'NAME=/TIME=/GENERATE'), &
+      keyword_type('TIME POINTS', built, in_both, 1, many, 'NAME=/TIME=/GENERATE'), &
       keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
          'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/~END='), &
       keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, 'CREEP=/'// &
@@ -153,9 +156,11 @@ module keywords
       keyword_type('UNCOUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
          'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR='), &
       keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE=/TYPE=/FIXED'), &
-      keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      keyword_type('DLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      keyword_type('DSLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?'), &
+      keyword_type('DLOAD', built, in_step, 1, many, &
+         'OP=/AMPLITUDE=/~FOLLOWER?/~CONSTANT RESULTANT='), &
+      keyword_type('DSLOAD', built, in_step, 1, many, &
+         'OP=/AMPLITUDE=/~FOLLOWER?/~CONSTANT RESULTANT='), &
       keyword_type('CFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       keyword_type('DFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
       keyword_type('FILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
@@ -184,22 +189,25 @@ module keywords
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(84) = [ &
+   type(advice_type), parameter :: advice(94) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
-      advice_type(passed_over, '', 'CONTROLS', &
+      advice_type(passed_over, '', 'CONTROLS/SOLUTION TECHNIQUE', &
          'tolerance and iterations are parameters of *FIXED POINT'), &
       advice_type(passed_over, '', 'CONTACT CONTROLS', 'contact is exact'), &
       advice_type(passed_over, '', 'SECTION CONTROLS/HOURGLASS STIFFNESS', &
          'hourglass control is that of incompatible modes'), &
       advice_type(passed_over, '', 'OUTPUT/ENERGY OUTPUT/INCREMENTATION OUTPUT/INTEGRATED '// &
          'OUTPUT/INTEGRATED OUTPUT SECTION/MODAL OUTPUT/RADIATION OUTPUT/SURFACE OUTPUT/'// &
-         'ENERGY FILE/MODAL FILE/RADIATION FILE/FILE FORMAT/FILE OUTPUT', &
+         'ENERGY FILE/MODAL FILE/RADIATION FILE/FILE FORMAT/FILE OUTPUT/VIEWFACTOR OUTPUT', &
          'fields are written at every increment'), &
       advice_type(passed_over, '', 'ENERGY PRINT/MODAL PRINT/RADIATION PRINT', &
          'the listing has no such table'), &
       advice_type(passed_over, '', 'FILTER', 'results are not filtered'), &
+      advice_type(passed_over, '', 'DESIGN PARAMETER/DESIGN RESPONSE/DESIGN GRADIENT/NODE '// &
+         'RESPONSE/ELEMENT RESPONSE/CONTACT RESPONSE', 'sensitivities are not computed'), &
+      advice_type(passed_over, '', 'FAIL STRESS/FAIL STRAIN', 'materials do not fail'), &
       advice_type(passed_over, '', 'DAMPING/CONTACT DAMPING', 'loads are slow'), &
       advice_type(passed_over, '', 'NORMAL', 'the normal of the plane is z'), &
       advice_type(passed_over, '', 'DEPVAR', 'materials have no state'), &
@@ -211,9 +219,24 @@ module keywords
          'result'), &
       advice_type(refused_with_data, '', 'RADIATE', &
          'heat leaves sides by *FILM and *DFLUX; only contact gaps radiate'), &
-      advice_type(refused, '', 'PLASTIC/CYCLIC HARDENING/DEFORMATION PLASTICITY/HYPERELASTIC/'// &
-         'HYPERFOAM/CREEP/USER MATERIAL', &
-         'materials are linear: *ELASTIC, *EXPANSION, *CONDUCTIVITY; leave it out'), &
+      advice_type(refused, 'ELASTIC', 'HYPERELASTIC/ANISOTROPIC HYPERELASTIC/HYPERFOAM/'// &
+         'HYPOELASTIC/POROUS ELASTIC/DEFORMATION PLASTICITY/USER MATERIAL', linear), &
+      advice_type(refused, '', 'PLASTIC/CYCLIC HARDENING/CREEP/VISCOELASTIC/RATE DEPENDENT/'// &
+         'POTENTIAL/UNIAXIAL TEST DATA/DRUCKER PRAGER/DRUCKER PRAGER HARDENING/DRUCKER PRAGER '// &
+         'CREEP/MOHR COULOMB/MOHR COULOMB HARDENING/CAP PLASTICITY/CAP HARDENING', linear), &
+      advice_type(refused, '', 'DAMAGE INITIATION/DAMAGE EVOLUTION/DAMAGE STABILIZATION/'// &
+         'BRITTLE CRACKING/CONCRETE/CONCRETE DAMAGED PLASTICITY/CONCRETE COMPRESSION HARDENING/'// &
+         'CONCRETE COMPRESSION DAMAGE/CONCRETE TENSION STIFFENING/CONCRETE TENSION DAMAGE', &
+         linear), &
+      advice_type(refused, '', 'USER DEFINED FIELD/FIELD', 'values depend on no field'), &
+      advice_type(refused, '', 'PERMEABILITY/SORPTION/GEL/POROUS BULK MODULI/MOISTURE '// &
+         'SWELLING/FLOW/DFLOW/DSFLOW/DIFFUSIVITY/SOLUBILITY', 'nothing flows through bodies'), &
+      advice_type(refused, '', 'HEAT GENERATION', &
+         'no routine of the user is called; give BF on *DFLUX'), &
+      advice_type(refused, '', 'FILM PROPERTY', &
+         'a film coefficient is a number on *FILM or *SFILM, over time by FILM AMPLITUDE='), &
+      advice_type(refused, '', 'CAVITY DEFINITION/SURFACE PROPERTY/EMISSIVITY/RADIATION '// &
+         'VIEWFACTOR/RADIATION SYMMETRY/VIEWFACTOR', 'only contact gaps radiate'), &
       advice_type(refused, 'SOLID SECTION', 'SHELL SECTION/BEAM SECTION/BEAM GENERAL SECTION/'// &
          'MEMBRANE SECTION', &
          'elements are plane: CPE, CPS or CAX, with *SOLID SECTION'), &
@@ -223,7 +246,6 @@ module keywords
       advice_type(refused, '', 'NODAL THICKNESS', 'give the thickness on *SOLID SECTION'), &
       advice_type(refused, '', 'DISTRIBUTION', &
          'give the axes of each element set on an *ORIENTATION of its own'), &
-      advice_type(refused, '', 'VIEWFACTOR', 'only contact gaps radiate'), &
       advice_type(refused, 'CONTACT PAIR', 'CONTACT', &
          'there is no general contact; name the faces of each *CONTACT PAIR'), &
       advice_type(refused, '', 'KINEMATIC COUPLING/DISTRIBUTING/DISTRIBUTING COUPLING/CYCLIC '// &
@@ -235,13 +257,17 @@ module keywords
       advice_type(refused, '', 'CHANGE MATERIAL/CHANGE SOLID SECTION/CHANGE SURFACE BEHAVIOR', &
          'materials, elements and sections are the same in all steps'), &
       advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/MODAL DYNAMIC/'// &
-         'STEADY STATE DYNAMICS/VISCO/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD', &
+         'STEADY STATE DYNAMICS/VISCO/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD/GEOSTATIC/SOILS/'// &
+         'MASS DIFFUSION/COUPLED THERMAL-ELECTRICAL/DIRECT CYCLIC', &
          'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
       advice_type(of_parameter, 'SPRING', 'NONLINEAR/ORIENTATION/DEPENDENCIES/COMPLEX STIFFNESS', &
          'springs have one constant'), &
       advice_type(of_parameter, 'EQUATION', 'REMOVE', 'equations hold in all steps'), &
       advice_type(of_parameter, 'EQUATION', 'INPUT', 'take *INCLUDE behind the keyword'), &
       advice_type(of_parameter, 'INSTANCE', 'LIBRARY', 'the mesh is in the deck; give its part'), &
+      advice_type(of_parameter, 'SURFACE', 'PROPERTY', 'only contact gaps radiate'), &
+      advice_type(of_parameter, 'INITIAL CONDITIONS', 'GEOSTATIC', &
+         'give the stresses of each element set'), &
       advice_type(of_parameter, 'SURFACE', 'FILLET RADIUS', 'draw the fillets by CIRCL'), &
       advice_type(of_parameter, 'COUPLING', 'ORIENTATION', 'faces follow along x and y'), &
       advice_type(of_parameter, 'COUPLING', 'ALPHA', 'small rotations need no penalty'), &
@@ -398,7 +424,7 @@ contains
 
       short = to_upper(without_blanks(name))
       parameter%name = ''
-      if (len(short) < shortest) return
+      if (len(short) == 0) return
       found = ''
       names = parameter_names(known)
       do i = 1, size(names)
