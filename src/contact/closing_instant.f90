@@ -191,7 +191,7 @@ contains
       way%y = [way%last_gap - max(previous%gap(way%point), 0.0_dp), &
          previous%tangential(way%point) - state%tangential(way%point)]
       way%lambda = [-state%force(way%point), state%shear_force(way%point)]
-      way%least_gap = together*maxval(previous%gap(way%point)) + system%least_length
+      way%least_gap = together*max(maxval(previous%gap(way%point)), 0.0_dp) + system%least_length
       do k = 1, size(way%point)
          associate (law => laws(way%point(k)))
             law = closing_law_type(acts=.true., start=previous%tangential(way%point(k)))

@@ -148,6 +148,16 @@ def test_heat_across_soft_faces_follows_their_pressure(tmp_path, law):
                ("heat_flux", "FACE", "LAST", flux(pressure), 1e-7)], name=pairing.lower())
 
 
+def test_a_free_block_settles_on_the_reach_of_its_faces(tmp_path):
+    """A block that only contact with friction holds along y is within the reach of an exponential
+    law from the start."""
+    step = ["*STATIC", "0.25, 1.", "*BOUNDARY", "LOW.BOTTOM, 2", "LOW.LEFT, 1", "UP.LEFT, 1",
+            "*DSLOAD", "UP.TOP, P, 0.1"]
+    judge(tmp_path, pressed("CAX4", [*exponential(0.02, 0.001), "*FRICTION", "0.1"], 0.0, step), [
+        ("pressure", "FACE", "LAST", 0.1, 1e-9),
+        ("U2", "UP.TOP", "LAST", -0.3 / YOUNG - of_exponential(0.1, 0.02, 0.001), 1e-9)])
+
+
 def test_gaps_count_from_where_faces_begin_to_press(tmp_path):
     """So the conductance of the gas has no jump there: in heat alone, and as the blocks part."""
     gap, reach = 0.004, CLEARANCE * (1.0 + 1.0 / log(100.0))
