@@ -3,14 +3,15 @@
 !>
 !> The elements round these nodes are divided into four (divided_mesh). The error is a multiple of
 !> what stress there changes: the von Mises stress of the difference, which does not vanish by
-!> chance where components change in different ways. A maximum between nodes shows at the new nodes
+!> chance where components change in different ways, as far as von Mises stresses near change too.
+!> A maximum between nodes shows at the new nodes
 !> of its elements. Elements that stay err as the square of the error of their energy norm.
 !>
 !> docs/accuracy.md says on which decks the constants were chosen and which judge them.
 module body_bounds
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use body_maxima, only: divided_places, divided_point, elements_about, of_stress, &
-      of_temperature, places_of, places_type, vertex_near
+   use body_maxima, only: divided_places, divided_point, elements_about, largest_change, &
+      of_stress, of_temperature, places_of, places_type, values_type, vertex_near
    use divided_mesh, only: divided_mesh_type
    use due_output, only: is_judged
    use element_kinds, only: element_node_count
@@ -30,6 +31,8 @@ module body_bounds
    integer, parameter :: layers = 2    !! of elements round a node that are divided
    !> Error in the change: errors that fall with h are just twice as large, and need some room.
    real(dp), parameter :: of_change = 2.1_dp
+   !> Largest change that counts by its direction, in the largest one of the value at nodes near.
+   real(dp), parameter :: of_changes_near = 2.0_dp
    !> Error of stress over the largest, and of temperature over the range, in the squared relative
    !> error of the energy norm that elements have that are not divided.
    real(dp), parameter :: of_energy = 0.25_dp, of_energy_in_heat = 1.5_dp
@@ -211,7 +214,9 @@ contains
       end if
    end function left_at
 
-   !> How much a quantity changes at a point, of stress at least the von Mises stress of the change.
+   !> How much a quantity changes at a point. That may vanish by chance; so of stress at least the
+   !> von Mises stress of the change, but no more than some times what the quantity changes at the
+   !> nodes round the point: where components change across the stress, none of these changes much.
    pure real(dp) function change_at(self, model, divided, record, point, name) result(change)
       type(body_bounds_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -219,21 +224,21 @@ contains
       type(increment_record_type), intent(in) :: record
       integer, intent(in) :: point
       character(*), intent(in) :: name
-      type(field_record_type) :: both
-      real(dp), allocatable :: values(:)
+      type(field_record_type) :: difference
+      type(point_map_type) :: points
+      type(values_type) :: values
+      integer :: after
 
-      associate (node => self%points%node(point), before => record%fields, after => divided%fields)
-         both%temperature = [before%temperature(node), after%temperature(node)]
-         if (allocated(after%stress) .and. allocated(before%stress)) both%stress = reshape( &
-            [before%stress(:, point), after%stress(:, divided_point(divided, model%mesh, &
-            self%points, point))], [4, 2])
-      end associate
-      values = point_values(name, both, [1, 2])
-      change = abs(values(2) - values(1))
+      points = divided%points()
+      after = divided_point(divided, model%mesh, self%points, point)
+      values%before = point_values(name, record%fields, self%points%node)
+      values%after = point_values(name, divided%fields, points%node)
+      change = abs(values%after(after) - values%before(point))
       if (any(name == [character(11) :: 'NT', 'temperature'])) return
-      both%stress(:, 1) = both%stress(:, 2) - both%stress(:, 1)
-      values = point_values('von_mises', both, [1, 2])
-      change = max(change, values(1))
+      difference%stress = divided%fields%stress(:, [after]) - record%fields%stress(:, [point])
+      change = max(change, min(maxval(point_values('von_mises', difference, [1])), &
+         of_changes_near*largest_change(divided, model%mesh, self%points, values, &
+         self%points%node(point))))
    end function change_at
 
    !> Bounds the errors of what checks of nodes judge, NaN for others. Increments and iteration make

@@ -12,8 +12,8 @@ module body_maxima
    use records, only: field_record_type
    implicit none
    private
-   public :: places_type, places_of, divided_places, divided_point, vertex_near, &
-      elements_about, of_stress, of_temperature
+   public :: places_type, values_type, places_of, divided_places, divided_point, vertex_near, &
+      largest_change, elements_about, of_stress, of_temperature
 
    integer, parameter :: of_stress = 1, of_temperature = 2   !! as in maxima
 
@@ -22,6 +22,11 @@ module body_maxima
       integer, allocatable :: point(:, :)        !! (maxima, bodies)
       real(dp), allocatable :: value(:, :)       !! (maxima, bodies)
    end type places_type
+
+   !> Values of a quantity at the points of two meshes.
+   type :: values_type
+      real(dp), allocatable :: before(:), after(:)
+   end type values_type
 
 contains
 
@@ -81,28 +86,64 @@ contains
       found = places_of(divided%model%mesh, divided%points(), divided%fields, fine)
    end function divided_places
 
-   !> The point of a divided mesh that a point is there: at the same node in a part of its element.
+   !> The point of a divided mesh that a point is there.
    pure integer function divided_point(divided, mesh, points, point)
       type(divided_mesh_type), intent(in) :: divided
       type(mesh_type), intent(in) :: mesh                 !! before
       type(point_map_type), intent(in) :: points          !! before
       integer, intent(in) :: point
-      type(point_map_type) :: fine
-      integer :: child, e, k, part
+      integer, allocatable :: after(:)
+      integer :: e
 
-      fine = divided%points()
       divided_point = 0
       do e = 1, size(mesh%element_kind)
          if (all(points%element_points(:, e) /= point)) cycle
-         do child = 1, merge(4, 1, divided%is_divided(e))
-            part = e
-            if (divided%is_divided(e)) part = child_element(divided%division, e, child)
-            k = findloc(divided%model%mesh%element_nodes(:, part), points%node(point), dim=1)
-            if (k > 0) divided_point = fine%element_points(k, part)
-         end do
+         after = points_after(divided, divided%points(), mesh, e)
+         divided_point = after(findloc(points%element_points(:, e), point, dim=1))
          return
       end do
    end function divided_point
+
+   !> The largest change of values at the nodes of the elements at a node.
+   pure real(dp) function largest_change(divided, mesh, points, values, node) result(largest)
+      type(divided_mesh_type), intent(in) :: divided
+      type(mesh_type), intent(in) :: mesh                 !! before
+      type(point_map_type), intent(in) :: points          !! before
+      type(values_type), intent(in) :: values             !! at the points of both meshes
+      integer, intent(in) :: node                         !! of the mesh before
+      type(point_map_type) :: fine
+      integer :: e, n
+
+      fine = divided%points()
+      largest = 0.0_dp
+      do e = 1, size(mesh%element_kind)
+         n = element_node_count(mesh%element_kind(e))
+         if (all(mesh%element_nodes(:n, e) /= node)) cycle
+         largest = max(largest, maxval(abs(values%after(points_after(divided, fine, mesh, e)) - &
+            values%before(points%element_points(:n, e)))))
+      end do
+   end function largest_change
+
+   !> The points of a divided mesh that those of an element are there: at the same nodes in its
+   !> parts.
+   pure function points_after(divided, fine, mesh, e) result(after)
+      type(divided_mesh_type), intent(in) :: divided
+      type(point_map_type), intent(in) :: fine            ! of the divided mesh
+      type(mesh_type), intent(in) :: mesh                 ! before
+      integer, intent(in) :: e
+      integer :: after(element_node_count(mesh%element_kind(e)))
+      integer :: child, k, part, place
+
+      do child = 1, merge(4, 1, divided%is_divided(e))
+         part = e
+         if (divided%is_divided(e)) part = child_element(divided%division, e, child)
+         do k = 1, size(after)
+            place = findloc(divided%model%mesh%element_nodes(:, part), mesh%element_nodes(k, e), &
+               dim=1)
+            if (place > 0) after(k) = fine%element_points(place, part)
+         end do
+      end do
+   end function points_after
 
    !> The largest value on the sides at a node by the parabola through both ends and the middle of
    !> each, which is new on sides of two nodes; -huge where none has its vertex within.

@@ -17,7 +17,7 @@ module divided_mesh
    use kinds, only: dp
    use load_histories, only: end_of_step
    use local_refinement, only: choose_neighbours, elements_at_surfaces
-   use mesh_division, only: divide, division_type, refined_members
+   use mesh_division, only: child_element, divide, division_type, refined_members
    use model, only: model_type
    use records, only: field_record_type
    use reduced_bodies, only: reduced_bodies_type
@@ -36,7 +36,8 @@ module divided_mesh
       logical, allocatable :: is_divided(:)             !! (elements) once prepared
       type(model_type) :: model                         !! the divided one
       type(division_type) :: division
-      !> Temperature and, where the step solves it, stress at the end of the step
+      !> Temperature and, where the step solves it, stress at the end of the step; stress is smooth
+      !> where the elements are divided besides those at the contact
       type(field_record_type), allocatable :: fields
       type(simulation_type), private :: run
       type(solution_state_type), private :: initial     !! state before the first increment
@@ -67,7 +68,8 @@ contains
       real(dp) :: values(size(change, 1), size(change, 2))
 
       call divide_at_contact(self, simulation, model, also, error)
-      if (.not. allocated(error)) call solve_end(self, simulation, previous, change, error)
+      if (.not. allocated(error)) call solve_end(self, simulation, also, previous, change, &
+         error)
       if (allocated(error)) return
       state = simulation%state
       associate (step => model%steps(simulation%control%step))
@@ -182,13 +184,25 @@ contains
          deallocate (self%is_divided)
          return
       end if
-      call self%run%recovery%prepare(self%model)
       self%run%heats(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
       self%heat%forms_on_demand = self%run%heats(1)%forms_on_demand
       call self%run%loads%prepare(self%model)
       self%initial = make_initial_state(self%model, self%run%bodies)
       self%run%state = self%initial
    end subroutine prepare
+
+   !> Which elements are parts of others.
+   pure function parts_of(self, chosen) result(is_part)
+      type(divided_mesh_type), intent(in) :: self
+      logical, intent(in) :: chosen(:)                    ! (elements before), all divided
+      logical :: is_part(self%division%elements_after)
+      integer :: child, e
+
+      is_part = .false.
+      do e = 1, size(chosen)
+         if (chosen(e)) is_part([(child_element(self%division, e, child), child=1, 4)]) = .true.
+      end do
+   end function parts_of
 
    !> Prescribes what all nodes of a side or element have prescribed at the new nodes on it, too:
    !> the deck may name nodes one by one.
@@ -264,9 +278,10 @@ contains
    !> The quantities of the interfaces at the end of the run's step. Anderson's method solves the
    !> increment without the loads of all jumps; where it fails, that of the deck does with them.
    !> Errors: as simulation_type's enter_step and reduce, or the increment has no solution.
-   subroutine solve_end(self, simulation, previous, values, error)
+   subroutine solve_end(self, simulation, also, previous, values, error)
       type(divided_mesh_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: also(:)                      ! as for keep_fields
       type(solution_state_type), intent(in) :: previous
       real(dp), intent(out) :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
@@ -302,19 +317,22 @@ contains
          end if
          if (allocated(error)) return
          call quantities_of_state(run%bodies, next, values)
-         call keep_fields(self, next)
+         call keep_fields(self, next, also)
       end associate
    end subroutine solve_end
 
-   !> Keeps temperature and stress of a state.
-   subroutine keep_fields(self, state)
+   !> Keeps temperature and stress of a state. Smooth stress takes long, so it is formed only in
+   !> the parts of some elements.
+   subroutine keep_fields(self, state, also)
       type(divided_mesh_type), intent(inout) :: self
       type(solution_state_type), intent(in) :: state
+      logical, intent(in) :: also(:)                      ! (elements before) those that count
       type(error_record_type) :: estimate
 
       if (allocated(self%fields)) deallocate (self%fields)
       allocate (self%fields)
       self%fields%temperature = state%temperature
+      call self%run%recovery%prepare(self%model, parts_of(self, also))
       if (state%has_mechanics) call self%run%recovery%recover_stress(self%model, &
          reshape(state%displacement, [2, size(state%temperature)]), state%stress_temperature - &
          self%model%initial_temperature, self%fields%stress, estimate)

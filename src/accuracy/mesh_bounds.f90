@@ -189,15 +189,43 @@ contains
    end function ends_with_contact
 
    !> Sum of the shear forces of stuck contact points, without their signs, times the spacing at
-   !> the edge of contact, over which the last of them came to stick [force length].
+   !> the edge of contact, over which the last of them came to stick [force length]. What slides
+   !> across several nodes before it sticks does so at a slip whose error is as many times smaller.
    pure real(dp) function locked_in(points, contact)
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
 
       locked_in = 0.0_dp
-      if (allocated(contact%shear)) locked_in = sum(abs(points%weight*contact%shear), &
-         mask=contact%contact_state == contact_stick)*nodal_spacing(points, contact%edge_contact)
+      if (.not. allocated(contact%shear)) return
+      associate (spacing => nodal_spacing(points, contact%edge_contact))
+         if (spacing <= 0.0_dp) return
+         locked_in = sum(abs(points%weight*contact%shear), &
+            mask=contact%contact_state == contact_stick)*spacing/ &
+            max(1.0_dp, least_slip_zone(points, contact)/spacing)
+      end associate
    end function locked_in
+
+   !> Width of the narrowest zone of slip between stuck contact points and open ones; 0 where there
+   !> is none [length].
+   pure real(dp) function least_slip_zone(points, contact) result(width)
+      type(contact_points_type), intent(in) :: points
+      type(contact_record_type), intent(in) :: contact
+      integer :: last, k
+
+      width = huge(width)
+      last = 0
+      do k = 1, size(points%arc_length)
+         if (contact%contact_state(k) == contact_slip) cycle
+         if (last > 0) then
+            ! From the middle between two points to the middle between the next two.
+            if (contact%contact_state(k) /= contact%contact_state(last)) width = min(width, &
+               0.5_dp*(points%arc_length(k) + points%arc_length(k - 1) - &
+               points%arc_length(last) - points%arc_length(last + 1)))
+         end if
+         last = k
+      end do
+      if (width >= huge(width)) width = 0.0_dp
+   end function least_slip_zone
 
    !> Friction that is missing where supports hold both nodes of a closed contact point along the
    !> face, and the one beside it slips: the part of the face that it stands for slips as well, but

@@ -42,13 +42,14 @@ module patch_recovery
 
 contains
 
-   !> Fits the patches.
-   pure subroutine prepare(self, mesh, points, first_sample, position)
-      class(patch_recovery_type), intent(inout) :: self !! the weights
+   !> Fits the patches, of some elements alone where only what these have is asked for.
+   pure subroutine prepare(self, mesh, points, first_sample, position, counts)
+      class(patch_recovery_type), intent(inout) :: self !! the weights, not yet formed
       type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points        !! where averaged fields live
       integer, intent(in) :: first_sample(:)            !! (elements + 1) first recovery point
       real(dp), intent(in) :: position(:, :)            !! (2, recovery points) x, y [length]
+      logical, intent(in) :: counts(:)                  !! (elements)
       type(row_type) :: rows(size(points%node))
       type(layout_type) :: layout
       type(fit_type) :: fit
@@ -59,8 +60,8 @@ contains
 
       layout%first_sample = first_sample
       layout%position = position
-      call invert_lists(points%element_points, element_corner_count(mesh%element_kind), &
-         size(rows), layout%start, layout%around)
+      call invert_lists(points%element_points, merge(element_corner_count(mesh%element_kind), &
+         0, counts), size(rows), layout%start, layout%around)
       layout%is_centred = is_linear(mesh%element_kind) .and. .not. is_row(mesh, points, layout)
       allocate (self%inside(size(rows)), source=.false.)
       do p = 1, size(rows)

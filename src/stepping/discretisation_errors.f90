@@ -40,10 +40,11 @@ module discretisation_errors
 
 contains
 
-   !> Forms what stays.
-   subroutine prepare(self, model)
+   !> Forms what stays; fields are as good as they can be in the elements that count.
+   subroutine prepare(self, model, counts)
       class(recovery_type), intent(out) :: self
       type(model_type), intent(in) :: model
+      logical, intent(in) :: counts(:)           !! (elements)
       real(dp), allocatable :: position(:, :)
       integer :: e
 
@@ -59,7 +60,8 @@ contains
          position(:, self%samples%first(e):self%samples%first(e + 1) - 1) = &
             self%samples%positions(model%mesh, e)
       end do
-      call self%patches%prepare(model%mesh, self%points, self%samples%first, position)
+      call self%patches%prepare(model%mesh, self%points, self%samples%first, position, &
+         counts)
       call measure_factors(self)
    end subroutine prepare
 

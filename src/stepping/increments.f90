@@ -99,7 +99,7 @@ contains
       self%undecided = ''
       call self%bodies%prepare(model, error)
       if (allocated(error)) return
-      call self%recovery%prepare(model)
+      call self%recovery%prepare(model, spread(.true., 1, size(model%mesh%element_kind)))
       call self%corrections%prepare(model)
       call self%loads%prepare(model)
       self%state = make_initial_state(model, self%bodies)
