@@ -12,7 +12,7 @@
 module mesh_bounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_definitions, only: pairing_surfaces
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, on_axis
    use contact_quantities, only: estimated
    use contact_system, only: contact_open, contact_slip, contact_stick
    use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner
@@ -132,8 +132,8 @@ contains
       end associate
    end subroutine bound_edges
 
-   !> Excess of the pressure on the axis, which few elements tell, over the even parabola through
-   !> the two contact points beside it, where it is the largest; 0 elsewhere.
+   !> By how much the pressure on the axis, which few elements tell, leaves the even parabola through
+   !> the two contact points beside it, where it is the largest there; 0 elsewhere.
    pure real(dp) function rise_on_axis(points, pressure) result(rise)
       type(contact_points_type), intent(in) :: points
       real(dp), intent(in) :: pressure(:)
@@ -142,10 +142,11 @@ contains
 
       rise = 0.0_dp
       m = size(pressure)
-      k = maxloc(pressure, dim=1)
-      if (.not. points%about_axis .or. m < 3 .or. all(k /= [1, m])) return
-      if (points%weight(k) > 0.0_dp) return
+      if (m < 3) return
+      if (.not. any(on_axis(points, [1, m]))) return
+      k = merge(1, m, on_axis(points, 1))
       way = merge(1, -1, k == 1)
+      if (abs(maxloc(pressure, dim=1) - k) > 1) return
       square = (points%arc_length([k + way, k + 2*way]) - points%arc_length(k))**2
       rise = abs(pressure(k) - (pressure(k + way)*square(2) - pressure(k + 2*way)*square(1))/ &
          (square(2) - square(1)))

@@ -7,7 +7,7 @@ module reduced_bodies
    use connections, only: connections_type, contact_laws_type, join_points, laws_of_step, &
       match_surfaces, match_tie
    use conductance_laws, only: is_constant
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, on_axis
    use dilatation, only: dilatation_type
    use element_kinds, only: element_node_count
    use equilibrium_reduction, only: equilibrium_reduction_type
@@ -107,15 +107,20 @@ contains
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
 
-   !> The contact points of one interface.
+   !> The contact points of one interface. A body that ends at a line of symmetry goes on beyond it,
+   !> as a rigid master does.
    pure subroutine view(self, i, points)
       class(reduced_bodies_type), intent(in) :: self !! prepared
       integer, intent(in) :: i                       !! index of the interface
       type(contact_points_type), intent(out) :: points
+      integer :: ends(2)
 
       points = self%interfaces(i)
-      points%contact_row_type = self%points%part(self%points%interface_start(i), &
-         self%points%interface_start(i + 1) - 1)
+      ends = self%points%interface_start(i:i + 1) - [0, 1]
+      points%contact_row_type = self%points%part(ends(1), ends(2))
+      if (.not. points%is_rigid .or. .not. allocated(self%held_direction)) return
+      points%at_corner = points%at_corner .and. .not. (on_axis(points, ends - ends(1) + 1) .or. &
+         norm2(self%held_direction(:, ends), dim=1) > 0.0_dp)
    end subroutine view
 
    !> Those of all interfaces.

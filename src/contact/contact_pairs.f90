@@ -5,7 +5,7 @@ module contact_pairs
    use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, tributary_areas
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
-   use contact_points, only: contact_points_type, no_radius
+   use contact_points, only: contact_points_type, no_radius, small_offset
    use drawn_lines, only: drawn_line_type
    use element_kinds, only: axisymmetric, element_corner_count
    use errors, only: error_type, set_error, status_deck
@@ -64,8 +64,8 @@ contains
          ! body: judged by the outlines beyond the lines.
          associate (s => slave%nodes([1, size(slave%nodes)]), &
             m => master%nodes([1, size(slave%nodes)]))
-            points%at_corner = [(body_angle(mesh, s(k)) > going_on .neqv. (on_drawing .or. &
-               body_angle(mesh, m(k)) > going_on), k=1, 2)]
+            points%at_corner = [(body_angle(mesh, s(k)) > going_on .neqv. &
+               body_angle(mesh, m(k)) > going_on, k=1, 2)]
          end associate
       end if
       points%side_nodes = slave%side_nodes
@@ -233,8 +233,29 @@ contains
          call find_points(drawn, asked, slave, master, thickness, points, error)
          if (allocated(error)) return
       end if
+      if (.not. slave%closed) points%at_corner = ends_alone(mesh, drawing, slave, points)
       call follow_reference(drawing, size(mesh%node_number), drawn%coordinates, points)
    end subroutine set_rigid_points
+
+   !> Whether one of the slave's body and the drawing ends at the first, at the last node of the
+   !> slave, and the other goes on.
+   pure function ends_alone(mesh, drawing, slave, points) result(alone)
+      type(mesh_type), intent(in) :: mesh
+      type(drawn_line_type), intent(in) :: drawing
+      type(surface_chain_type), intent(in) :: slave           ! open
+      type(contact_points_type), intent(in) :: points         ! made
+      logical :: alone(2)
+      real(dp) :: at_end, beyond, foot(2), t
+      integer :: k, node, piece
+
+      do k = 1, 2
+         node = slave%nodes(merge(1, size(slave%nodes), k == 1))
+         call drawing%find_nearest(mesh%coordinates(:, node), piece, t, foot, beyond)
+         at_end = small_offset*points%edge(merge(1, size(points%edge), k == 1))
+         alone(k) = beyond > at_end .or. (drawing%goes_on(foot, at_end) .neqv. &
+            body_angle(mesh, node) > going_on)
+      end do
+   end function ends_alone
 
    !> The contact points of two lines that run the same way.
    subroutine find_points(mesh, definition, slave, master, thickness, points, error)

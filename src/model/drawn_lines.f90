@@ -25,6 +25,7 @@ module drawn_lines
       procedure :: point
       procedure :: tangent
       procedure :: find_nearest
+      procedure :: goes_on
       procedure :: samples
    end type drawn_line_type
 
@@ -127,6 +128,17 @@ contains
          end if
       end function coordinate_of
    end subroutine find_nearest
+
+   !> Whether the line goes on at a point of it: none of its ends is near.
+   pure logical function goes_on(self, x, near)
+      class(drawn_line_type), intent(in) :: self
+      real(dp), intent(in) :: x(2)         !! [length]
+      real(dp), intent(in) :: near         !! distance of an end that counts as at the point [length]
+
+      associate (ends => reshape([self%start(:, 1), self%finish(:, size(self%is_arc))], [2, 2]))
+         goes_on = self%closed .or. all(norm2(ends - spread(x, 2, 2), dim=1) > near)
+      end associate
+   end function goes_on
 
    !> Points of sides with midside points along the line: straight pieces are one side each, arcs
    !> end sides at equal angles and next to some points, those of the face that meets the line.

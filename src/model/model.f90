@@ -121,7 +121,6 @@ contains
       if (any(model%steps%continuation%is_on)) words = 'branches'
       if (.not. allocated(model%couplings)) return
       if (any(model%couplings%is_section())) words = 'pre-tension sections'
-      if (any(model%couplings%is_rigid)) words = 'rigid bodies'
    end function unbounded
 
 end module model

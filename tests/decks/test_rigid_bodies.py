@@ -3,6 +3,7 @@
 from math import pi, sqrt
 
 import h5py
+import numpy as np
 import pytest
 from blocks import write
 from deck_runs import run, solve
@@ -22,15 +23,17 @@ def graded(fine, count, end, ratio=1.35):
     return [*places[:-1], end]
 
 
-def roller(kind, force, pairing, arc="CIRCL, -60., 20., 0., 100."):
+def roller(kind, force, pairing, radius=RADIUS, size=SIZE, level=1):
     """Return the half of a rigid cylinder or a sphere that a force presses on a block."""
-    across, down = graded(0.25, 8, SIZE), graded(0.25, 6, SIZE)
-    return [*mesh("BLOCK", across, [-y for y in down[::-1]], kind), "*NODE", "90001, 0., 100.",
-            "*SURFACE, NAME=ROLL, TYPE=SEGMENTS", "START, 60., 20.", arc,
+    across, down = graded(0.25, 8, size), graded(0.25, 6, size)
+    return [*mesh("BLOCK", across, [-y for y in down[::-1]], kind), "*NODE",
+            f"90001, 0., {radius}", "*SURFACE, NAME=ROLL, TYPE=SEGMENTS",
+            f"START, {0.6 * radius}, {0.2 * radius}",
+            f"CIRCL, {-0.6 * radius}, {0.2 * radius}, 0., {radius}",
             "*RIGID BODY, REF NODE=90001, ANALYTICAL SURFACE=ROLL",
             *material("BLOCK", (YOUNG, POISSON)), *SMOOTH,
             f"*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, PAIRING={pairing}", "BLOCK.TOP, ROLL",
-            "*REFINE, LEVELS=1", *STATIC, "*BOUNDARY", "BLOCK.LEFT, 1", "BLOCK.BOTTOM, 2",
+            f"*REFINE, LEVELS={level}", *STATIC, "*BOUNDARY", "BLOCK.LEFT, 1", "BLOCK.BOTTOM, 2",
             "90001, 1", "90001, 6", "*CLOAD", f"90001, 2, {-force!r}", "*END STEP"]
 
 
@@ -47,6 +50,43 @@ def test_rigid_cylinder_and_sphere_press_as_hertz_says(tmp_path, kind, pairing):
         ("normal_force", "FACE", "LAST", force, 1e-5),
         ("edge_contact", "FACE", "LAST", 1.0, 0.01),
         ("pressure", "FACE@0.", "LAST", peak, 0.01)])
+
+
+def hertz(kind, radius, width):
+    """Return force, peak pressure, and the largest von Mises stress, which is below the middle."""
+    modulus = YOUNG / (1 - POISSON**2)
+    z = np.linspace(0.2, 1.5, 14000)
+    if kind == "CPE8":
+        peak, along, down = modulus * width / 2 / radius, (1 + 2 * z**2) / np.sqrt(1 + z**2) - 2 * z, (
+            1 / np.sqrt(1 + z**2))
+        across, force = POISSON * (along + down), pi * modulus * width**2 / 8 / radius
+    else:
+        peak, down = 2 * modulus * width / pi / radius, 1 / (1 + z**2)
+        along = (1 + POISSON) * (1 - z * np.arctan(1 / z)) - down / 2
+        across, force = along, 4 * modulus * width**3 / 3 / radius
+    squares = (along - down)**2 + (down - across)**2 + (across - along)**2
+    return force, peak, peak * np.sqrt(squares.max() / 2)
+
+
+@pytest.mark.parametrize("options", [[], ["--accuracy", "1%"]], ids=["bounds", "accuracy"])
+@pytest.mark.parametrize("level", [0, 1])
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+@pytest.mark.parametrize("kind", ["CPE8", "CAX8"])
+def test_errors_are_within_their_bounds(tmp_path, kind, pairing, level, options):
+    """Johnson, sections 3.4, 4.2. Stress below a line load on a block errs by its width over the
+    block's; normals lean by x/(2 R)."""
+    radius, size, width = 1000.0, 4e4 if kind == "CPE8" else 400.0, 1.0
+    force, peak, stress = hertz(kind, radius, width)
+    lean = (width / radius)**2 / (32 if kind == "CPE8" else 20)
+    deck = write(tmp_path / "deck.inp", roller(kind, force, pairing, radius, size, level))
+    with h5py.File(solve(deck, *options)) as file:
+        errors = {name: file[f"errors/{name}"][-1, :2] for name in (
+            "FACE/normal_force", "FACE/peak_pressure", "FACE/edge_contact", "body 1/von_mises")}
+    for (value, bound), exact in zip(errors.values(), [force * (1 + lean), peak, width, stress],
+                                     strict=True):
+        assert abs(value - exact) <= bound
+    if options:
+        assert max(bound / value for value, bound in list(errors.values())[:3]) <= 0.01
 
 
 PLATE = ["*NODE", "9001, 0.5, 3.25", "9002, 2., 3.", "9003, 0., 3.", "9004, -2., 3."]
@@ -98,6 +138,7 @@ def test_rigid_bodies_are_as_one_of_a_far_larger_modulus(tmp_path):
             face = file["contact/FACE"]
             found.append([face["normal_force"][-1], face["edge_contact"][-1],
                           face["pressure"][-1].max()])
+            assert file["errors/FACE/normal_force"][-1, 1] < 0.01 * found[-1][0]
     assert found[1] == pytest.approx(found[0], rel=1e-5)
     assert found[2] == pytest.approx(found[0], rel=1e-5)
 
