@@ -132,7 +132,7 @@ contains
       end associate
    end subroutine bound_edges
 
-   !> By how much the pressure on the axis, which few elements tell, leaves the even parabola through
+   !> How far the pressure on the axis, which few elements tell, is from the even parabola through
    !> the two contact points beside it, where it is the largest there; 0 elsewhere.
    pure real(dp) function rise_on_axis(points, pressure) result(rise)
       type(contact_points_type), intent(in) :: points

@@ -5,6 +5,7 @@
 !> so that contact points are made on nodes that lie on the line as closely as one likes, and then
 !> take the values of the reference node and of the node of its rotation in their place.
 module rigid_masters
+   use chain_geometry, only: chain_tangents
    use contact_definitions, only: contact_definition_type
    use contact_points, only: contact_points_type
    use drawn_lines, only: drawn_line_type
@@ -19,7 +20,8 @@ module rigid_masters
    private
    public :: check_facing, follow_reference, opposite_line, sampled_line
 
-   real(dp), parameter :: no_step = 1.0e-9_dp   !! part of the slave that is rounding
+   real(dp), parameter :: no_step = 1.0e-9_dp   !! part of a length that is rounding
+   integer, parameter :: most_steps = 100       !! each leaves the square of a slope's sine
 
 contains
 
@@ -37,22 +39,24 @@ contains
       call add_points(x, mesh, master%nodes)
    end subroutine sampled_line
 
-   !> The points of the drawing nearest to the slave's nodes, as master of node pairs, with the
-   !> drawing's tangents, 0 at points beyond its ends.
+   !> The points of the drawing that the normals of the slave's nodes meet, as master of node pairs,
+   !> with the drawing's tangents, 0 at points beyond its ends.
    pure subroutine opposite_line(drawing, slave, mesh, master)
       type(drawn_line_type), intent(in) :: drawing
       type(surface_chain_type), intent(in) :: slave    !! from its first contact point on
       type(mesh_type), intent(inout) :: mesh           !! receives the nodes behind its own
       type(surface_chain_type), intent(out) :: master  !! runs as the slave does
-      real(dp) :: beyond, t, x(2, size(slave%nodes))
+      real(dp) :: along(2, size(slave%nodes)), beyond, t, x(2, size(slave%nodes))
       integer :: k, piece
 
+      along = chain_tangents(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
       master%side_nodes = slave%side_nodes
       master%closed = slave%closed
       master%turned = .not. slave%turned
       allocate (master%tangent(2, size(slave%nodes)), source=0.0_dp)
       do k = 1, size(slave%nodes)
-         call drawing%find_nearest(mesh%coordinates(:, slave%nodes(k)), piece, t, x(:, k), beyond)
+         call find_met(drawing, mesh%coordinates(:, slave%nodes(k)), along(:, k), piece, t, &
+            x(:, k), beyond)
          if (beyond > no_step*norm2(x(:, k) - mesh%coordinates(:, slave%nodes(1)))) cycle
          ! The drawing has its body on the left, and so have the faces of the slave: both run
          ! against each other.
@@ -60,6 +64,25 @@ contains
       end do
       call add_points(x, mesh, master%nodes)
    end subroutine opposite_line
+
+   !> The point of the drawing that a normal meets, from the nearest one on; the nearest one where
+   !> the normal meets none.
+   pure subroutine find_met(drawing, x, along, piece, t, foot, beyond)
+      type(drawn_line_type), intent(in) :: drawing
+      real(dp), intent(in) :: x(2), along(2)           ! where the normal starts; across it
+      integer, intent(out) :: piece
+      real(dp), intent(out) :: t, foot(2), beyond      ! as of find_nearest
+      integer :: i
+
+      call drawing%find_nearest(x, piece, t, foot, beyond)
+      do i = 1, most_steps
+         associate (aside => dot_product(foot - x, along))
+            if (abs(aside) <= no_step*norm2(foot - x)) return
+            call drawing%find_nearest(foot - aside*along, piece, t, foot, beyond)
+         end associate
+      end do
+      call drawing%find_nearest(x, piece, t, foot, beyond)
+   end subroutine find_met
 
    !> Adds nodes to a mesh.
    pure subroutine add_points(x, mesh, nodes)

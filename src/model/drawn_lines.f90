@@ -133,7 +133,7 @@ contains
    pure logical function goes_on(self, x, near)
       class(drawn_line_type), intent(in) :: self
       real(dp), intent(in) :: x(2)         !! [length]
-      real(dp), intent(in) :: near         !! distance of an end that counts as at the point [length]
+      real(dp), intent(in) :: near         !! distance of an end that is at the point [length]
 
       associate (ends => reshape([self%start(:, 1), self%finish(:, size(self%is_arc))], [2, 2]))
          goes_on = self%closed .or. all(norm2(ends - spread(x, 2, 2), dim=1) > near)

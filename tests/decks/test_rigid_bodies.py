@@ -114,7 +114,8 @@ def test_rigid_plate_tilts_under_a_moment(tmp_path, rigid):
         ("U2", "9001", "LAST", -3.0 * (pressure + 0.5 * bending) / 1000.0, 1e-9)])
 
 
-def test_rigid_bodies_are_as_one_of_a_far_larger_modulus(tmp_path):
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_rigid_bodies_are_as_one_of_a_far_larger_modulus(tmp_path, pairing):
     """A cylinder of a modulus 1e6 times that of the block, its elements rigid, or drawn."""
     across, up = graded(0.25, 8, SIZE), graded(0.25, 6, SIZE)
     elements = [*mesh("ROLL", across, up, "CPE8", first=50001, to=lambda x, y: (
@@ -131,7 +132,7 @@ def test_rigid_bodies_are_as_one_of_a_far_larger_modulus(tmp_path):
         deck = write(tmp_path / f"way{k}.inp", [
             *mesh("BLOCK", across, [-y for y in up[::-1]], "CPE8"), "*NODE", "90001, 0., 40.",
             *body, *material("BLOCK", (YOUNG, POISSON)), *SMOOTH,
-            "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, PAIRING=SURFACES",
+            f"*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, PAIRING={pairing}",
             "BLOCK.TOP, ROLL.BOTTOM", *STATIC, "*BOUNDARY", "BLOCK.LEFT, 1", "BLOCK.BOTTOM, 2",
             *supports, "*END STEP"])
         with h5py.File(solve(deck)) as file:
@@ -141,6 +142,48 @@ def test_rigid_bodies_are_as_one_of_a_far_larger_modulus(tmp_path):
             assert file["errors/FACE/normal_force"][-1, 1] < 0.01 * found[-1][0]
     assert found[1] == pytest.approx(found[0], rel=1e-5)
     assert found[2] == pytest.approx(found[0], rel=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["CPE8", "CAX8"])
+def test_drawings_serve_any_mesh(tmp_path, kind):
+    """Linear elements of meshes that are refined everywhere and once more at the face."""
+    force, *_ = hertz(kind, RADIUS, 1.0)
+    cards = roller(kind, force, "SURFACES")
+    cards.insert(cards.index("*REFINE, LEVELS=1"), "*REFINE, SURFACE=BLOCK.TOP, LEVELS=1")
+    judge(tmp_path, ["*OPTIONS, ORDER=1", *cards], [
+        ("normal_force", "FACE", "LAST", force, 1e-5), ("edge_contact", "FACE", "LAST", 1.0, 0.03)])
+
+
+def test_a_drawing_moves_with_the_instance_of_its_part(tmp_path):
+    """A bar under a plate that is drawn upright and turned by 90 degrees."""
+    cards = ["*PART, NAME=BAR", *mesh("BLOCK", [-1.0, 0.0, 1.0], [0.0, 1.0, 3.0]),
+             "*SOLID SECTION, ELSET=BLOCK, MATERIAL=BLOCK", "*END PART", "*PART, NAME=DIE",
+             "*NODE, NSET=REF", "1, -0.5, 0.5", "*SURFACE, NAME=PLATE, TYPE=SEGMENTS",
+             "START, 0., -2.", "LINE, 0., 0.", "LINE, 0., 2.", "*RIGID BODY, REF NODE=REF, "
+             "ANALYTICAL SURFACE=PLATE", "*END PART", "*ASSEMBLY, NAME=BOTH",
+             "*INSTANCE, NAME=B, PART=BAR", "*END INSTANCE", "*INSTANCE, NAME=D, PART=DIE",
+             "0., 3., 0.", "0., 3., 0., 0., 3., 1., 90.", "*END INSTANCE", "*END ASSEMBLY",
+             *material("BLOCK", (1000.0, 0.0))[:3], *SMOOTH,
+             "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE", "B.BLOCK.TOP, D.PLATE", *STATIC,
+             "*BOUNDARY", "B.BLOCK.BOTTOM, 1, 2", "D.REF, 1", "D.REF, 2, 2, -0.01",
+             "D.REF, 6, 6, 0.002", "*END STEP"]
+    judge(tmp_path, cards, [("normal_force", "FACE", "LAST", 2000.0 / 3.0 * 0.009, 1e-9)])
+
+
+@pytest.mark.parametrize("load", ["*DLOAD\nEND, BX, 6.", "*DSLOAD\nBLOCK.RIGHT, P, -12.",
+                                  "*CLOAD\n90001, 1, 12.", "*EQUATION"])
+def test_loads_on_a_rigid_body_are_loads_on_its_reference_node(tmp_path, load):
+    """A bar of two elements, 1 high, the outer one rigid."""
+    equation = []
+    if load.startswith("*EQUATION"):
+        equation, load = [*load.split("\n"), "2", "90001, 1, 1., 90002, 1, -1."], (
+            "*CLOAD\n90002, 1, 12.")
+    cards = [*mesh("BLOCK", [0.0, 2.0, 4.0], [0.0, 1.0]), *material("BLOCK", (1000.0, 0.0)),
+             "*ELSET, ELSET=END", "2", "*NODE", "90001, 7., 0.5", "90002, 5., 0.",
+             *equation,
+             "*RIGID BODY, REF NODE=90001, ELSET=END", *STATIC, "*BOUNDARY", "BLOCK.LEFT, 1, 2",
+             "90001, 2", "90001, 6", *load.split("\n"), "*END STEP"]
+    judge(tmp_path, cards, [("U1", "BLOCK.RIGHT", "LAST", 12.0 * 2.0 / 1000.0, 1e-9)])
 
 
 def heated(value):

@@ -9,6 +9,7 @@ module deck_builder_contact
       friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
    use deck_builder_interactions, only: build_friction
+   use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_context_type, need_named, read_surface, take_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -127,6 +128,8 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
       type(contact_definition_type), intent(inout) :: faces
+      character(*), parameter :: held = 'let it be the master, and the face of the body the slave'
+      character(*), parameter :: tied = 'nodes that it holds are TIE NSET= of *RIGID BODY        '
 
       call read_surface(data, 1, 'slave surface', mesh%surfaces, report, faces%slave)
       call read_surface(data, 2, 'master surface', mesh%surfaces, report, faces%master)
@@ -134,25 +137,14 @@ contains
       if (faces%slave > 0 .and. faces%slave == faces%master) call report%error( &
          field_place(data, 2), 'a surface cannot be '//trim(merge('tied to itself           ', &
          'in contact with itself   ', faces%is_tied)))
-      call refuse_rigid(data, 1, faces%slave)
-      if (faces%is_tied) call refuse_rigid(data, 2, faces%master)
+      call need_faces(mesh, field_place(data, 1), trim(merge(tied, held, faces%is_tied)), report, &
+         faces%slave)
+      if (faces%is_tied) call need_faces(mesh, field_place(data, 2), trim(tied), report, &
+         faces%master)
       if (has_parameter(card, 'NAME')) return
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
       if (faces%is_tied) call context%note('*'//card%name//' without NAME=: '//faces%name// &
          ', the slave surface')
-   contains
-      !> Refuses a rigid surface.
-      subroutine refuse_rigid(data, position, surface)
-         type(data_card_type), intent(in) :: data
-         integer, intent(in) :: position, surface
-
-         if (surface == 0) return
-         if (.not. allocated(mesh%surfaces(surface)%drawing)) return
-         call report%error(field_place(data, position), 'surface '//mesh%surfaces(surface)%name// &
-            ' is rigid: it has no faces; '//trim(merge( &
-            'nodes that it holds are TIE NSET= of *RIGID BODY        ', &
-            'let it be the master, and the face of the body the slave', faces%is_tied)))
-      end subroutine refuse_rigid
    end subroutine read_faces
 
    !> A name stands for a group of the result file: it is used once, and is one that HDF5

@@ -3,6 +3,7 @@
 module deck_builder_element_loads
    use card_values, only: check_extra, need_field, need_plane_vector, need_vector
    use cards, only: data_card_type, field_place, field_text
+   use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_context_type, read_surface, read_target
    use deck_report, only: deck_report_type
    use element_kinds, only: axisymmetric, element_corner_count, side_nodes
@@ -331,14 +332,17 @@ contains
       type(model_type), intent(in) :: model                !! surfaces
       type(deck_context_type), intent(inout) :: context    !! receives the requests
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      character(:), allocatable :: label, labels
+      character(:), allocatable :: advice, label, labels
       real(dp) :: vector(2)
       integer :: errors, i, surface
       logical :: valid
 
       valid = .true.
       errors = report%error_count()
+      advice = 'load its reference node by *CLOAD'
+      if (keyword /= 'DSLOAD') advice = 'prescribe the temperature of its reference node'
       call read_surface(data, 1, 'surface', model%mesh%surfaces, report, surface)
+      call need_faces(model%mesh, field_place(data, 1), advice, report, surface)
       valid = surface > 0
       select case (keyword)
       case ('DSFLUX')

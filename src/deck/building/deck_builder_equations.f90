@@ -4,7 +4,7 @@ module deck_builder_equations
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use deck_builder_rigid, only: build_rigid_body, check_rigid_masters
+   use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use equations, only: coupling_type, equation_type
    use deck_context, only: deck_context_type, need_named, read_target
    use deck_report, only: deck_report_type
@@ -220,6 +220,9 @@ contains
             n = n + 1
             call begin_coupling(cards%keywords(k), n, context, model, report)
             call need_named(cards%keywords(k), 'SURFACE', 'surface', model%mesh%surfaces, report, &
+               model%couplings(n)%surface)
+            call need_faces(model%mesh, parameter_place(cards%keywords(k), 'SURFACE'), &
+               'it follows the reference node of its *RIGID BODY', report, &
                model%couplings(n)%surface)
             if (is_keyword(cards, k + 1, 'KINEMATIC') .or. is_keyword(cards, k + 1, '')) cycle
             call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &

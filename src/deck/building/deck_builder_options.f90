@@ -4,6 +4,7 @@ module deck_builder_options
       parameter_place, parameter_text, take_parameter, take_positive
    use cards, only: cards_type, keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
+   use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_context_type, need_element_set, need_named, report_unknown
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -286,6 +287,8 @@ contains
             'not both; give a card for each')
       else if (has_parameter(card, 'SURFACE')) then
          call need_named(card, 'SURFACE', 'surface', mesh%surfaces, report, surface)
+         call need_faces(mesh, parameter_place(card, 'SURFACE'), 'name the face that touches it', &
+            report, surface)
          region%surfaces = [surface]
       else
          call need_element_set(card, mesh%element_sets, report, region%set)

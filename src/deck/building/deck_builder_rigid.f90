@@ -18,7 +18,8 @@ module deck_builder_rigid
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
-   public :: build_drawing, build_line_surface, is_rigid_side, build_rigid_body, check_rigid_masters
+   public :: build_drawing, build_line_surface, is_rigid_side, build_rigid_body, need_faces, &
+      check_rigid_masters
 
    real(dp), parameter :: pi = acos(-1.0_dp)
    real(dp), parameter :: same_radius = 1.0e-3_dp   !! part of the radius; decks give few digits
@@ -338,6 +339,21 @@ contains
       call report%error(card%place, '*RIGID BODY names nothing that is rigid; give ELSET=, '// &
          'NSET= or ANALYTICAL SURFACE=')
    end subroutine build_rigid_body
+
+   !> Refuses a rigid surface where faces of elements are needed.
+   subroutine need_faces(mesh, place, advice, report, surface)
+      type(mesh_type), intent(in) :: mesh
+      type(place_type), intent(in) :: place                !! where it is named
+      character(*), intent(in) :: advice                   !! what to name in its place
+      type(deck_report_type), intent(inout) :: report      !! receives the error
+      integer, intent(inout) :: surface                    !! 0 for none, and after an error
+
+      if (surface == 0) return
+      if (.not. allocated(mesh%surfaces(surface)%drawing)) return
+      call report%error(place, 'surface '//mesh%surfaces(surface)%name//' is rigid: it has no '// &
+         'faces; '//advice)
+      surface = 0
+   end subroutine need_faces
 
    !> Rigid surfaces in contact have a reference node.
    subroutine check_rigid_masters(model, report)

@@ -1,8 +1,10 @@
 !> *PRE-TENSION SECTION -> a body cut in two, and the section that joins its faces again.
 module deck_builder_sections
+   use card_parameters, only: parameter_place
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
    use deck_builder_equations, only: find_reference
+   use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_context_type, need_named
    use deck_report, only: deck_report_type
    use deck_structure, only: cards_of
@@ -54,6 +56,8 @@ contains
       section%title = '*PRE-TENSION SECTION, '//report%source%words_of(card%place)
       call find_reference('NODE', card, context, model, report, section%reference)
       call need_named(card, 'SURFACE', 'surface', model%mesh%surfaces, report, section%surface)
+      call need_faces(model%mesh, parameter_place(card, 'SURFACE'), 'a section lies between '// &
+         'elements of a body', report, section%surface)
       valid = section%reference > 0 .and. section%surface > 0 .and. all(context%element_valid)
       if (valid) valid = size(model%mesh%surfaces(section%surface)%faces) > 0
       if (valid) section%normal = section_normal(section%surface, model%mesh)

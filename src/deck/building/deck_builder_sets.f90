@@ -6,7 +6,7 @@ module deck_builder_sets
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
    use deck_builder_lines, only: find_line_faces, is_line_card
-   use deck_builder_rigid, only: build_drawing, build_line_surface, is_rigid_side
+   use deck_builder_rigid, only: build_drawing, build_line_surface, is_rigid_side, need_faces
    use deck_context, only: deck_context_type, name_last, place_list_type, read_target, take_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -171,6 +171,8 @@ contains
          if (lines > 0) nodes = [nodes, context%line_nodes(:, context%line_sets(lines)%members)]
       end if
       call take_named(card, 'SURFACE', 'surface', mesh%surfaces, report, surface)
+      call need_faces(mesh, parameter_place(card, 'SURFACE'), 'name its reference node', report, &
+         surface)
       if (surface > 0) then
          associate (faces => mesh%surfaces(surface)%faces)
             do i = 1, size(faces, 2)
