@@ -254,6 +254,19 @@ def test_zones_of_the_cycled_strip_are_those_of_the_independent_solution(tmp_pat
     np.testing.assert_array_equal(status[clear, 1:], np.where(stuck, 2, 1)[clear])
 
 
+def hot_die():
+    """Conduction through a bar and its contact; a bar in plane strain, halfway between free and
+    held along x."""
+    flux = (120.0 - 20.0) / (10.0 / 0.2 + 1 / 0.02)
+    strain, growth = 0.005 / 10.0, 2.3e-5 * flux * 10.0 / 0.2 / 2
+    free = 7e4 / (1 - 0.3**2) * (strain + 1.3 * growth)
+    held = 7e4 / 1.3 / 0.4 * (0.7 * strain + 1.3 * growth)
+    assert [free, held] == pytest.approx([122.0 - 26.0, 122.0 + 26.0], abs=0.5)
+    return {("heat_rate", "CONTACT", "1."): -40.0 * flux,
+            ("slave_temperature", "CONTACT", "1."): 120.0 - flux / 0.02,
+            ("master_temperature", "CONTACT", "1."): 120.0}
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_checks_of_an_example_are_those_of_the_closed_forms(name):
     expected = globals()[name]()
