@@ -68,6 +68,8 @@ contains
                context%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
+               if (has_parameter(card, 'PERTURBATION')) call check_perturbation(card, n > 1, &
+                  size(model%contacts) > 0, context, report)
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
                call begin_analysis(cards, card, n, counts, context, report, model%steps)
@@ -213,6 +215,22 @@ contains
       if (allocated(before%element_prints)) step%element_prints = before%element_prints
       step%nlgeom = is_on(card, 'NLGEOM', report)
    end subroutine begin_step
+
+   !> A perturbation of the initial state is a step, unless contact changes with the load.
+   subroutine check_perturbation(card, is_later, has_contact, context, report)
+      type(keyword_card_type), intent(in) :: card
+      logical, intent(in) :: is_later, has_contact
+      type(deck_context_type), intent(inout) :: context
+      type(deck_report_type), intent(inout) :: report
+
+      if (is_later .or. has_contact) then
+         call report%error(parameter_place(card, 'PERTURBATION'), 'PERTURBATION is refused on '// &
+            '*STEP: '//trim(merge('steps go on from the one before', &
+            'contact changes with the load  ', is_later))//'; leave it out')
+      else
+         call context%note('*STEP: PERTURBATION is ignored: the step begins with the initial state')
+      end if
+   end subroutine check_perturbation
 
    !> Reads the analysis of step n, the only one that it may have.
    subroutine begin_analysis(cards, card, n, counts, context, report, steps)

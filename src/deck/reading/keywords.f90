@@ -144,7 +144,8 @@ module keywords
       keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
       keyword_type('PRE-TENSION SECTION', built, in_model, 0, 1, 'NODE=/SURFACE='), &
       keyword_type('STEP', built, in_both, 0, 0, &
-         'INC=/AMPLITUDE=/NLGEOM?/~NAME=/~UNSYMM?/~EXTRAPOLATION=/~CONVERT SDI=/~DSA?'), &
+         'INC=/AMPLITUDE=/NLGEOM?/PERTURBATION/~NAME=/~UNSYMM?/~EXTRAPOLATION=/'// &
+         '~CONVERT SDI=/~DSA?'), &
       keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
       keyword_type('NO ANALYSIS', built, in_step, 0, 0, ''), &
       keyword_type('STABILITY', built, in_step, 0, 0, 'FREQUENCY='), &
@@ -189,7 +190,7 @@ module keywords
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(94) = [ &
+   type(advice_type), parameter :: advice(93) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -292,8 +293,6 @@ module keywords
       advice_type(of_parameter, 'AMPLITUDE', 'SHIFTX', 'add the shift to the times'), &
       advice_type(of_parameter, 'AMPLITUDE', 'SHIFTY', 'add the shift to the factors'), &
       advice_type(of_parameter, 'RESTART', 'END STEP', 'a step goes on to its end; leave it out'), &
-      advice_type(of_parameter, 'STEP', 'PERTURBATION', &
-         'steps go on from the one before; leave it out'), &
       advice_type(of_parameter, '', 'TIME DELAY/FILM TIME DELAY', &
          'shift the times of the *AMPLITUDE'), &
       advice_type(of_parameter, '', 'USER', 'no routine of the user is called; give the values'), &
