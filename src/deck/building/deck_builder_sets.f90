@@ -5,8 +5,10 @@ module deck_builder_sets
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
+   use deck_builder_drawings, only: build_drawing
    use deck_builder_lines, only: find_line_faces, is_line_card
-   use deck_builder_rigid, only: build_drawing, build_line_surface, is_rigid_side, need_faces
+   use deck_builder_rigid, only: need_faces
+   use deck_builder_rigid_lines, only: build_line_surface, is_rigid_side
    use deck_context, only: deck_context_type, name_last, place_list_type, read_target, take_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
