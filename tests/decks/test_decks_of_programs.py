@@ -88,6 +88,8 @@ CHECKS = {
                      ("U2", "REF", LAST, -2 * 100 / (4 * math.pi) / 1000, 1e-9)],
     "abaqus_panel": [("S12", "MIN", LAST, 8.0, 1e-9), ("S12", "MAX", LAST, 8.0, 1e-9),
                      ("U1", "CORNER", LAST, 2 * 8.0 / 80.0, 1e-9),
+                     ("U1", "PANEL-1.MIDDLE", LAST, 8.0 / 80.0, 1e-9),
+                     ("U1", "PANEL-1.UPPER", LAST, 2 * 8.0 / 80.0, 1e-9),
                      ("S12", "MAX", 0.5, 4.0, 1e-9)],
     "abaqus_disk": [("U1", "85", LAST, 4e-3 * math.sqrt(0.5), 1e-9),
                     ("U2", "25", LAST, 2.5e-3 * math.sqrt(0.5), 1e-9),

@@ -74,6 +74,7 @@ contains
             report%source%words_of(context%node_place(first))//': the last place is used')
          mesh%coordinates(:, first) = mesh%coordinates(:, places(i))
          context%node_height(first) = context%node_height(places(i))
+         context%node_place(first) = context%node_place(places(i))
          context%node_valid(first) = context%node_valid(places(i))
       end do
       kept = pack([(i, i=1, size(keeps))], keeps)
@@ -143,8 +144,9 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, allocatable :: card(:)
       logical :: has_element(0:size(mesh%node_number))
+      type(place_type) :: place
       real(dp) :: rounding
-      integer :: e, i
+      integer :: e, i, j
 
       if (size(mesh%node_number) == 0) return
       rounding = height_rounding*extent_of(mesh%coordinates)
@@ -153,9 +155,13 @@ contains
          if (context%element_valid(e)) has_element(mesh%element_nodes(:, e)) = .true.
       end do
       card = data_cards_of(cards, 'NODE')
-      do i = 1, size(card)
+      do i = 1, size(context%node_height)
          if (.not. has_element(i) .or. abs(context%node_height(i)) <= rounding) cycle
-         call report%error(field_place(cards%data(card(i)), 4), &
+         do j = i, size(card) - 1   ! nodes that are given twice move the others up
+            place = field_place(cards%data(card(j)), 1)
+            if (place%image == context%node_place(i)%image) exit
+         end do
+         call report%error(field_place(cards%data(card(j)), 4), &
             'models are two-dimensional: z must be 0', 'z')
       end do
    end subroutine check_heights

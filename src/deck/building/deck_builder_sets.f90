@@ -61,7 +61,11 @@ contains
                count = card%last_data - card%first_data + 1
                if (has_parameter(card, parameter)) then
                   call open_set(card, parameter, report, draft, i)
-                  call add_members(draft, i, first(kind) + [(j, j=1, count)])
+                  if (noun == 'node') then
+                     call add_members(draft, i, nodes_of(cards, card, draft%numbers))
+                  else
+                     call add_members(draft, i, first(kind) + [(j, j=1, count)])
+                  end if
                end if
                first(kind) = first(kind) + count
             else if (card%name == parameter) then
@@ -75,6 +79,23 @@ contains
          sets(i)%members = unique_sorted(draft%items(i)%members(:draft%counts(i)))
       end do
    end subroutine build_sets
+
+   !> The nodes that a *NODE card gives, of which some may be given again elsewhere.
+   function nodes_of(cards, card, numbers) result(nodes)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(number_index_type), intent(in) :: numbers
+      integer, allocatable :: nodes(:)
+      integer :: j, number
+      logical :: is_number
+
+      allocate (nodes(card%last_data - card%first_data + 1), source=0)
+      do j = 1, size(nodes)
+         call read_integer(field_text(cards%data(card%first_data + j - 1), 1), number, is_number)
+         if (is_number) nodes(j) = numbers%find(number)
+      end do
+      nodes = pack(nodes, nodes > 0)
+   end function nodes_of
 
    !> Finds the set that a card names, or begins it.
    subroutine open_set(card, parameter, report, draft, set)
