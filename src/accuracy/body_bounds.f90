@@ -17,10 +17,10 @@ module body_bounds
    use element_kinds, only: element_node_count
    use field_quantities, only: maxima, point_values
    use field_recovery, only: point_map_type
-   use increments, only: simulation_type
    use kinds, only: dp
    use model, only: model_type
    use records, only: field_record_type, increment_record_type
+   use simulation, only: simulation_type
    use singular_corners, only: find_singular_corners
    use steps, only: solves_heat, solves_mechanics
    use text, only: read_integer, to_upper

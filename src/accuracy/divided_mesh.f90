@@ -11,8 +11,8 @@ module divided_mesh
    use equations, only: equation_nodes
    use field_recovery, only: error_record_type, point_map_type
    use errors, only: error_type
+   use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
-   use increments, only: make_initial_state, simulation_type
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
    use load_histories, only: end_of_step
@@ -24,7 +24,7 @@ module divided_mesh
    use refinement, only: divide_model
    use solution_state, only: solution_state_type
    use steps, only: boundary_type, solves_heat, step_type
-   use thermal_matrix, only: heat_equation_type
+   use simulation, only: make_initial_state, simulation_type
    implicit none
    private
    public :: divided_mesh_type
@@ -304,8 +304,7 @@ contains
          step = implicit_step(self%model%steps(number))
          if (run%heats(1)%forms_on_demand) step%fixed_point%method = method_anderson
          next = guess
-         call implicit_state(run, self%heat, self%model, step, before, next, error, &
-            recovers=.true.)
+         call implicit_state(run, self%heat, self%model, step, before, next, error)
          if (allocated(error) .and. run%heats(1)%forms_on_demand .and. run%bodies%is_coupled) then
             run%heats(1)%forms_on_demand = .false.
             self%heat%forms_on_demand = .false.
@@ -313,7 +312,7 @@ contains
             next = guess
             call run%reduce(self%model, error)
             if (.not. allocated(error)) call implicit_state(run, self%heat, self%model, step, &
-               before, next, error, recovers=.true.)
+               before, next, error)
          end if
          if (allocated(error)) return
          call quantities_of_state(run%bodies, next, values)

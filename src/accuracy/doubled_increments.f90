@@ -7,22 +7,23 @@ module doubled_increments
    use controls, only: implicit_scheme, start_type
    use errors, only: error_type
    use field_problem, only: solved_loads_type
+   use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use increment_solution, only: begin_increment, recover_fields, solve_points
-   use increments, only: accept_increment, simulation_type
+   use increments, only: accept_increment
    use kinds, only: dp
    use model, only: model_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
+   use simulation, only: simulation_type
    use solution_state, only: exchange_state, solution_state_type
    use sparse_matrix, only: sparse_matrix_type
    use state_tables, only: integers, logicals, reals, state_table_type
    use steps, only: planned_increments, solves_heat, solves_mechanics, step_type
-   use thermal_matrix, only: heat_equation_type
    implicit none
    private
-   public :: doubled_increments_type, companion_step, implicit_state, implicit_step
+   public :: doubled_increments_type, implicit_state, implicit_step
 
    real(dp), parameter :: almost_none = 1.0e-6_dp   !! of an increment: belongs to the one before
    real(dp), parameter :: tolerance = 1.0e-6_dp   !! of the fixed point; errors are far larger
@@ -195,10 +196,9 @@ contains
       implicit_step%scheme = implicit_scheme
    end function implicit_step
 
-   !> Solves the end of an increment on the contact points; the displacements stay unless all fields
-   !> are recovered.
+   !> Solves the end of an increment, with all of its fields.
    !> Error: it has no solution.
-   subroutine implicit_state(simulation, own, model, step, previous, state, error, recovers)
+   subroutine implicit_state(simulation, own, model, step, previous, state, error)
       type(simulation_type), intent(in) :: simulation
       type(heat_reduction_type), intent(inout) :: own        !! where the run has other films
       type(model_type), intent(in) :: model
@@ -206,7 +206,6 @@ contains
       type(solution_state_type), intent(in) :: previous      !! at the start of the increment
       type(solution_state_type), intent(inout) :: state      !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
-      logical, intent(in), optional :: recovers              !! present: true
 
       associate (bodies => simulation%bodies)
          if (simulation%heats(1)%serves(bodies, state%sources%film) .or. &
@@ -226,8 +225,8 @@ contains
 
          call begin_increment(simulation%bodies, step, previous, state, data)
          call solve_points(simulation%bodies, heat, simulation%loads, data, workspace, state, error)
-         if (present(recovers) .and. .not. allocated(error)) call recover_fields( &
-            simulation%bodies, heat, simulation%loads, data, workspace, state)
+         if (.not. allocated(error)) call recover_fields(simulation%bodies, heat, &
+            simulation%loads, data, workspace, state)
       end subroutine solve_end
    end subroutine implicit_state
 

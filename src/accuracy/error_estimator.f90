@@ -13,7 +13,6 @@ module error_estimator
    use element_kinds, only: element_corner_count
    use errors, only: error_type
    use increment_quantities, only: history_value
-   use increments, only: simulation_type
    use interface_quantities, only: quantities_of, quantities_of_state, regime_of
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -24,11 +23,12 @@ module error_estimator
    use quantity_types, only: find_quantity
    use records, only: increment_record_type, interface_errors_type
    use field_recovery, only: error_record_type
+   use heat_equation, only: heat_equation_type
+   use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use state_tables, only: integers, reals, state_table_type
    use steps, only: solves_heat
    use text, only: append, to_text
-   use thermal_matrix, only: heat_equation_type
    implicit none
    private
    public :: error_estimator_type, largest_part, squared_errors

@@ -6,12 +6,12 @@ module interface_quantities
    use contact_system, only: contact_open
    use increment_records, only: measure_contact
    use friction_laws, only: friction_law_type
+   use heat_equation, only: heat_across
    use kinds, only: dp
    use quantity_types, only: quantity_type
    use records, only: contact_record_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
-   use thermal_matrix, only: heat_across
    implicit none
    private
    public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &

@@ -10,10 +10,10 @@ module other_states
    use doubled_increments, only: implicit_state, implicit_step
    use errors, only: error_type
    use heat_reduction, only: heat_reduction_type
-   use increments, only: simulation_type
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
    use model, only: model_type
+   use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: step_type
    use temperature_laws, only: law_jumps

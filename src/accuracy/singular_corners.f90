@@ -9,12 +9,12 @@ module singular_corners
    use element_kinds, only: element_corner_count, element_node_count
    use element_sides, only: element_sides_type, find_sides, side_ends
    use equations, only: coupled_nodes
-   use increments, only: simulation_type
    use kinds, only: dp
    use local_refinement, only: coarse_side, fine_sides, hanging_count
    use mesh, only: mesh_type
    use model, only: model_type
    use records, only: increment_record_type
+   use simulation, only: simulation_type
    implicit none
    private
    public :: find_singular_corners

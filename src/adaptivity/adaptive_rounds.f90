@@ -19,7 +19,7 @@ module adaptive_rounds
    use error_estimator, only: error_estimator_type, largest_part, squared_errors
    use errors, only: error_type
    use growing_modes, only: analyse_stability
-   use increments, only: simulation_type
+   use increments, only: advance
    use interface_quantities, only: closed_length, point_before
    use kinds, only: dp
    use local_refinement, only: elements_at_surfaces
@@ -28,6 +28,7 @@ module adaptive_rounds
    use quantity_types, only: quantity_type
    use records, only: contact_record_type, increment_record_type
    use restarts, only: keep_restart
+   use simulation, only: simulation_type
    use state_tables, only: state_table_type
    use variations, only: marked_elements_type, variation_type
    implicit none
@@ -132,7 +133,7 @@ contains
       call indicators%start(model)
       do while (.not. (allocated(error) .or. simulation%finished(model)))
          call estimator%begin_increment(simulation)
-         call simulation%advance(model, record, error)
+         call advance(simulation, model, record, error)
          if (.not. allocated(error)) then
             call estimator%end_increment(model, simulation, record, self%accuracy%histories)
             if (self%accuracy%is_on) then

@@ -13,7 +13,7 @@ module contact_workspace
    use soft_faces, only: soft_faces_type
    implicit none
    private
-   public :: contact_workspace_type, relief_type
+   public :: contact_workspace_type
 
    !> Part of the rounding of coordinates: a load that moves a contact point no farther is a
    !> remainder of loads that were taken off.

@@ -2,7 +2,7 @@
 module utf8
    implicit none
    private
-   public :: as_utf8, printable, character_length, character_count, first_byte
+   public :: as_utf8, printable, character_count, first_byte
 
    character(*), parameter :: hexadecimal = '0123456789ABCDEF'
 

@@ -14,13 +14,13 @@ module contact_heat
    use conductance_laws, only: conductance
    use dense, only: lu_type, product_of, tail_flops
    use errors, only: check_finite, error_type, set_error, status_no_convergence
+   use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use temperature_laws, only: temperature_derivatives
    use text, only: to_text
-   use thermal_matrix, only: heat_across
    implicit none
    private
    public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega, &

@@ -14,11 +14,11 @@ module edge_heat
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip
+   use heat_equation, only: heat_rates_type
    use mortar_segments, only: edge_profile_type, edge_segment_type, hat_geometry_type, support
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
-   use thermal_matrix, only: heat_rates_type
    use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, turned
    implicit none
    private

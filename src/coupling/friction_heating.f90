@@ -17,10 +17,10 @@ module friction_heating
    use contact_system, only: contact_open, contact_state_type, is_capped
    use controls, only: stage_part
    use friction_laws, only: friction_bound
+   use heat_equation, only: heat_equation_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use steps, only: solves_heat, solves_mechanics
-   use thermal_matrix, only: heat_equation_type
    implicit none
    private
    public :: friction_heating_type, begin_friction, friction_at_start, nodal_friction_heat, &

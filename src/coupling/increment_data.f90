@@ -12,8 +12,8 @@ module increment_data
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use dense, only: tail_factors_type
+   use heat_equation, only: heat_equation_type
    use temperature_laws, only: face_temperatures_type
-   use thermal_matrix, only: heat_equation_type
    implicit none
    private
    public :: contact_scales_type, increment_data_type, increment_workspace_type, load_rate_type, &

@@ -14,6 +14,7 @@ module increment_solution
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use fixed_point, only: pass_type
    use friction_heating, only: begin_friction, nodal_friction_heat
+   use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
    use held_points, only: tangential_positions
    use increment_data, only: increment_data_type, increment_workspace_type
@@ -25,7 +26,6 @@ module increment_solution
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: is_below_zero, law_jumps
    use text, only: to_text
-   use thermal_matrix, only: heat_equation_type
    implicit none
    private
    public :: begin_increment, load_points, solve_points, recover_fields

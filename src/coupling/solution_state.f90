@@ -3,9 +3,9 @@
 module solution_state
    use contact_system, only: contact_state_type
    use edge_heat, only: edge_heat_type
+   use heat_equation, only: heat_sources_type
    use kinds, only: dp
    use state_tables, only: integers, logicals, reals, state_table_type
-   use thermal_matrix, only: heat_sources_type
    implicit none
    private
    public :: solution_state_type, exchange_state

@@ -6,8 +6,8 @@ module shape_functions
    use kinds, only: dp
    implicit none
    private
-   public :: element_shape, element_gradients, local_gradients, side_shape, side_slope
-   public :: node_position, is_triangle
+   public :: element_shape, element_gradients, side_shape, side_slope
+   public :: node_position
 
    !> xi, eta of the eight nodes: corners anticlockwise, then the midsides of 1-2, 2-3, 3-4, 4-1.
    real(dp), parameter :: square_position(2, 8) = reshape( &

@@ -3,16 +3,23 @@
 module load_requests
    use card_places, only: place_type
    use kinds, only: dp
+   use mesh, only: set_type
    implicit none
    private
-   public :: request_type, request_list_type, requests_type, nodal_field_type
+   public :: target_type, request_type, request_list_type, requests_type, nodal_field_type
 
-   !> A request of one data card, for one component.
-   type :: request_type
-      integer :: step = 0           !! index of the step; 0 before the first
-      integer :: kind = 0           !! kind of the load; 0 for prescribed and initial values
+   !> A node, an element or a set of the deck's mesh.
+   type :: target_type
       integer :: item = 0           !! index of the deck's node or element, 0 for a set
       integer :: set = 0            !! index of the set, 0 for a single item
+   contains
+      procedure :: members
+   end type target_type
+
+   !> A request of one data card, for one component.
+   type, extends(target_type) :: request_type
+      integer :: step = 0           !! index of the step; 0 before the first
+      integer :: kind = 0           !! kind of the load; 0 for prescribed and initial values
       integer :: component = 0      !! degree of freedom, face, ...: as said at the kind
       real(dp) :: value = 0.0_dp    !! value
       integer :: amplitude = 0      !! index into model%amplitudes, 0 for none
@@ -47,6 +54,16 @@ module load_requests
    end type nodal_field_type
 
 contains
+
+   !> The nodes or elements of the deck that it names.
+   pure function members(self, sets)
+      class(target_type), intent(in) :: self
+      type(set_type), intent(in) :: sets(:)     !! of nodes or of elements
+      integer, allocatable :: members(:)
+
+      members = [self%item]
+      if (self%set > 0) members = sets(self%set)%members
+   end function members
 
    !> Adds a request.
    pure subroutine add(self, request)

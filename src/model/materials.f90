@@ -8,7 +8,7 @@ module materials
    private
    public :: material_type, properties_type, section_type, property_type, orientation_type
    public :: material_axes, strain_rotation, heat_capacity
-   public :: elasticity_of, set_property, isotropic, engineering, orthotropic, anisotropic
+   public :: set_property, isotropic, engineering, orthotropic, anisotropic
    public :: follows_temperature, thermal_strain, heat_content
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
       of_specific_heat

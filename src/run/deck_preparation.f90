@@ -14,7 +14,6 @@ module deck_preparation
    use deck_source, only: place_type
    use earlier_results, only: earlier_result_type, origin_type
    use errors, only: error_type, set_error, status_deck
-   use increments, only: simulation_type
    use kinds, only: dp
    use load_histories, only: load_history_type
    use loads, only: loads_type
@@ -26,6 +25,7 @@ module deck_preparation
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
    use constraint_checks, only: join_name, support_name
+   use simulation, only: simulation_type
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
    use variations, only: variation_type, vary

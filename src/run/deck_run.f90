@@ -13,7 +13,6 @@ module deck_run
    use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
-   use increments, only: simulation_type
    use interruption, only: caught_signal, end_after_grace, end_at_once, end_by_increments, &
       run_end_type
    use kinds, only: dp
@@ -25,6 +24,7 @@ module deck_run
    use run_description, only: describe_run
    use run_output, only: run_output_type
    use run_summaries, only: or_blank
+   use simulation, only: simulation_type
    use text, only: append, counted, string_type, to_text
    use utf8, only: printable
    use variations, only: variation_type

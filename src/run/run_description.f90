@@ -9,7 +9,6 @@ module run_description
    use controls, only: solver_mumps
    use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type
-   use increments, only: simulation_type
    use interface_warnings, only: gap_range
    use kinds, only: dp
    use messages, only: print_line
@@ -17,6 +16,7 @@ module run_description
    use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
       open_law_words, open_words, overlap_words, pairing_words, points_words
    use run_summaries, only: in_check, run_entries, run_entry_type, run_summary_type
+   use simulation, only: simulation_type
    use steps, only: analysis_coupled, solves_heat, solves_mechanics
    use text, only: counted, to_text
    use utf8, only: character_count

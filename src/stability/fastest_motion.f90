@@ -10,10 +10,10 @@
 module fastest_motion
    use arnoldi, only: arnoldi_type
    use dense, only: lu_type, product_of
-   use increments, only: simulation_type
    use kinds, only: dp
    use motion_responses, only: motion_response_type
    use records, only: increment_record_type
+   use simulation, only: simulation_type
    use small_motions, only: small_motion_type
    use text, only: counted, to_text
    implicit none

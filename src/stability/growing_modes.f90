@@ -10,13 +10,13 @@ module growing_modes
    use due_output, only: stability_is_due
    use errors, only: error_type
    use fastest_motion, only: find_fastest
-   use increments, only: simulation_type
    use kinds, only: dp
    use materials, only: heat_capacity
    use model, only: follows_temperatures, model_type
    use motion_responses, only: motion_response_type
    use projected_motions, only: projected_motions_type
    use records, only: increment_record_type
+   use simulation, only: simulation_type
    use small_motions, only: small_motion_type
    implicit none
    private

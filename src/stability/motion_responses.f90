@@ -3,9 +3,9 @@
 module motion_responses
    use dense, only: product_of
    use errors, only: error_type
-   use increments, only: simulation_type
    use kinds, only: dp
    use model, only: model_type
+   use simulation, only: simulation_type
    use small_motions, only: shifted_conduction_type, small_motion_type
    implicit none
    private

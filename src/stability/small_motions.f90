@@ -17,6 +17,7 @@ module small_motions
    use controls, only: implicit_scheme
    use dense, only: tail_factors_type
    use errors, only: error_type
+   use heat_equation, only: heat_across, heat_equation_type
    use heat_reduction, only: heat_reduction_type, loads_of_temperatures
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
@@ -24,7 +25,6 @@ module small_motions
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: linear_combination, sparse_matrix_type
-   use thermal_matrix, only: heat_across, heat_equation_type
    implicit none
    private
    public :: small_motion_type, shifted_conduction_type

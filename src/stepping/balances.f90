@@ -9,6 +9,7 @@ module balances
    use edge_heat, only: edge_heat_type, joined_conductance, supplied_heat
    use element_kinds, only: axisymmetric
    use friction_laws, only: friction_bound, friction_law_type
+   use heat_equation, only: heat_across, heat_rates_type
    use increment_data, only: increment_data_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -19,7 +20,6 @@ module balances
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use text, only: to_text
-   use thermal_matrix, only: heat_across, heat_rates_type
    use transforms, only: on_nodes
    implicit none
    private

@@ -10,28 +10,73 @@
 !> R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; M. E. Hosea, L. F. Shampine, Appl. Numer.
 !> Math. 20 (1996) 21.
 module heat_storage
+   use controls, only: stage_part
    use edge_heat, only: supplied_heat
-   use friction_heating, only: friction_at_start
-   use heat_reduction, only: heat_reduction_type
+   use friction_heating, only: friction_at_start, slips_before
+   use heat_equation, only: heat_across, heat_rates_type
    use increment_data, only: stage_type
    use kinds, only: dp
-   use load_histories, only: step_clock_type
-   use loads, only: loads_type
    use model, only: model_type
-   use operator_corrections, only: corrections_type
    use records, only: increment_record_type
    use reduced_bodies, only: reduced_bodies_type
+   use simulation, only: simulation_type
    use solution_state, only: solution_state_type
-   use thermal_matrix, only: heat_across, heat_rates_type
    implicit none
    private
-   public :: strain_rate, begin_storage, measure_changes
+   public :: begin_first_stage, begin_second_stage, begin_storage, measure_changes, strain_rate
 
    real(dp), parameter :: own = 2.0_dp   !! growth of the range that an increment makes itself
    !> Part of the largest temperature below which a range is that of rounding.
    real(dp), parameter :: unresolved = 1.0e-8_dp
 
 contains
+
+   !> The first stage of an increment that stores heat, and the state that it finds.
+   subroutine begin_first_stage(run, model, stage, before)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(inout) :: stage            !! with the clock of the increment
+      type(solution_state_type), intent(inout) :: before    !! state of the run
+
+      associate (step => model%steps(run%control%step))
+         stage%size = run%control%size_to(stage%clock)
+         stage%duration = stage%size
+         stage%dilates = step%dilates
+         if (run%control%increments_of_step == 0) call begin_storage(run, model, before)
+         if (run%corrections%corrects) stage%content = run%corrections%true_contents(model, &
+            before%temperature)
+         stage%jump = before%temperature - run%state%temperature
+         stage%temperature = before%temperature
+         stage%displacement = before%displacement
+         stage%is_last = step%scheme%stages /= 2
+      end associate
+      if (stage%is_last) return
+      stage%duration = stage_part*stage%size
+      stage%size = stage%duration
+      stage%clock%step_time = run%control%step_time + stage%size
+      stage%clock%total_time = run%control%step_start + stage%clock%step_time
+   end subroutine begin_first_stage
+
+   !> The second stage of an increment: C (T_i+1 - T_i)/dt is (1 - gamma) of the first stage's rate
+   !> and gamma of its own.
+   subroutine begin_second_stage(run, model, next, before, stage)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(in) :: next         !! state at the end of the first one
+      type(solution_state_type), intent(in) :: before       !! and at its start
+      type(stage_type), intent(inout) :: stage
+      real(dp), parameter :: weight = 1/stage_part - 1
+
+      stage%temperature = before%temperature + weight*(next%temperature - before%temperature)
+      stage%displacement = before%displacement + weight*(next%displacement - before%displacement)
+      if (run%corrections%corrects) stage%content = stage%content + weight* &
+         (run%corrections%true_contents(model, next%temperature) - stage%content)
+      if (allocated(run%bodies%points%heated)) stage%slip_before = slips_before(run%bodies, &
+         next%contact)
+      stage%size = stage%of_increment%step_time - stage%clock%step_time
+      stage%clock = stage%of_increment
+      stage%is_last = .true.
+   end subroutine begin_second_stage
 
    !> Rate of the heat that strains take up, T0 beta:eps' over all bodies, over the stage. Loads
    !> that act at once strain bodies within the first one.
@@ -47,20 +92,18 @@ contains
    !> The state as its first increment finds it: temperatures that the step prescribes, with those
    !> that ties, equations and hanging nodes give by them, its loads and its films act as at its
    !> start, jumps included, and what they leave over is stored.
-   subroutine begin_storage(model, bodies, corrections, loads, start, state)
+   subroutine begin_storage(run, model, state)
+      type(simulation_type), intent(inout) :: run            !! its loads move there
       type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(corrections_type), intent(inout) :: corrections   !! of the operators
-      type(loads_type), intent(inout) :: loads               !! moved to the start of the step
-      type(step_clock_type), intent(in) :: start             !! this instant
       type(solution_state_type), intent(inout) :: state      !! before the first increment
       type(heat_rates_type) :: rates
       real(dp) :: temperature(size(state%temperature))
       logical :: stores(size(state%temperature))
       integer :: i
 
-      call loads%move_to(start, model)
-      associate (by => bodies%thermal%map%by_unknowns)
+      call run%loads%move_to(run%control%start_of_step(model), model)
+      associate (bodies => run%bodies, loads => run%loads, &
+         by => run%bodies%thermal%map%by_unknowns)
          temperature = bodies%thermal%map%carried_along(state%temperature, merge( &
             loads%temperature%value, 0.0_dp, loads%temperature%active))
          state%jump = state%jump + bodies%points%jumps(temperature - state%temperature)
@@ -68,8 +111,8 @@ contains
          state%sources%load = loads%heat_load()
          state%sources%film = loads%film_matrix()
          rates%conducted = bodies%thermal%matrix%multiply(state%temperature)
-         if (corrections%corrects) rates%conducted = rates%conducted - &
-            corrections%heat_beyond(model, bodies, state%temperature)
+         if (run%corrections%corrects) rates%conducted = rates%conducted - &
+            run%corrections%heat_beyond(model, bodies, state%temperature)
          rates%entering = state%sources%net_heat(state%temperature)
          rates%crossing = heat_across(bodies%points%weight, state%carrying, state%jump)
          if (allocated(bodies%points%heated)) then
@@ -83,17 +126,15 @@ contains
                stores(i) = stores(i) .and. any(abs(row) > 0.0_dp)
             end associate
          end do
+         state%stored = merge(-supplied_heat(bodies, state%edge, rates), 0.0_dp, stores)
       end associate
-      state%stored = merge(-supplied_heat(bodies, state%edge, rates), 0.0_dp, stores)
       state%extremes = extremes_of(model, state%temperature)
    end subroutine begin_storage
 
    !> Measures an increment: error and largest change of its temperatures.
-   subroutine measure_changes(model, bodies, heat, held, before, next, record)
+   subroutine measure_changes(run, model, before, next, record)
+      type(simulation_type), intent(in) :: run               !! heat reduced as in the increment
       type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat          !! of the increment
-      logical, intent(in) :: held(:)                         !! (nodes) prescribed temperatures
       !> State before the last stage, with the temperatures at the start of the increment
       type(solution_state_type), intent(in) :: before
       type(solution_state_type), intent(inout) :: next       !! state at the end
@@ -109,10 +150,10 @@ contains
       associate (scheme => model%steps(record%step)%scheme)
          part = merge(1.0_dp, 0.5_dp/scheme%a(1), scheme%stages == 2)
       end associate
-      record%local_error = maxval(abs(heat%welded_response(bodies%thermal, part* &
-         (next%stored - before%stored))))/range
+      record%local_error = maxval(abs(run%heats(run%in_use)%welded_response( &
+         run%bodies%thermal, part*(next%stored - before%stored))))/range
       record%largest_change = maxval(abs(next%temperature - before%temperature), &
-         mask=.not. held)
+         mask=.not. run%loads%temperature%active)
    end subroutine measure_changes
 
    !> Lowest and highest temperature of the bodies.

@@ -143,32 +143,37 @@ contains
             end if
          end do
          if (.not. any(is_of)) cycle
-         associate (material => model%materials(m), t => record%fields%temperature)
-            do i = 1, size(material%given)
-               associate (rows => material%given(i)%temperature)
-                  if (size(rows) == 1) cycle
-                  call warn_of_end(rows(1), minloc(t, dim=1, mask=is_of), -1.0_dp)
-                  call warn_of_end(rows(size(rows)), maxloc(t, dim=1, mask=is_of), 1.0_dp)
-               end associate
-            end do
+         associate (t => record%fields%temperature)
+            call warn_of_end(minloc(t, dim=1, mask=is_of), -1.0_dp, ' below their first rows')
+            call warn_of_end(maxloc(t, dim=1, mask=is_of), 1.0_dp, ' above their last rows')
          end associate
       end do
    contains
-      subroutine warn_of_end(row, node, side)
-         real(dp), intent(in) :: row, side
+      subroutine warn_of_end(node, side, where)
          integer, intent(in) :: node
+         real(dp), intent(in) :: side
+         character(*), intent(in) :: where
+         character(:), allocatable :: left
+         real(dp) :: row, beyond
 
-         associate (there => record%fields%temperature(node), range => maxval( &
-            model%materials(m)%given(i)%temperature) - &
-            minval(model%materials(m)%given(i)%temperature))
-            if (side*(there - row) <= margin*range) return
-            call record%warn(body_name(model, model%mesh%node_body(node))//' leaves the table '// &
-               'of *'//trim(property_keywords(model%materials(m)%given(i)%kind))//' of '// &
-               model%materials(m)%name//trim(merge(' above its last row, ', &
-               ' below its first row,', side > 0.0_dp))//' '//to_text(row)// &
-               ', and its values are held: temperature ', there, ' at node '// &
-               to_text(model%mesh%node_number(node))//', time '//to_text(record%time), &
-               severity=abs(there - row))
+         left = ''
+         beyond = 0.0_dp
+         associate (material => model%materials(m), there => record%fields%temperature(node))
+            do i = 1, size(material%given)
+               associate (rows => material%given(i)%temperature)
+                  row = rows(merge(size(rows), 1, side > 0.0_dp))
+                  if (size(rows) == 1 .or. side*(there - row) <= margin*(maxval(rows) - &
+                     minval(rows))) cycle
+               end associate
+               left = left//', *'//trim(property_keywords(material%given(i)%kind))//' ('// &
+                  to_text(row)//')'
+               beyond = max(beyond, side*(there - row))
+            end do
+            if (len(left) > 0) call record%warn(body_name(model, model%mesh%node_body(node))// &
+               ' leaves the tables of '//material%name//where//', and their values there are '// &
+               'held: temperature ', there, ' at node '// &
+               to_text(model%mesh%node_number(node))//', time '//to_text(record%time)//'; '// &
+               left(3:), severity=beyond)
          end associate
       end subroutine warn_of_end
    end subroutine warn_of_tables

@@ -11,6 +11,7 @@ module increment_records
    use due_output, only: needs_recovery, table_is_due
    use equations, only: section_nodes
    use friction_laws, only: friction_law_type
+   use heat_equation, only: heat_across
    use increment_data, only: increment_data_type
    use kinds, only: dp
    use loads, only: loads_type
@@ -27,7 +28,6 @@ module increment_records
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: face_temperatures_type, law_at
    use text, only: to_text
-   use thermal_matrix, only: heat_across
    use transforms, only: on_nodes
    use zone_edges, only: contact_edges, contact_profile, contact_profile_type, stick_edges
    implicit none

@@ -13,6 +13,7 @@ module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count, quad4_enhanced
    use errors, only: error_type, set_error, status_no_convergence
+   use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
    use kinds, only: dp
    use materials, only: follows_temperature, heat_content
@@ -23,7 +24,6 @@ module operator_corrections
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use text, only: to_text
-   use thermal_matrix, only: heat_equation_type
    implicit none
    private
    public :: corrections_type

@@ -6,11 +6,11 @@
 module restarts
    use due_output, only: restart_is_due
    use errors, only: error_type
-   use increments, only: simulation_type
    use kinds, only: dp
    use load_histories, only: end_of_step
    use model, only: model_type
    use records, only: increment_record_type
+   use simulation, only: simulation_type
    use solution_state, only: exchange_state
    use state_tables, only: integers, reals, state_table_type, words
    use steps, only: solves_heat

@@ -16,7 +16,6 @@ module deck_trade
    use errors, only: error_type, set_error, status_internal, status_interrupted, &
       status_no_convergence, status_verify
    use file_calls, only: make_folder, try_file
-   use increments, only: simulation_type
    use interface_quantities, only: closed_length
    use interruption, only: caught_signal
    use kinds, only: dp
@@ -28,6 +27,7 @@ module deck_trade
    use progress, only: progress_type
    use records, only: increment_record_type
    use reported_quantities, only: traded
+   use simulation, only: simulation_type
    use sorting, only: number_index_type
    use steps, only: solves_heat
    use text, only: counted, few_digits, string_type, to_text

@@ -11,15 +11,14 @@ COUPLING = {
     "conductance_graph", "contact_operator:contact_operator_pass", "contact_operator:make_graph",
     "contact_operator:opening_changes", "contact_operator:opening_derivative",
     "contact_operator:openings", "contact_operator:residual_floor", "coupled_increment",
-    "fixed_point", "increment_iteration", "heat_reduction:loads_by_elimination",
-    "heat_reduction:loads_by_solves", "newton",
+    "fixed_point", "increment_iteration", "jump_loads", "newton",
 }
 PARTS = {
     "heat": {
         "balances:balance_heat", "edge_heat:supplied_heat", "element_conduction",
         "field_recovery:heat_flux_samples", "point_fields:heat_flux",
         "increment_checks:check_heat", "increment_solution:conduct",
-        "heat_reduction", "loads:card_heat",
+        "heat_equation", "heat_reduction", "jump_loads", "loads:card_heat",
         "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_properties:conductivity_in",
         "thermal_matrix",
     },

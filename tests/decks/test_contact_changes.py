@@ -220,18 +220,34 @@ def test_an_allowed_overlap_stays_with_mod_and_ends_with_new(tmp_path):
     (-0.25, 0.75, "0.5, the faces are 0.5 apart")])
 def test_an_interference_against_a_clearance_is_warned_of(tmp_path, clearance, interference, told):
     """But not where it allows an overlap, which is how a press fit is ramped up."""
-    cards = interfering("*CONTACT INTERFERENCE", f"{PAIR}, {interference!r}")
-    at = next(k for k, card in enumerate(cards) if card.startswith("*CLEARANCE"))
-    cards[at:at + 1] = [] if clearance is None else [
-        f"*CLEARANCE, MASTER=LOWER.TOP, SLAVE=UPPER.BOTTOM, VALUE={clearance!r}"]
-    process = run("check", write(tmp_path / "fit.inp", cards))
-    assert process.returncode == 0, process.stderr
-    found = [line for line in process.stderr.splitlines() if "work against each other" in line]
+    found = warned_of_fit(tmp_path, clearance, interference, "work against each other")
     if told is None:
         assert not found
     else:
         assert len(found) == 1 and f"with the sum, {told};" in found[0]
         assert f"the interference {interference:g} and the *CLEARANCE {clearance:g} work" in found[0]
+
+
+def warned_of_fit(folder, clearance, interference, words):
+    """Return the warnings with some words of an interference beside a clearance."""
+    cards = interfering("*CONTACT INTERFERENCE", f"{PAIR}, {interference!r}")
+    at = next(k for k, card in enumerate(cards) if card.startswith("*CLEARANCE"))
+    cards[at:at + 1] = [] if clearance is None else [
+        f"*CLEARANCE, MASTER=LOWER.TOP, SLAVE=UPPER.BOTTOM, VALUE={clearance!r}"]
+    process = run("check", write(folder / "fit.inp", cards))
+    assert process.returncode == 0, process.stderr
+    return [line for line in process.stderr.splitlines() if words in line]
+
+
+@pytest.mark.parametrize(("clearance", "interference", "total"), [
+    (-0.25, -0.25, "-0.5"), (0.25, 0.25, "0.5"), (-0.25, 0.25, None), (-0.25, -0.5, None),
+    (0.0, 0.0, None), (None, -0.25, None)])
+def test_an_interference_that_repeats_the_clearance_is_warned_of(
+        tmp_path, clearance, interference, total):
+    found = warned_of_fit(tmp_path, clearance, interference, "both")
+    assert len(found) == (total is not None)
+    assert all(f"are both {interference:g}, and the faces begin with the sum, {total};" in line
+               for line in found)
 
 
 # ADJUST= on *CONTACT PAIR.

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from blocks import write
-from deck_runs import assert_alike, datasets, solve
+from deck_runs import assert_alike, datasets, run, solve
 from physics import material, mesh, nodes_of, outer_nodes
 from scipy.optimize import brentq
 
@@ -113,6 +113,23 @@ def test_a_uniform_temperature_takes_the_constants_of_its_row(tmp_path, kind, te
     other = solved(tmp_path, strained(kind, temperature, **constants(ISOTROPIC, temperature)),
                    "other")
     assert_last_alike(one, other)
+
+
+@pytest.mark.parametrize(("temperature", "told"), [
+    (-80.0, "below their first rows, *ELASTIC (0), *EXPANSION (0), *CONDUCTIVITY (0)"), (WARM, None),
+    (900.0, "above their last rows, *ELASTIC (600), *EXPANSION (500), *CONDUCTIVITY (600)"),
+    (550.0, "above their last rows, *EXPANSION (500)")])
+def test_tables_that_a_run_leaves_are_one_warning(tmp_path, temperature, told):
+    tables_of = ISOTROPIC | {"expansion": [(1e-5, 0.0), (1.6e-5, 500.0)]}
+    deck = write(tmp_path / "deck.inp", strained("CPE4", temperature, **tables_of))
+    process = run("run", deck)
+    assert process.returncode == 0, process.stderr
+    found = [line for line in process.stderr.splitlines() if "leaves the tables" in line]
+    assert len(found) == (told is not None)
+    for line in found:
+        where, left = told.split(", ", 1)
+        assert f"leaves the tables of BODY {where}, " in line and line.endswith(f"; {left}")
+        assert f"temperature {temperature:g} at node" in line
 
 
 @pytest.mark.parametrize("kind", ["CPE8", "CPS8", "CPE8R", "CPE4", "CPS3", "CAX8", "CPS4I"])

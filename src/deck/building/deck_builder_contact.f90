@@ -343,7 +343,8 @@ contains
       end do
    end subroutine change_interferences
 
-   !> Warns of an interference against a clearance, but not where it allows a part of an overlap.
+   !> Warns of an interference against a clearance, but not where it allows a part of an overlap;
+   !> and of one that is given twice.
    subroutine check_clearance(data, contact, interference, report)
       type(data_card_type), intent(in) :: data
       type(contact_definition_type), intent(in) :: contact
@@ -351,8 +352,13 @@ contains
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: meaning
 
-      if (contact%clearance*interference >= 0.0_dp) return
       associate (gap => contact%clearance + interference)
+         if (abs(contact%clearance - interference) <= 0.0_dp .and. abs(gap) > 0.0_dp) &
+            call report%warning(field_place(data, 3), contact%title()//': the interference and '// &
+            'the *CLEARANCE are both '//to_text(interference)//', and the faces begin with the '// &
+            'sum, '//to_text(gap)//'; give a gap that stays by *CLEARANCE alone, one that the '// &
+            'step takes away by *CONTACT INTERFERENCE alone')
+         if (contact%clearance*interference >= 0.0_dp) return
          if (contact%clearance < 0.0_dp .and. gap <= 0.0_dp) return
          meaning = 'the faces touch'
          if (gap < 0.0_dp) meaning = 'the faces overlap by '//to_text(-gap)

@@ -19,8 +19,7 @@ module deck_builder_element_loads
    use text, only: append, string_type, to_text, to_upper
    implicit none
    private
-   public :: build_element_load, build_on_faces, report_label, build_gravity, build_rotation, &
-      build_surface_load
+   public :: build_element_load, build_surface_load
 
    real(dp), parameter :: straight = 1.0e-6_dp   !! bow of a side, by its length
 
@@ -41,8 +40,8 @@ contains
 
       valid = .true.
       surface = named_surface(data, model%mesh)
-      if (surface == 0) call read_target(data, 1, 'element', context%element_index, &
-         model%mesh%element_sets, report, request%item, request%set, valid)
+      if (surface == 0) call read_target(data, 1, context%element_index, &
+         model%mesh%element_sets, report, request%target_type, valid)
       call need_field(data, 2, 'label of the load', report, label, valid)
       if (len(label) == 0) return
       label = to_upper(label)
@@ -170,8 +169,7 @@ contains
       integer :: i
 
       if (.not. valid) return
-      elements = [request%item]
-      if (request%set > 0) elements = model%mesh%element_sets(request%set)%members
+      elements = request%members(model%mesh%element_sets)
       do i = 1, size(elements)
          if (.not. context%element_valid(elements(i))) cycle
          associate (sides => element_corner_count(model%mesh%element_kind(elements(i))))

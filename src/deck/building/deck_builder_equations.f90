@@ -12,6 +12,7 @@ module deck_builder_equations
    use deck_structure, only: card_count, cards_of, is_keyword
    use kinds, only: dp
    use mesh, only: extent_of
+   use load_requests, only: target_type
    use model, only: model_type
    use sorting, only: sort_order
    use steps, only: dof_temperature
@@ -24,8 +25,7 @@ module deck_builder_equations
    integer, parameter :: term_fields = 3   !! node or set, degree of freedom, coefficient
 
    !> One term, of a node or of all members of a set.
-   type :: term_type
-      integer :: item = 0, set = 0                 !! node index, or set
+   type, extends(target_type) :: term_type
       integer :: dof = 0
       real(dp) :: coefficient = 0.0_dp
       type(place_type) :: place                    !! where it is
@@ -117,8 +117,8 @@ contains
       type(term_type) :: term
 
       term%place = field_place(card, position)
-      call read_target(card, position, 'node', context%node_index, model%mesh%node_sets, report, &
-         term%item, term%set, valid)
+      call read_target(card, position, context%node_index, model%mesh%node_sets, report, &
+         term%target_type, valid)
       call need_field(card, position + 1, 'degree of freedom', report, term%dof, valid)
       call need_field(card, position + 2, 'coefficient', report, term%coefficient, valid)
       if (.not. valid) return
@@ -141,7 +141,7 @@ contains
 
       lengths = 1
       do i = 1, size(lengths)
-         if (terms(i)%set > 0) lengths(i) = size(model%mesh%node_sets(terms(i)%set)%members)
+         lengths(i) = size(terms(i)%members(model%mesh%node_sets))
          if (lengths(i) == 1 .or. maxval(lengths(:i - 1)) <= 1) cycle
          if (lengths(i) == maxval(lengths(:i - 1))) cycle
          call report%error(terms(i)%place, 'the node sets of an equation must have the same '// &
@@ -174,7 +174,7 @@ contains
       n = 1
       same = [(i, i=1, size(same))]
       do i = 1, size(terms)
-         if (terms(i)%set > 0) n = max(n, size(model%mesh%node_sets(terms(i)%set)%members))
+         n = max(n, size(terms(i)%members(model%mesh%node_sets)))
       end do
       do k = 1, n
          equation%title = '*EQUATION, '//report%source%words_of(place)

@@ -12,7 +12,7 @@ module deck_builder_histories
    use deck_structure, only: cards_of
    use element_kinds, only: kind_count, plane_stress
    use kinds, only: dp
-   use load_requests, only: request_type
+   use load_requests, only: request_type, target_type
    use mesh, only: mesh_type
    use model, only: model_type
    use text, only: read_integer, read_real, to_text, to_upper
@@ -244,8 +244,8 @@ contains
             do j = card%first_data, card%last_data
                valid = .true.
                request%place = field_place(cards%data(j), 1)
-               call read_target(cards%data(j), 1, 'node', context%node_index, &
-                  model%mesh%node_sets, report, request%item, request%set, valid)
+               call read_target(cards%data(j), 1, context%node_index, model%mesh%node_sets, &
+                  report, request%target_type, valid)
                call need_field(cards%data(j), 2, 'temperature', report, request%value, valid)
                call check_extra(cards%data(j), 2, 'node or set, temperature', report)
                if (valid) call context%temperatures%add(request)
@@ -295,21 +295,21 @@ contains
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
+      type(target_type) :: target
       integer, allocatable :: members(:)
       real(dp) :: stress(4)
-      integer :: i, item, number, set
+      integer :: i, number
       logical :: is_flat, valid
 
       valid = .true.
-      call read_target(data, 1, 'element', context%element_index, mesh%element_sets, report, &
-         item, set, valid)
+      call read_target(data, 1, context%element_index, mesh%element_sets, report, target, valid)
       call read_stress(data, 2, 4, report, stress, valid)
       if (.not. valid) return
-      members = [item]
-      if (set > 0) members = mesh%element_sets(set)%members
-      if (item > 0) then
+      members = target%members(mesh%element_sets)
+      if (target%item > 0) then
          call read_integer(data%fields(2)%text, number, valid)
-         if (valid .and. number > 0 .and. number <= solid_points(mesh%element_kind(item))) then
+         if (valid .and. number > 0 .and. number <= &
+            solid_points(mesh%element_kind(target%item))) then
             call report%error(field_place(data, 2), 'integration point or stress? Give '// &
                layout//', or a stress with a decimal point')
             return
@@ -336,43 +336,46 @@ contains
       integer, intent(inout) :: points(:)
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
+      type(target_type) :: target
       real(dp) :: stress(6)
-      integer :: item, next, point, set
+      integer :: next, point
       logical :: valid
 
       valid = .true.
       point = 0
       next = 1
-      call read_target(data, 1, 'element', context%element_index, mesh%element_sets, report, &
-         item, set, valid)
+      call read_target(data, 1, context%element_index, mesh%element_sets, report, target, valid)
       call need_field(data, 2, 'integration point', report, point, valid)
       call read_stress(data, 3, 6, report, stress, valid)
       call check_extra(data, 8, layout, report)
-      if (item > 0) then
-         if (points(item) < 0) return
-         next = points(item) + 1
-         points(item) = -1
-      end if
-      if (.not. valid) return
-      if (set > 0) then
-         call report%error(field_place(data, 1), 'an element set has no integration points; '// &
-            'the card is set, s11, s22, s33, s12, or '//layout)
-      else if (any(abs(stress(5:)) > 0.0_dp)) then
-         call report%error(field_place(data, 7), 's13 and s23 are 0 in a plane')
-      else if (mesh%element_plane(item) == plane_stress .and. abs(stress(3)) > 0.0_dp) then
-         call report%error(field_place(data, 5), 's33 is 0 in plane stress')
-      else if (point /= next .or. point > solid_points(mesh%element_kind(item))) then
-         call report%error(field_place(data, 2), 'the integration points of an element follow '// &
-            'each other from 1 to '//to_text(solid_points(mesh%element_kind(item)))//', as in '// &
-            'CalculiX')
-      else if (point > 1 .and. maxval(abs(stress(:4) - mesh%initial_stress(:, item))) > &
-         printed*maxval(abs(stress))) then
-         call report%error(field_place(data, 2), 'the stress differs from that at point 1 of '// &
-            'element '//to_text(mesh%element_number(item))//'; an element has one stress here')
-      else
-         if (point == 1) mesh%initial_stress(:, item) = stress(:4)
-         points(item) = point
-      end if
+      associate (item => target%item)
+         if (item > 0) then
+            if (points(item) < 0) return
+            next = points(item) + 1
+            points(item) = -1
+         end if
+         if (.not. valid) return
+         if (target%set > 0) then
+            call report%error(field_place(data, 1), 'an element set has no integration points; '// &
+               'the card is set, s11, s22, s33, s12, or '//layout)
+         else if (any(abs(stress(5:)) > 0.0_dp)) then
+            call report%error(field_place(data, 7), 's13 and s23 are 0 in a plane')
+         else if (mesh%element_plane(item) == plane_stress .and. abs(stress(3)) > 0.0_dp) then
+            call report%error(field_place(data, 5), 's33 is 0 in plane stress')
+         else if (point /= next .or. point > solid_points(mesh%element_kind(item))) then
+            call report%error(field_place(data, 2), 'the integration points of an element '// &
+               'follow each other from 1 to '//to_text(solid_points(mesh%element_kind(item)))// &
+               ', as in CalculiX')
+         else if (point > 1 .and. maxval(abs(stress(:4) - mesh%initial_stress(:, item))) > &
+            printed*maxval(abs(stress))) then
+            call report%error(field_place(data, 2), 'the stress differs from that at point 1 '// &
+               'of element '//to_text(mesh%element_number(item))// &
+               '; an element has one stress here')
+         else
+            if (point == 1) mesh%initial_stress(:, item) = stress(:4)
+            points(item) = point
+         end if
+      end associate
    end subroutine take_point
 
    !> Components in a row; those that are left out are 0.

@@ -17,7 +17,7 @@ module deck_builder_loads
    use text, only: read_real, to_text, to_upper
    implicit none
    private
-   public :: build_load_card, build_boundary, dof_rotation
+   public :: build_load_card
 
    integer, parameter :: dof_rotation = 6   !! about z, of the reference node of a coupling
    integer, parameter :: dof_turn = 3       !! the same, of CalculiX' node of the rotation
@@ -183,8 +183,8 @@ contains
 
       valid = .true.
       dof = 1
-      call read_target(data, 1, 'node', context%node_index, model%mesh%node_sets, report, &
-         request%item, request%set, valid)
+      call read_target(data, 1, context%node_index, model%mesh%node_sets, report, &
+         request%target_type, valid)
       if (keyword == 'TEMPERATURE') then
          request%kind = load_temperature
          call need_field(data, 2, 'temperature', report, request%value, valid)
@@ -222,12 +222,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer :: i, node
 
-      node = request%item
-      if (request%set > 0) then
-         associate (members => model%mesh%node_sets(request%set)%members)
-            if (size(members) == 1) node = members(1)
-         end associate
-      end if
+      node = single_node(request, model)
       i = findloc((model%couplings%reference == node .or. model%couplings%rotation_node == node) &
          .and. .not. model%couplings%is_section(), &
          .true., dim=1)
@@ -260,8 +255,8 @@ contains
          context%boundaries%items(context%boundaries%count)%card + 1
       valid = .true.
       request%value = 0.0_dp
-      call read_target(data, 1, 'node', context%node_index, model%mesh%node_sets, report, &
-         request%item, request%set, valid)
+      call read_target(data, 1, context%node_index, model%mesh%node_sets, report, &
+         request%target_type, valid)
       held = held_degrees(to_upper(field_text(data, 2)))
       if (size(held) > 0) then
          call check_extra(data, 2, 'node or set, '//to_upper(field_text(data, 2)), report)
@@ -418,14 +413,20 @@ contains
       type(model_type), intent(in) :: model
       integer :: node
 
-      node = request%item
-      if (request%set > 0) then
-         associate (members => model%mesh%node_sets(request%set)%members)
-            if (size(members) == 1) node = members(1)
-         end associate
-      end if
+      node = single_node(request, model)
       names_rotation = node > 0 .and. any(model%couplings%rotation_node == node)
    end function names_rotation
+
+   !> The node of a request for no other; else 0.
+   pure integer function single_node(request, model) result(node)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+
+      node = 0
+      associate (members => request%members(model%mesh%node_sets))
+         if (size(members) == 1) node = members(1)
+      end associate
+   end function single_node
 
    elemental logical function is_target(node, request, model)
       integer, intent(in) :: node

@@ -48,6 +48,7 @@ contains
       call move_alloc(heights, context%node_height)
       call warn_of_decimals(cards, card, report)
       call drop_repeated(mesh, context, report)
+      context%node_index%noun = 'node'
       call context%node_index%build(mesh%node_number)
       call add_rotations(cards, context, mesh)
    end subroutine build_nodes
@@ -264,10 +265,12 @@ contains
          end do
       end do
       call check_heights(cards, context, mesh, report)
+      context%element_index%noun = 'element'
       call context%element_index%build(mesh%element_number)
       ! Elements and lines have different numbers.
       call check_repeated(cards, [card, element_cards(cards, of_lines=.true.)], &
          [mesh%element_number, context%line_number], report, places)
+      context%member_index%noun = 'element'
       call context%member_index%build([mesh%element_number, context%line_number])
    end subroutine build_elements
 

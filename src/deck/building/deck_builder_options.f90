@@ -18,7 +18,7 @@ module deck_builder_options
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
-   public :: build_options, build_load_axis, take_levels, build_regions
+   public :: build_options, build_load_axis, build_regions
 
    integer, parameter :: most_levels = 11   !! *REFINE: one element more often divided is too many
 

@@ -9,14 +9,16 @@ module deck_builder_sets
    use deck_builder_lines, only: find_line_faces, is_line_card
    use deck_builder_rigid, only: need_faces
    use deck_builder_rigid_lines, only: build_line_surface, is_rigid_side
-   use deck_context, only: deck_context_type, name_last, place_list_type, read_target, take_named
+   use deck_context, only: deck_context_type, item_index_type, name_last, place_list_type, &
+      read_target, take_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
+   use load_requests, only: target_type
    use mesh, only: mesh_type, set_type, surface_type
    use named_items, only: find_named
-   use sorting, only: number_index_type, sort_order, unique_sorted
+   use sorting, only: sort_order, unique_sorted
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
@@ -24,8 +26,7 @@ module deck_builder_sets
 
    !> Sets of nodes or of elements while they grow.
    type :: draft_type
-      character(:), allocatable :: noun         !! node or element
-      type(number_index_type) :: numbers        !! numbers of these -> indexes
+      type(item_index_type) :: numbers          !! numbers of nodes or of elements -> indexes
       integer :: sets = 0                       !! number of sets
       type(set_type), allocatable :: items(:)   !! (capacity) members with a capacity of their own
       integer, allocatable :: counts(:)         !! (capacity) members so far
@@ -50,7 +51,6 @@ contains
       parameter = trim(parameter)
       definer = to_upper(noun)
       allocate(draft%items(size(cards%keywords)), draft%counts(size(cards%keywords)))
-      draft%noun = noun
       draft%numbers = context%node_index
       if (noun == 'element') draft%numbers = context%member_index
       first = [0, size(mesh%element_number)]
@@ -148,14 +148,15 @@ contains
       type(draft_type), intent(inout) :: draft
       character(:), allocatable :: name
       integer, allocatable :: nodes(:)
-      integer :: set, other, item, j, i, known
+      type(target_type) :: other
+      integer :: set, j, i, known
       logical :: valid
 
       call need_parameter(card, card%name, report, name)
       if (len(name) == 0) return
       known = draft%sets
       call open_set(card, card%name, report, draft, set)
-      if (draft%noun == 'node') then
+      if (draft%numbers%noun == 'node') then
          call find_nodes(card, context, mesh, report, nodes)
          call add_members(draft, set, nodes)
       end if
@@ -166,11 +167,11 @@ contains
          end if
          do i = 1, size(cards%data(j)%fields)
             valid = .true.
-            call read_target(cards%data(j), i, draft%noun, draft%numbers, draft%items(:known), &
-               report, item, other, valid)
-            if (item > 0) call add_members(draft, set, [item])
-            if (other > 0) call add_members(draft, set, &
-               (draft%items(other)%members(:draft%counts(other))))
+            call read_target(cards%data(j), i, draft%numbers, draft%items(:known), report, &
+               other, valid)
+            if (other%item > 0) call add_members(draft, set, [other%item])
+            if (other%set > 0) call add_members(draft, set, &
+               (draft%items(other%set)%members(:draft%counts(other%set))))
          end do
       end do
    end subroutine build_set
@@ -239,15 +240,17 @@ contains
          found = found + 1
       end do
       range = 'from '//to_text(first)//' to '//to_text(last)
-      if (found == 0 .and. draft%counts(set) == 0) then
-         call report%missing(field_place(data, 1), 'there is no '//draft%noun//' '//range, &
-            draft%noun)
-      else if (found < count .and. .not. report%has_lost(draft%noun)) then
-         if (step > 1) range = range//' in steps of '//to_text(step)
-         call report%warning(field_place(data, 1), 'missing '//draft%noun//'s are left out: '// &
-            to_text(count - found)//' of '//to_text(count)//' '//range//', the first is '// &
-            to_text(first + first_missing*step))
-      end if
+      associate (noun => draft%numbers%noun)
+         if (found == 0 .and. draft%counts(set) == 0) then
+            call report%missing(field_place(data, 1), 'there is no '//noun//' '//range, &
+               noun)
+         else if (found < count .and. .not. report%has_lost(noun)) then
+            if (step > 1) range = range//' in steps of '//to_text(step)
+            call report%warning(field_place(data, 1), 'missing '//noun//'s are left out: '// &
+               to_text(count - found)//' of '//to_text(count)//' '//range//', the first is '// &
+               to_text(first + first_missing*step))
+         end if
+      end associate
    end subroutine generate
 
    !> Builds all surfaces.
@@ -282,7 +285,8 @@ contains
       character(:), allocatable :: kind
       type(place_type), allocatable :: named(:)
       integer, allocatable :: elements(:), keys(:), order(:)
-      integer :: element, set, face, i, j, errors
+      type(target_type) :: target
+      integer :: face, i, j, errors
       logical :: valid
 
       kind = 'ELEMENT'
@@ -314,15 +318,14 @@ contains
             cycle
          end if
          valid = .true.
-         call read_target(cards%data(j), 1, 'element', context%element_index, mesh%element_sets, &
-            report, element, set, valid)
+         call read_target(cards%data(j), 1, context%element_index, mesh%element_sets, report, &
+            target, valid)
          ! An unknown set may be one of lines, which has no face.
          if (valid .or. has_field(cards%data(j), 2)) call read_face(cards%data(j), report, face, &
             valid)
          call check_extra(cards%data(j), 2, 'element or set, face', report)
          if (.not. valid) cycle
-         elements = [element]
-         if (set > 0) elements = mesh%element_sets(set)%members
+         elements = target%members(mesh%element_sets)
          call check_face(cards%data(j), mesh, elements, face, report, valid)
          if (.not. valid) cycle
          keys = [keys, 4*elements + face - 1]

@@ -22,7 +22,7 @@ module deck_builder_steps
    use time_points, only: time_points_type
    implicit none
    private
-   public :: build_steps, increment_rounding, build_increments
+   public :: build_steps, increment_rounding
 
    real(dp), parameter :: increment_rounding = 1.0e-6_dp   !! a shorter rest is none, relative
    real(dp), parameter :: most_counted = 1.0e9_dp   !! increments that a message counts

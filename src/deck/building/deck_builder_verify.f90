@@ -12,6 +12,7 @@ module deck_builder_verify
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_cards_of
    use kinds, only: dp
+   use load_requests, only: target_type
    use model, only: model_type, verify_type, unbounded
    use named_items, only: find_named
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_contact_points, &
@@ -195,13 +196,12 @@ contains
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       logical :: used(0:size(model%mesh%node_number))
+      type(target_type) :: target
       integer, allocatable :: nodes(:)
-      integer :: node, set
       logical :: valid
 
       valid = .true.
-      call read_target(data, 2, 'node', context%node_index, model%mesh%node_sets, report, &
-         node, set, valid)
+      call read_target(data, 2, context%node_index, model%mesh%node_sets, report, target, valid)
       if (.not. valid) return
       used = .false.
       if (kind == of_sections) then
@@ -211,8 +211,7 @@ contains
          used(1:) = used(1:) .or. constrained_nodes(model%equations, model%couplings, &
             size(used) - 1) .or. equation_nodes(model%bars%elongation, size(used) - 1)
       end if
-      nodes = [node]
-      if (set > 0) nodes = model%mesh%node_sets(set)%members
+      nodes = target%members(model%mesh%node_sets)
       nodes = pack(nodes, used(nodes))
       if (size(nodes) == 0 .and. kind == of_sections) then
          call report%error(field_place(data, 2), field_text(data, 2)//' is not the reference '// &

@@ -7,7 +7,6 @@ module load_checks
    use element_kinds, only: axisymmetric
    use kinds, only: dp
    use load_requests, only: request_type
-   use mesh, only: set_type
    use model, only: model_type
    use order_reduction, only: side_corners
    use steps, only: analysis_static, centrifugal_round, dof_temperature, load_body_heat, &
@@ -43,7 +42,7 @@ contains
             select case (request%kind)
             case (load_force, load_nodal_heat)
                if (.not. (report%has_lost('equation') .or. report%has_lost('element') .or. &
-                  all(used(items_of(request, model%mesh%node_sets))))) then
+                  all(used(request%members(model%mesh%node_sets))))) then
                   call report%error(request%place, trim(merge('a force', 'heat   ', &
                      request%kind == load_force))//' on a node that no element has')
                end if
@@ -125,7 +124,7 @@ contains
       integer, allocatable :: elements(:)
       integer :: i, section, m
 
-      elements = items_of(request, model%mesh%element_sets)
+      elements = request%members(model%mesh%element_sets)
       do i = 1, size(elements)
          section = model%mesh%element_section(elements(i))
          if (section == 0) cycle
@@ -145,7 +144,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, allocatable :: planes(:)
 
-      planes = model%mesh%element_plane(items_of(request, model%mesh%element_sets))
+      planes = model%mesh%element_plane(request%members(model%mesh%element_sets))
       if (request%component == centrifugal_round) then
          if (any(planes /= axisymmetric)) call report%error(request%place, &
             'plane elements turn round an axis along z: point x, y, 0, direction 0, 0, 1')
@@ -180,7 +179,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       integer, allocatable :: elements(:)
 
-      elements = items_of(request, model%mesh%element_sets)
+      elements = request%members(model%mesh%element_sets)
       elements = pack(elements, uses(request%component, elements) > 1)
       if (size(elements) == 0) return
       call report%warning(request%place, 'side '//to_text(request%component)//' of element '// &
@@ -207,7 +206,7 @@ contains
             if (request%card == card) cycle
             card = request%card
             ! As CalculiX does.
-            nodes = items_of(request, model%mesh%node_sets)
+            nodes = request%members(model%mesh%node_sets)
             nodes = pack(nodes, .not. used(nodes))
             if (size(nodes) > 0 .and. .not. unknown) call report%warning(request%place, 'node '// &
                to_text(model%mesh%node_number(nodes(1)))//' belongs to no element: what is '// &
@@ -254,14 +253,14 @@ contains
       first = huge(first)
       do i = context%boundaries%count, 1, -1
          associate (request => context%boundaries%items(i))
-            first(min(request%component, 3), items_of(request, model%mesh%node_sets)) = &
+            first(min(request%component, 3), request%members(model%mesh%node_sets)) = &
                max(1, request%step)
          end associate
       end do
       card = 0
       do i = 1, context%boundaries%count
          associate (request => context%boundaries%items(i))
-            nodes = items_of(request, model%mesh%node_sets)
+            nodes = request%members(model%mesh%node_sets)
             if (.not. all(context%dropped(nodes)) .or. request%card == card) cycle
             do j = 1, size(nodes)
                if (all(first(min(request%component, 3), corners(:, nodes(j))) <= &
@@ -293,7 +292,7 @@ contains
          associate (request => context%boundaries%items(i))
             if (request%step /= step) cycle
             dof = min(request%component, 3)
-            nodes = items_of(request, model%mesh%node_sets)
+            nodes = request%members(model%mesh%node_sets)
             n = 0
             do j = 1, size(nodes)
                if (given(dof, nodes(j)) > 0) then
@@ -314,15 +313,5 @@ contains
          end associate
       end do
    end subroutine check_conflicts
-
-   !> Nodes or elements that a request names.
-   pure function items_of(request, sets) result(items)
-      type(request_type), intent(in) :: request
-      type(set_type), intent(in) :: sets(:)     ! of nodes or of elements
-      integer, allocatable :: items(:)
-
-      items = [request%item]
-      if (request%set > 0) items = sets(request%set)%members
-   end function items_of
 
 end module load_checks

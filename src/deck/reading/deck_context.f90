@@ -9,7 +9,7 @@ module deck_context
    use deck_structure, only: report_twice
    use keywords, only: known_keywords
    use kinds, only: dp
-   use load_requests, only: request_list_type
+   use load_requests, only: request_list_type, target_type
    use mesh, only: set_type
    use named_items, only: find_named, named_type
    use quantity_types, only: quantity_type
@@ -19,7 +19,7 @@ module deck_context
    use time_points, only: time_points_type
    implicit none
    private
-   public :: deck_context_type, place_list_type, plane_by_element
+   public :: deck_context_type, item_index_type, place_list_type, plane_by_element
    public :: name_last, need_named, take_named, need_element_set, read_surface, read_target
    public :: report_unknown
 
@@ -32,13 +32,18 @@ module deck_context
       type(place_type), allocatable :: items(:)   !! the places
    end type place_list_type
 
+   !> Index of the numbers of nodes or of elements.
+   type, extends(number_index_type) :: item_index_type
+      character(:), allocatable :: noun           !! node or element
+   end type item_index_type
+
    !> State of the builder.
    type :: deck_context_type
       type(quantity_type), allocatable :: verifiable(:)   !! what *VERIFY may name
-      type(number_index_type) :: node_index               !! numbers of nodes -> indexes
-      type(number_index_type) :: element_index            !! numbers of elements -> indexes
+      type(item_index_type) :: node_index                 !! numbers of nodes -> indexes
+      type(item_index_type) :: element_index              !! numbers of elements -> indexes
       !> numbers of elements and, behind them, of lines -> indexes
-      type(number_index_type) :: member_index
+      type(item_index_type) :: member_index
       integer, allocatable :: line_number(:)              !! (lines) numbers of the lines
       integer, allocatable :: line_nodes(:, :)            !! (3, lines) indexes, 0 behind the last
       integer, allocatable :: line_kind(:)                !! (lines) drawn_line, ...
@@ -212,42 +217,38 @@ contains
    end subroutine report_lines
 
    !> Reads the field of a card that names one node or element by its number, or a set by its name.
-   subroutine read_target(data, position, noun, numbers, sets, report, item, set, valid)
+   subroutine read_target(data, position, numbers, sets, report, target, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
-      character(*), intent(in) :: noun                  !! node or element
-      type(number_index_type), intent(in) :: numbers    !! numbers -> indexes
+      type(item_index_type), intent(in) :: numbers      !! numbers -> indexes
       type(set_type), intent(in) :: sets(:)             !! sets that are known
       type(deck_report_type), intent(inout) :: report   !! receives errors
-      integer, intent(out) :: item                      !! index of the node or element, else 0
-      integer, intent(out) :: set                       !! index of the set, else 0
+      type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
       character(:), allocatable :: name
       integer :: number
       logical :: is_number
 
-      item = 0
-      set = 0
-      call need_field(data, position, noun//' or set', report, name, valid)
+      call need_field(data, position, numbers%noun//' or set', report, name, valid)
       if (len(name) == 0) return
       call read_integer(name, number, is_number)
       if (is_number) then
-         item = numbers%find(number)
+         target%item = numbers%find(number)
       else
-         set = find_named(sets, name)
+         target%set = find_named(sets, name)
       end if
-      if (set > 0) then
-         if (sets(set)%of_lines) call report_lines(sets(set)%name, field_place(data, position), &
-            report, valid)
+      if (target%set > 0) then
+         if (sets(target%set)%of_lines) call report_lines(sets(target%set)%name, &
+            field_place(data, position), report, valid)
       end if
-      if (item > 0 .or. set > 0) return
+      if (target%item > 0 .or. target%set > 0) return
       valid = .false.
       if (.not. (is_number .or. verify(name, '0123456789') == 0)) then
-         call report_unknown(noun//' set', to_upper(name), sets, &
+         call report_unknown(numbers%noun//' set', to_upper(name), sets, &
             field_place(data, position), report)
       else if (.not. numbers%is_empty()) then
-         call report%missing(field_place(data, position), 'there is no '//noun//' '//name, noun, &
-            name)
+         call report%missing(field_place(data, position), 'there is no '//numbers%noun//' '// &
+            name, numbers%noun, name)
       end if
    end subroutine read_target
 

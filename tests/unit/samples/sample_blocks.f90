@@ -5,11 +5,12 @@ module sample_blocks
    use elasticity, only: isotropic_elasticity
    use element_kinds, only: plane_strain, quad8
    use errors, only: error_type
-   use increments, only: simulation_type
+   use increments, only: advance
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
    use records, only: increment_record_type
+   use simulation, only: simulation_type
    use steps, only: analysis_static, boundary_type, load_pressure, load_type
    implicit none
    private
@@ -131,7 +132,7 @@ contains
       call simulation%start(model, error)
       do while (.not. allocated(error))
          if (simulation%finished(model)) exit
-         call simulation%advance(model, record, error)
+         call advance(simulation, model, record, error)
       end do
       if (allocated(error)) failure = error%message
       call simulation%release()

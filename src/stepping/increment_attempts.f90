@@ -1,0 +1,269 @@
+!> An attempt at an increment, stage by stage.
+module increment_attempts
+   use clock, only: wall_seconds
+   use constraint_checks, only: check_prescribed_ties
+   use controls, only: method_newton
+   use coupled_increment, only: differ
+   use due_output, only: stability_is_due
+   use errors, only: error_type, set_error, status_no_convergence
+   use friction_heating, only: nodal_friction_heat
+   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, strain_rate
+   use increment_checks, only: check_heat, check_record, warn_of_choices, warn_of_tables
+   use increment_data, only: increment_data_type, increment_workspace_type, stage_type
+   use increment_records, only: complete_record
+   use increment_solution, only: begin_increment, recover_fields, solve_points
+   use kinds, only: dp
+   use load_histories, only: step_clock_type
+   use model, only: model_type
+   use records, only: add_attempts, increment_record_type
+   use shock_checks, only: note_shock
+   use simulation, only: simulation_type
+   use solution_state, only: solution_state_type
+   use steps, only: solves_heat, solves_mechanics
+   use unconstrained_bodies, only: unconstrained_now
+   implicit none
+   private
+   public :: attempt_increment, begin_record
+
+   !> A stage that is being solved.
+   type :: trial_type
+      type(increment_data_type) :: data
+      type(increment_workspace_type) :: workspace
+      type(solution_state_type) :: next           !! state at its end
+      type(increment_record_type) :: record
+      !> (m) conductances of a solution with other corrections, where there is one
+      real(dp), allocatable :: omega_start(:)
+   end type trial_type
+
+contains
+
+   !> Tries an increment that ends at an instant, stage by stage. The state of the run stays; what
+   !> else an attempt leaves behind, loads and factors, the next one sets anew.
+   subroutine attempt_increment(run, model, clock, next, record, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(step_clock_type), intent(in) :: clock            !! its end
+      type(solution_state_type), intent(out) :: next        !! state there
+      type(increment_record_type), intent(out) :: record
+      type(error_type), allocatable, intent(out) :: error
+      type(solution_state_type) :: before
+      type(stage_type) :: stage
+      type(trial_type) :: first, last
+
+      before = run%state
+      stage%clock = clock
+      stage%of_increment = clock
+      stage%size = clock%step_time - run%control%step_time
+      associate (step => model%steps(run%control%step))
+         if (step%is_transient) call begin_first_stage(run, model, stage, before)
+         if (.not. stage%is_last) then
+            call solve_stage(run, model, stage, before, first, error)
+            if (allocated(error)) then
+               record = first%record
+               return
+            end if
+            call begin_second_stage(run, model, first%next, before, stage)
+            before = first%next
+         end if
+         call solve_stage(run, model, stage, before, last, error)
+         next = last%next
+         record = last%record
+         if (first%record%increment > 0) call add_attempts(first%record, record)
+         if (run%branch%is_followed .and. .not. allocated(error)) then
+            if (any(differ(next%omega, run%branch%point%omega))) call set_error(error, &
+               status_no_convergence, 'the increment leads to another branch')
+         end if
+         if (.not. step%is_transient .or. allocated(error)) return
+         if (first%record%increment > 0) before%temperature = run%state%temperature + stage%jump
+         call measure_changes(run, model, before, next, record)
+         if (run%control%increments_of_step == 0) call note_shock(model, stage%jump, &
+            run%control%size_to(clock), record)
+      end associate
+   end subroutine attempt_increment
+
+   !> Solves a stage of an increment, mostly the only one; the last one is recorded.
+   subroutine solve_stage(run, model, stage, before, trial, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before
+      type(trial_type), intent(out) :: trial
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: since
+
+      call run%loads%move_to(stage%clock, model)
+      call check_prescribed_ties(model, run%bodies, run%loads, run%control%step, error)
+      call begin_record(run, model, stage%of_increment, trial%record)
+      if (allocated(error)) return
+      trial%next = before
+      associate (step => model%steps(run%control%step), bodies => run%bodies, &
+         next => trial%next, record => trial%record)
+         next%increment_size = stage%size
+         ! (3.4) asks for them at the start of the next increment, whether this one solves heat or
+         ! not.
+         if (any(solves_heat(model%steps%analysis))) then
+            next%sources%load = run%loads%heat_load()
+            next%sources%film = run%loads%film_matrix()
+         end if
+         next%force_load = run%loads%nodal_forces()
+         call solve_corrected(run, model, stage, before, trial, error)
+         if (allocated(error)) return
+         if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &
+            trial%workspace%contact, run%loads, next, record, run%undecided)
+         if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
+         if (stage%is_last) then
+            since = wall_seconds()
+            call complete_record(bodies, model, run%recovery, run%loads, trial%data, next, record)
+            run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
+            call warn_of_tables(model, record)
+            if (stability_is_due(record, model)) run%solved = trial%workspace%of_motions()
+            call check_record(record, step%analysis, error)
+            if (allocated(error)) return
+         end if
+         call move_alloc(trial%workspace%known, run%known)
+      end associate
+   end subroutine solve_stage
+
+   !> Solves the fields of a stage until its corrections are those of its solution.
+   subroutine solve_corrected(run, model, stage, before, trial, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before
+      type(trial_type), intent(inout) :: trial
+      type(error_type), allocatable, intent(out) :: error
+      type(solution_state_type) :: fresh
+      type(increment_workspace_type) :: fresh_workspace
+
+      associate (corrections => run%corrections, step => model%steps(run%control%step))
+         if (.not. corrections%corrects) then
+            call solve_fields(run, model, stage, before, trial, error)
+            return
+         end if
+         fresh = trial%next
+         call corrections%begin(model, run%bodies, stage, before, &
+            takes_past=abs(step%scheme%b(1)) > 0.0_dp)
+         do
+            call solve_fields(run, model, stage, before, trial, error)
+            if (allocated(error)) return
+            call corrections%correct(model, run%bodies, stage, trial%next, error)
+            if (allocated(error)) return
+            if (corrections%is_settled) exit
+            if (corrections%asks_operators) then
+               call renew_operators(run, model, stage, before, trial%next, error)
+               if (allocated(error)) return
+            end if
+            trial%omega_start = trial%next%omega
+            trial%next = fresh
+            trial%workspace = fresh_workspace
+         end do
+         call corrections%keep(run%bodies, before, trial%next)
+         trial%record%corrections = corrections%passes
+         trial%record%has_new_operators = corrections%is_renewed
+      end associate
+   end subroutine solve_corrected
+
+   !> Forms the operators at the solution of a stage, and goes on from it.
+   !> Errors: as reduce.
+   subroutine renew_operators(run, model, stage, before, next, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before, next
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (bodies => run%bodies)
+         call bodies%move_operators(model, next%temperature)
+         call run%corrections%renew(model, bodies, stage, before, next)
+         if (solves_mechanics(model%steps(run%control%step)%analysis)) call bodies%reduce(model, &
+            run%heats(run%in_use)%node_rank, error)
+      end associate
+   end subroutine renew_operators
+
+   !> Solves the fields of a stage with the present corrections of its operators.
+   subroutine solve_fields(run, model, stage, before, trial, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before
+      type(trial_type), intent(inout) :: trial
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: since
+
+      associate (step => model%steps(run%control%step), bodies => run%bodies, &
+         data => trial%data, workspace => trial%workspace, next => trial%next)
+         workspace%record%increment = trial%record%increment
+         call begin_increment(bodies, step, before, next, data)
+         if (step%is_transient) then
+            call data%equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
+               before%stored)
+            data%friction%duration = stage%duration
+            if (allocated(stage%slip_before)) data%friction%slip_before = stage%slip_before
+         end if
+         if (run%corrections%corrects) call run%corrections%give(data%equation, next)
+         if (allocated(trial%omega_start)) data%omega_start = trial%omega_start
+         if (run%branch%is_followed) then
+            data%omega_start = run%branch%point%omega
+            data%fixed_point%method = method_newton
+         end if
+         if (solves_heat(step%analysis)) then
+            call run%reduce_heat(model, data%equation%left_film(bodies%capacity), error)
+            if (allocated(error)) return
+         end if
+         since = wall_seconds()
+         ! An increment that fails leaves nothing behind, not even in the last digits.
+         if (allocated(run%known)) workspace%known = run%known
+         call solve_points(bodies, run%heats(run%in_use), run%loads, data, workspace, next, &
+            error)
+         trial%record%solution_report_type = workspace%record
+         run%seconds%iterate = run%seconds%iterate + (wall_seconds() - since)
+         if (solves_heat(step%analysis)) then
+            call check_heat(model, bodies, run%loads, run%control%step, &
+               data%equation%contact_diagonal(next%omega) > 0.0_dp, error)
+         end if
+         if (allocated(error)) then
+            if (workspace%contact%driven) error%message = error%message// &
+               unconstrained_now(model, bodies%points, bodies%laws%friction%coefficient > 0.0_dp, &
+               run%loads%displacement%active, next%contact%contact_state)
+            return
+         end if
+         since = wall_seconds()
+         call recover_fields(bodies, run%heats(run%in_use), run%loads, data, workspace, next)
+         if (step%is_transient) then
+            next%stored = data%equation%stored_rate(bodies%capacity, next%temperature)
+            associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
+               if (allocated(data%friction%made)) next%stored = next%stored - b(1)/a(1)* &
+                  nodal_friction_heat(bodies, data%friction%late_start(before%friction_heat))
+            end associate
+         end if
+         run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
+      end associate
+   end subroutine solve_fields
+
+   !> Which increment a record is of.
+   subroutine begin_record(run, model, clock, record)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(step_clock_type), intent(in) :: clock            !! its end
+      type(increment_record_type), intent(inout) :: record
+
+      record%increment = run%control%increments + 1
+      record%step = run%control%step
+      record%increment_in_step = run%control%increments_of_step + 1
+      record%last_of_step = clock%step_time >= clock%period
+      record%cut_backs = run%control%cut_backs
+      record%time = clock%total_time
+      associate (continuation => model%steps(run%control%step)%continuation)
+         if (continuation%is_on) then
+            record%last_of_step = run%branch%is_last
+            record%load_factor = clock%step_time/clock%period
+            record%is_fold = run%branch%is_fold
+            ! The load factor may fall, time does not.
+            record%time = run%control%step_start + clock%period*record%increment_in_step/ &
+               continuation%most_points
+         end if
+      end associate
+      record%load = run%loads%axis_value(model, record%time)
+   end subroutine begin_record
+
+end module increment_attempts
