@@ -84,7 +84,7 @@ def draw(results, options):
     grid = figure.add_gridspec(3, len(runs), height_ratios=[1.7, 1.0, 1.0])
     first = None
     for column, run in enumerate(runs):
-        first = draw_residuals(figure, grid[0, column], run, first, len(runs) > 1)
+        first = draw_residuals(figure, grid[0, column], run, first)
     counts = figure.add_subplot(grid[1, :])
     relaxation = figure.add_subplot(grid[2, :], sharex=counts)
     for number, run in enumerate(runs):
@@ -101,7 +101,7 @@ def draw(results, options):
     return style.write(figure, columns, options, name)
 
 
-def draw_residuals(figure, place, run, first, several):
+def draw_residuals(figure, place, run, first):
     """Draw residual against iteration, a line for each try; return the axes that set the scale."""
     axes = figure.add_subplot(place, sharey=first, sharex=first)
     for attempt in run.attempts:

@@ -24,7 +24,7 @@ module field_constraints
    use connections, only: connections_type, tie_points_type
    use held_points, only: held_directions, over_constrained
    use sparse_matrix, only: sparse_matrix_type
-   use sum_lists, only: add_terms, sum_list_type
+   use sum_lists, only: add_terms
    implicit none
    private
    public :: constrain_displacements, constrain_temperatures, in_cycle, stiffness_alone, &

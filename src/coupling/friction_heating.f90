@@ -14,7 +14,7 @@
 !> over the increment; all of it at the start where (3.4) is explicit, for mechanics come later.
 module friction_heating
    use closing_instant, only: contact_change_type
-   use contact_system, only: contact_open, contact_state_type, is_capped
+   use contact_system, only: contact_open, contact_state_type
    use controls, only: stage_part
    use friction_laws, only: friction_bound
    use heat_equation, only: heat_equation_type

@@ -11,7 +11,7 @@ module accuracy_lines
    use quantity_types, only: quantity_type
    use run_summaries, only: accuracy_words_type
    use summary, only: words_of
-   use text, only: append, counted, digits_above, few_digits, percent, string_type, to_text
+   use text, only: append, counted, digits_above, few_digits, percent, to_text
    use unit_labels, only: unit_in_words, unit_label
    implicit none
    private

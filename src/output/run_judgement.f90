@@ -6,7 +6,7 @@ module run_judgement
    use kinds, only: dp
    use mesh, only: extent_of
    use model, only: model_type
-   use records, only: contact_record_type, increment_record_type
+   use records, only: increment_record_type
    use solution_report, only: warning_type
    use state_tables, only: integers, logicals, reals, state_table_type
    use steps, only: solves_heat, solves_mechanics

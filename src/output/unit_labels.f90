@@ -2,7 +2,6 @@
 module unit_labels
    use model, only: unit_labels_type
    use run_summaries, only: or_blank
-   use steps, only: dof_temperature
    implicit none
    private
    public :: unit_label, unit_in_words

@@ -108,8 +108,8 @@ contains
          next%force_load = run%loads%nodal_forces()
          call solve_corrected(run, model, stage, before, trial, error)
          if (allocated(error)) return
-         if (solves_mechanics(step%analysis)) call warn_of_choices(model, bodies, &
-            trial%workspace%contact, run%loads, next, record, run%undecided)
+         if (solves_mechanics(step%analysis)) call warn_of_choices(run, model, &
+            trial%workspace%contact, next, record)
          if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
          if (stage%is_last) then
             since = wall_seconds()
@@ -218,8 +218,7 @@ contains
          trial%record%solution_report_type = workspace%record
          run%seconds%iterate = run%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
-            call check_heat(model, bodies, run%loads, run%control%step, &
-               data%equation%contact_diagonal(next%omega) > 0.0_dp, error)
+            call check_heat(run, model, data%equation%contact_diagonal(next%omega) > 0.0_dp, error)
          end if
          if (allocated(error)) then
             if (workspace%contact%driven) error%message = error%message// &

@@ -5,12 +5,11 @@ module increment_checks
    use element_kinds, only: element_node_count
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use kinds, only: dp
-   use loads, only: loads_type
    use materials, only: follows_temperature, property_keywords
    use mesh_bodies, only: body_name
    use model, only: follows_temperatures, model_type
    use records, only: increment_record_type
-   use reduced_bodies, only: reduced_bodies_type
+   use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
@@ -110,16 +109,15 @@ contains
    !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
    !> place of whatever error followed from it.
    !> Error: there are such bodies.
-   subroutine check_heat(model, bodies, loads, step, carries, error)
+   subroutine check_heat(run, model, carries, error)
+      type(simulation_type), intent(in) :: run                    !! with loads of the increment
       type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(loads_type), intent(in) :: loads                       !! loads of the increment
-      integer, intent(in) :: step                                 !! the step
       logical, intent(in) :: carries(:)                           !! (m) whether heat can cross
       type(error_type), allocatable, intent(inout) :: error
       character(:), allocatable :: words
 
-      words = undetermined_now(model, bodies%points, loads%temperature%active, step, carries)
+      words = undetermined_now(model, run%bodies%points, run%loads%temperature%active, &
+         run%control%step, carries)
       if (len(words) == 0) return
       if (allocated(error)) deallocate (error)
       call set_error(error, status_no_convergence, words)
@@ -180,28 +178,26 @@ contains
 
    !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
    !> and nothing holds, contact states of which friction allows several.
-   subroutine warn_of_choices(model, bodies, contact, loads, next, record, undecided)
+   subroutine warn_of_choices(run, model, contact, next, record)
+      type(simulation_type), intent(inout) :: run               !! with supports of the increment
       type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
       type(contact_workspace_type), intent(in) :: contact       !! of the solution
-      type(loads_type), intent(in) :: loads                     !! supports of the increment
       type(solution_state_type), intent(in) :: next             !! state at its end
       type(increment_record_type), intent(inout) :: record      !! receives the warning
-      character(:), allocatable, intent(inout) :: undecided     !! what was last warned of
       character(:), allocatable :: free, words
 
       words = ''
       if (contact%several) words = &
          'with so much friction other contact states satisfy all conditions, too'
       if (size(contact%unconstrained, 2) > 0 .or. any(next%idle)) then
-         free = unconstrained_now(model, bodies%points, bodies%laws%friction%coefficient > 0.0_dp, &
-            loads%displacement%active, merge(contact_open, next%contact%contact_state, &
-            next%idle .or. next%resting))
+         free = unconstrained_now(model, run%bodies%points, &
+            run%bodies%laws%friction%coefficient > 0.0_dp, run%loads%displacement%active, &
+            merge(contact_open, next%contact%contact_state, next%idle .or. next%resting))
          if (len(free) > 0) words = &
             free(3:)//'; no load drives it: the smallest movement is used'
       end if
-      if (words /= undecided .and. len(words) > 0) call record%warn(words)
-      undecided = words
+      if (words /= run%undecided .and. len(words) > 0) call record%warn(words)
+      run%undecided = words
    end subroutine warn_of_choices
 
 end module increment_checks

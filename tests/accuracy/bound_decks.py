@@ -3,7 +3,6 @@ geometry and loads are drawn at random with a fixed seed."""
 
 import sys
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT

@@ -169,7 +169,7 @@ def published_table(found, best):
     return table
 
 
-def coverage_table(found, best):
+def coverage_table(best):
     """Return the table of how often bands from coarser meshes hold what the finest says."""
     table = Table("How often the bands hold", ["meshes", *QUANTITIES], text="""Bands of the mesh as if finer meshes were not there, against what
 the finest says: share of the 43 loads from 60 to 900 C that lie within, and the rms of the bands.""")
@@ -294,7 +294,7 @@ def tables(folder):
                 partial(cylinder_pictures.convergence, off, best, steps, WHERE, AT)),
         """Error: deviation from the converged values. Black: root mean square over all loads, symbols: single temperatures, grey: within the band as
 it would be on each mesh. (f): root mean square of what halving the increments changes; dotted: on the published mesh.""",
-        published_table(found, best), changes_table(found, best), coverage_table(found, best),
+        published_table(found, best), changes_table(found, best), coverage_table(best),
         independent_table(folder, found),
         same_mesh_table(folder, found), *reading_tables(results),
         Picture("cylinder-readings.png", "Readings of the paper against ours",

@@ -5,12 +5,11 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
 import held_bounds
 import numpy as np
 from bound_decks import (FITTED, SEEDS, all_decks, drawn_deck, known_decks, mismatched_deck,
                          mismatched_decks)
-from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT, solve
+from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT
 from instructions import profile
 from program_parts import PARTS
 from report import PREFACE, Table, check_parts, rows
@@ -116,11 +115,6 @@ def case_deck(case, level, parts, folder, estimates, pairing="NODES"):
     deck = folder / f"{case.name.replace(' ', '_')}_{level}_{parts}.inp"
     deck.write_text(text)
     return deck
-
-
-def solve_case(case, level, parts, folder, estimates):
-    """Return the result file of a run."""
-    return solve(case_deck(case, level, parts, folder, estimates), seconds=900)
 
 
 def converged_values():

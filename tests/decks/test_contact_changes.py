@@ -13,8 +13,6 @@ from test_calculix_loads import step
 from test_hysteresis import PRESSURE, STIFFNESS, sheared
 from test_physics_contact import FACE, LOWER, SMOOTH, UPPER, YOUNG, static
 
-import conduction
-
 BLOCKS = [*UPPER, *LOWER, *material("UPPER", (YOUNG, 0.0), conductivity=2.0),
           *material("LOWER", (YOUNG, 0.0), conductivity=2.0),
           "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UPPER, 0.", "LOWER, 0."]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from blocks import write
 from changes import note_changes
-from deck_runs import INPUT, run, solve
+from deck_runs import INPUT, solve
 from physics import material, mesh, nodes_of
 from test_hysteresis import FRICTION, ONSET, PRESSURE, STIFFNESS, history, moves, sheared
 from test_patch import read, shear_deck

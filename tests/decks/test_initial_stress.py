@@ -15,7 +15,6 @@ import plates
 YOUNG, POISSON = 1000.0, 0.3
 # Points of the solid elements that CalculiX makes of plane ones.
 SOLID_POINTS = {"8": 27, "8R": 8, "4": 8, "6": 9, "3": 2}
-ON_ROLLERS = ["*BOUNDARY", "BODY.BOTTOM, 2", "1, 1"]
 # xx, yy, zz, xy; what is 0 in a plane is left out there.
 STRESS = np.array([7.0, -4.0, 5.0, 3.0])
 

@@ -115,7 +115,7 @@ OVERHANGS = [0.0, 1e-13, 1e-9, 1e-6, 1e-3, 0.03, 0.1, 0.12, 0.5, 0.9, 0.97, 1.0 
              1.0 + 1e-12, 1.0 + 1e-6, 1.3, 2.0]
 
 
-def overhanging(overhang, who, kind, side):
+def overhanging(overhang, who, side):
     """Return ends of sides of slave and master: one of them, of five sides, has the other one's
     length, 2, and this overhang at one end or both."""
     per_end = overhang * 2.0 / (5 - overhang * (2 if side == "both" else 1))
@@ -129,7 +129,7 @@ def overhanging(overhang, who, kind, side):
 def test_uniform_pressure_on_the_covered_part_whatever_the_overhang(tmp_path, kind, who, side):
     """The face that hangs over is held and isothermal. The other block, nu = 0, is a column."""
     for overhang in OVERHANGS:
-        upper, lower = overhanging(overhang, who, kind, side)
+        upper, lower = overhanging(overhang, who, side)
         held, free, outer = ("UP", "LOW", "LOW.BOTTOM")
         if who == "master":
             held, free, outer = ("LOW", "UP", "UP.TOP")
@@ -150,7 +150,7 @@ def test_forces_balance_whatever_the_overhang(tmp_path, kind, friction):
     for who in ("slave", "master"):
         ends = []
         for overhang in OVERHANGS[:-1]:
-            upper, lower = overhanging(overhang, who, kind, "both")
+            upper, lower = overhanging(overhang, who, "both")
             cards = joint(kind, upper, lower, friction=friction)
             to = turned(0.0)
             result = press(cards, "LOW.BOTTOM, 1, 2", "LOW.BOTTOM, 11, 11, 0.",

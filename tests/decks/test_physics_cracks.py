@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from blocks import without_unused_surfaces, write
 from deck_runs import solve
-from physics import follows, judge, material, mesh, nodes_of
+from physics import follows, material, mesh, nodes_of
 
 import crack
 import rods

@@ -62,7 +62,7 @@ def test_orientation_turns_the_stiffness(tmp_path):
     follows(tmp_path, lambda degrees: elastic_deck("CPE", CONSTANTS, degrees=degrees), 15.0, 20.0)
 
 
-def heated(family, expansion, degrees=0.0, start=5.0, rise=RISE, young=None):
+def heated(family, expansion, degrees=0.0, start=5.0, rise=RISE):
     """Return a body that is held on its sides and heated, and its checks."""
     turned = plates.turned(plates.engineering(*CONSTANTS.values()), degrees)
     alpha = plates.turned(np.diag(list(expansion.values())), degrees)

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 from changes import note_changes
-from deck_runs import run, solve
+from deck_runs import run
 from physics import mesh, material
 
 import rod_modes

@@ -8,7 +8,7 @@ import pytest
 from blocks import write
 from deck_runs import run
 from physics import follows, judge, material, mesh, nodes_of
-from test_gap_heat import SIGMA, ZERO, slabs
+from test_gap_heat import SIGMA, slabs
 from test_physics_schemes import step
 from test_values_contact import K, PRESSURE, pressed
 

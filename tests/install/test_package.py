@@ -3,23 +3,14 @@
 import os
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import h5py
 import pytest
+from commands import PROGRAM, ROOT, run
 
-ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = Path(os.environ["THERCON"])
 CYLINDER = "share/thercon/input/cylinder/cylinder.inp"
-
-
-def run(*command, **options):
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True,
-                          check=False, **options)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,6 @@ import pytest
 POST = Path(__file__).resolve().parents[2] / "post"
 sys.path.insert(0, str(POST))
 
-from synthetic import write_result  # noqa: E402
-
 from thercon_post import style  # noqa: E402
 from thercon_post.comparison.cli import main  # noqa: E402
 
@@ -49,14 +47,6 @@ def refused(compare):
         return said
 
     return call
-
-
-@pytest.fixture
-def result(tmp_path):
-    """Return the path of the usual synthetic result."""
-    path = tmp_path / "case.vtkhdf"
-    write_result(path)
-    return path
 
 
 def write_csv(path, columns):

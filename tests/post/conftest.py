@@ -1,5 +1,24 @@
-"""Registers the marks of tests/decks, whose decks some tests here use."""
+"""Fixtures of several tests, and the marks of tests/decks, whose decks some tests here use."""
+
+import pytest
+from browser import Browser
+from synthetic import write_result
 
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "changes(*cards): of tests/decks")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Return a headless browser."""
+    with Browser() as opened:
+        yield opened
+
+
+@pytest.fixture
+def result(tmp_path):
+    """Return the path of the usual synthetic result."""
+    path = tmp_path / "case.vtkhdf"
+    write_result(path)
+    return path

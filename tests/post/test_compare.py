@@ -11,7 +11,6 @@ from comparing import (  # noqa: F401  fixtures
     compare,
     line_of,
     refused,
-    result,
     write_csv,
 )
 from synthetic import edge_of_contact, write_result

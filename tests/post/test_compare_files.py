@@ -22,7 +22,6 @@ from comparing import (  # noqa: F401  fixtures
     compare,
     line_of,
     refused,
-    result,
     write_csv,
 )
 from program import CYLINDER, run

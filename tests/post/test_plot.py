@@ -96,7 +96,7 @@ def kept(unrendered, draw, monkeypatch):
 
 
 @pytest.fixture
-def fail(tmp_path, capsys):
+def fail(capsys):
     """Return a function that calls plot, expects exit status 2, and gives the message."""
 
     def call(*arguments):
@@ -107,14 +107,6 @@ def fail(tmp_path, capsys):
         return captured.err
 
     return call
-
-
-@pytest.fixture
-def result(tmp_path):
-    """Return the path of the usual synthetic result."""
-    path = tmp_path / "case.vtkhdf"
-    write_result(path)
-    return path
 
 
 def table(tmp_path, name):

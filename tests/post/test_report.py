@@ -14,7 +14,6 @@ from PIL import Image
 POST = Path(__file__).resolve().parents[2] / "post"
 sys.path.insert(0, str(POST))
 
-from browser import Browser  # noqa: E402
 from program import CYLINDER, run, write_deck  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
@@ -36,13 +35,6 @@ def cylinder(tmp_path_factory):
     assert status == 4, said
     assert main([str(folder / "cylinder.vtkhdf"), "--out", str(folder)]) == 0
     return folder
-
-
-@pytest.fixture(scope="module")
-def browser():
-    """Return a headless browser."""
-    with Browser() as opened:
-        yield opened
 
 
 @pytest.fixture

@@ -14,7 +14,6 @@ import pytest
 POST = Path(__file__).resolve().parents[2] / "post"
 sys.path.insert(0, str(POST))
 
-from browser import Browser  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
 from thercon_post.report.cli import main  # noqa: E402
@@ -67,13 +66,6 @@ IN_RUN = ("unit_length", "unit_stress", "unit_power", "unit_temperature", "headi
           "solver", "modelled")
 NAMED = ("contact", "quantity", "sum", "history", "file")
 SHOWN = (*IN_LISTING, *IN_RUN, *NAMED, "label", "unit")
-
-
-@pytest.fixture(scope="module")
-def browser():
-    """Return a headless browser."""
-    with Browser() as opened:
-        yield opened
 
 
 @pytest.fixture(scope="module")

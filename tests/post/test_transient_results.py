@@ -13,7 +13,6 @@ sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "post")]
 
 import calculix  # noqa: E402
 import transients as two  # noqa: E402
-from browser import Browser  # noqa: E402
 from comparing import coarse_pictures, compare, line_of  # noqa: E402, F401  fixtures
 from deck_runs import solve  # noqa: E402
 
@@ -33,13 +32,6 @@ def result(tmp_path_factory):
     times, = two.history(found, "time")
     assert np.diff(times).max() > 100 * times[0]
     return found
-
-
-@pytest.fixture(scope="module")
-def browser():
-    """Return a headless browser."""
-    with Browser() as opened:
-        yield opened
 
 
 LOOK = """const of = id => document.getElementById(id);

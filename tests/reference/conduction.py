@@ -24,12 +24,6 @@ def heated_wall(x, thickness, conductivity, source, left, right):
     return left + (right - left) * x / thickness + source * x * (thickness - x) / (2 * conductivity)
 
 
-def heated_wall_with_film(x, thickness, conductivity, source, film, sink):
-    """The same, insulated at x = 0 and with a film at x = thickness."""
-    x = np.asarray(x, float)
-    return sink + source * thickness / film + source * (thickness**2 - x**2) / (2 * conductivity)
-
-
 def tube(r, inner, outer, inside, outside):
     """Temperature in a tube with its faces at two temperatures."""
     return inside + (outside - inside) * np.log(np.asarray(r, float) / inner) / np.log(outer / inner)

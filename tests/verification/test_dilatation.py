@@ -10,7 +10,7 @@ from physics import material, mesh, nodes_of
 from test_transients import FINENESS, allowed, heat, label, start
 
 import transient
-from thermoelastic import Solid, time_constant
+from thermoelastic import Solid
 
 TITLE = "Heat of strains"
 TEXT = """Steps with DILATATION=YES, with increments of one length and the default scheme, L-STABLE.

@@ -353,8 +353,8 @@ contains
       character(:), allocatable :: meaning
 
       associate (gap => contact%clearance + interference)
-         if (abs(contact%clearance - interference) <= 0.0_dp .and. abs(gap) > 0.0_dp) &
-            call report%warning(field_place(data, 3), contact%title()//': the interference and '// &
+         if (abs(contact%clearance - interference) <= 0.0_dp .and. abs(gap) > 0.0_dp) call &
+            report%warning(field_place(data, 3), contact%title()//': the interference and '// &
             'the *CLEARANCE are both '//to_text(interference)//', and the faces begin with the '// &
             'sum, '//to_text(gap)//'; give a gap that stays by *CLEARANCE alone, one that the '// &
             'step takes away by *CONTACT INTERFERENCE alone')

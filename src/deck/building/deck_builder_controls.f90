@@ -10,8 +10,7 @@ module deck_builder_controls
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
       start_both, start_closed, start_given, start_open, start_previous, start_type, &
       thermal_scheme_type
-   use deck_context, only: deck_context_type, need_named, report_unknown, &
-      take_named
+   use deck_context, only: deck_context_type, report_unknown, take_named
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use mesh, only: mesh_type, set_type

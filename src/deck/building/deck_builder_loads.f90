@@ -1,6 +1,5 @@
 !> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
-   use amplitudes, only: amplitude_type
    use card_parameters, only: choose, has_parameter, parameter_place, parameter_text
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, field_text, keyword_card_type

@@ -16,7 +16,7 @@ module deck_builder_materials
    use kinds, only: dp
    use materials, only: anisotropic, engineering, isotropic, material_type, orientation_type, &
       orthotropic, property_keywords, property_type, set_property
-   use mesh, only: mesh_type, set_type
+   use mesh, only: mesh_type
    use model, only: model_type
    use named_items, only: find_named
    use text, only: to_text

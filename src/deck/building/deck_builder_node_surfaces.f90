@@ -9,6 +9,7 @@ module deck_builder_node_surfaces
    use element_kinds, only: element_corner_count
    use element_sides, only: element_sides_type, find_sides
    use kinds, only: dp
+   use load_requests, only: target_type
    use mesh, only: mesh_type
    use text, only: to_text, to_upper
    implicit none
@@ -49,7 +50,8 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
       logical, allocatable, intent(out) :: named(:)      ! (nodes)
-      integer :: j, node, set
+      type(target_type) :: target
+      integer :: j
       logical :: valid
       real(dp) :: area
 
@@ -57,8 +59,7 @@ contains
       do j = card%first_data, card%last_data
          associate (data => cards%data(j))
             valid = .true.
-            call read_target(data, 1, 'node', context%node_index, mesh%node_sets, report, node, &
-               set, valid)
+            call read_target(data, 1, context%node_index, mesh%node_sets, report, target, valid)
             if (has_field(data, 2)) then
                call take_field(data, 2, 'area', report, area, valid)
                call context%note('*SURFACE, TYPE=NODE: areas are ignored: those of the faces '// &
@@ -66,8 +67,7 @@ contains
             end if
             call check_extra(data, 2, 'node or set, area', report)
             if (.not. valid) cycle
-            if (node > 0) named(node) = .true.
-            if (set > 0) named(mesh%node_sets(set)%members) = .true.
+            named(target%members(mesh%node_sets)) = .true.
          end associate
       end do
    end subroutine read_nodes

@@ -84,7 +84,7 @@ contains
    function nodes_of(cards, card, numbers) result(nodes)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
-      type(number_index_type), intent(in) :: numbers
+      type(item_index_type), intent(in) :: numbers
       integer, allocatable :: nodes(:)
       integer :: j, number
       logical :: is_number
