@@ -192,8 +192,7 @@ contains
       integer, allocatable :: elements(:)
 
       if (.not. valid) return
-      elements = [request%item]
-      if (request%set > 0) elements = mesh%element_sets(request%set)%members
+      elements = request%members(mesh%element_sets)
       valid = all(mesh%element_plane(elements) == axisymmetric)
       if (.not. valid) call report%error(field_place(data, 2), 'BR and BZ are forces on '// &
          'axisymmetric elements; those of a plane are BX and BY')
