@@ -28,6 +28,7 @@ module error_estimator
    use solution_state, only: solution_state_type
    use state_tables, only: integers, reals, state_table_type
    use steps, only: solves_heat
+   use temperature_laws, only: relative_jump
    use text, only: append, to_text
    implicit none
    private
@@ -258,7 +259,10 @@ contains
             call simulation%bodies%view(i, points)
             bounds = bounds_of_mesh(points, record%contacts(i), &
                change(:, i), self%histories%scatter(i, before), self%most_locked(i), &
-               self%energies(1)) + spread(:, i)
+               self%energies(1), jump_of(i))
+            ! Halved elements show how far another state moves an edge, but not which it is.
+            bounds = merge(max(bounds, spread(:, i)), bounds + spread(:, i), &
+               estimated%resolution > 0.0_dp .and. .not. ieee_is_nan(bounds))
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
                left_by_round*abs(self%histories%change_since(i, before)))
          end associate
@@ -268,6 +272,22 @@ contains
             find_quantity(estimated, 'edge_contact'), i))//' from this one: the conductance '// &
             'jumps there, and increments decide which is found; the bounds have both')
       end do
+
+   contains
+
+      !> Jump of the conductance of an interface where heat crosses it and moves the faces.
+      real(dp) function jump_of(interface) result(jump)
+         integer, intent(in) :: interface
+
+         associate (bodies => simulation%bodies, &
+            start => simulation%bodies%points%interface_start)
+            jump = 0.0_dp
+            if (.not. bodies%is_coupled) return
+            if (abs(record%contacts(interface)%heat_rate) > 0.0_dp) jump = maxval(relative_jump( &
+               bodies%laws%conductance(start(interface):start(interface + 1) - 1)))
+         end associate
+      end function jump_of
+
    end subroutine bound_mesh
 
    !> Bounds of the errors of the increments, from those of twice the size. Maxima of bodies err by

@@ -4,9 +4,10 @@
 !> single load this is partly chance, for errors change their sign as the edge of contact passes a
 !> node; so the scatter of a quantity over the increments before is added. What friction locked in
 !> while the contact grew over the nodes is known from the old mesh only: its error is a part of the
-!> stuck shear forces that falls with the spacing. An edge lies anywhere within a part of the
-!> spacing beyond what halved elements move it by. It also moves by as large a part of the contact
-!> as the force is uncertain by.
+!> stuck shear forces that falls with the spacing. The error of an edge depends on where it lies
+!> between two nodes, and is far smaller on halved elements: it is nearly what these move it by, and
+!> a part of the spacing for what they leave. Elements that are not halved move it by as large a
+!> part of the contact as they change the force by.
 !>
 !> docs/accuracy.md says on which decks the constants were chosen and which judge them.
 module mesh_bounds
@@ -34,11 +35,13 @@ module mesh_bounds
    !> Error of shear force, that with hats, and that of peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp
    real(dp), parameter :: of_locked_in_peak = 0.15_dp
-   !> Errors of edges in the spacing: one at a node itself, and one of stick where contact ends too;
-   !> of others the table of quantities tells.
-   real(dp), parameter :: at_node = 0.25_dp, of_both = 0.15_dp
-   !> Error of an edge of contact that means with hats tell, in that which gaps of nodes tell.
-   real(dp), parameter :: of_hats = 3.0_dp
+   !> Error of an edge of contact in what halved elements move it by. The part of the spacing is in
+   !> the table of quantities; it is larger where means with hats tell the edge, and grows by the
+   !> relative jump of the conductance there: heat enters up to a node, an error of first order.
+   real(dp), parameter :: of_edge_change = 1.5_dp, of_hats = 3.0_dp, of_jump = 1.0_dp
+   !> Error of an edge of stick in the spacing, beyond what halved elements move it by: where
+   !> contact ends too, and elsewhere. There it is at least that of the table of quantities.
+   real(dp), parameter :: of_both = 0.15_dp, of_stick = 0.4_dp
    real(dp), parameter :: same_place = 1.0e-6_dp    !! of the spacing
    !> Error of normal force and heat rate in the squared relative error of the energy norm that
    !> elements have that are not halved.
@@ -47,7 +50,7 @@ module mesh_bounds
 contains
 
    !> The bounds, for the quantities with an estimate; NaN where none can be given.
-   pure function bounds_of_mesh(points, contact, change, scatter, most_locked, energy) &
+   pure function bounds_of_mesh(points, contact, change, scatter, most_locked, energy, jump) &
       result(bounds)
       type(contact_points_type), intent(in) :: points    !! contact points of the interface
       type(contact_record_type), intent(in) :: contact   !! its state
@@ -56,6 +59,8 @@ contains
       real(dp), intent(in) :: most_locked                !! largest of locked_in so far
       !> Squared relative error of the energy norms left in elements that were not halved [-]
       real(dp), intent(in) :: energy
+      !> Jump of the conductance at an edge in the larger value there; 0 where no heat moves it [-]
+      real(dp), intent(in) :: jump
       real(dp) :: bounds(size(estimated))
       real(dp) :: known_scatter(size(estimated)), length, locked
       logical :: has_hats, is_alone(size(estimated))
@@ -87,7 +92,9 @@ contains
          peak = peak + rise_on_axis(points, contact%pressure)
          if (peaks_at_corner(points, contact)) peak = ieee_value(1.0_dp, ieee_quiet_nan)
       end associate
-      call bound_edges(points, contact, change, known_scatter, bounds)
+      call bound_edges(points, contact, change, known_scatter, 1.0_dp + of_jump*jump, bounds)
+      ! What is left in other elements; halved ones show how far the force moves an edge.
+      where (estimated%resolution > 0.0_dp) bounds = bounds + of_energy*energy*length
    end function bounds_of_mesh
 
    !> How far scatter counts. An edge of stick between node pairs lies within its part of the
@@ -105,29 +112,27 @@ contains
       known(find_quantity(estimated, 'edge_stick')) = 0.0_dp
    end function known
 
-   !> The bounds of both edges, from that of the normal force.
-   pure subroutine bound_edges(points, contact, change, scatter, bounds)
+   !> The bounds of both edges.
+   pure subroutine bound_edges(points, contact, change, scatter, of_nodes, bounds)
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
       real(dp), intent(in) :: change(:), scatter(:)
+      real(dp), intent(in) :: of_nodes      ! error of an edge of contact in its resolution
       real(dp), intent(inout) :: bounds(:)
-      real(dp) :: of_contact, shift
+      real(dp) :: part
 
-      shift = 0.0_dp
-      if (contact%normal_force > 0.0_dp) shift = bounds(find_quantity(estimated, &
-         'normal_force'))*closed_length(contact, points%arc_length)/contact%normal_force
       associate (outer => find_quantity(estimated, 'edge_contact'), &
          inner => find_quantity(estimated, 'edge_stick'))
-         of_contact = estimated(outer)%resolution*merge(of_hats, 1.0_dp, &
-            points%pairing == pairing_surfaces)
-         bounds(outer) = shift + edge_bound(points, contact%edge_contact, of_contact, 0.0_dp, &
-            change(outer))
+         part = estimated(outer)%resolution*of_nodes
+         if (points%pairing == pairing_surfaces) part = of_hats*part
+         bounds(outer) = edge_bound(points, contact%edge_contact, change(outer), &
+            [of_edge_change, part, 0.0_dp])
          if (ends_with_contact(points, contact)) then
-            bounds(inner) = shift + edge_bound(points, contact%edge_stick, &
-               max(of_both, of_contact), 0.0_dp, change(inner))
+            bounds(inner) = edge_bound(points, contact%edge_stick, change(inner), &
+               [of_edge_change, max(of_both, part), 0.0_dp])
          else
-            bounds(inner) = shift + scatter(inner) + edge_bound(points, contact%edge_stick, &
-               estimated(inner)%resolution, estimated(inner)%resolution, change(inner))
+            bounds(inner) = scatter(inner) + edge_bound(points, contact%edge_stick, &
+               change(inner), [1.0_dp, of_stick, estimated(inner)%resolution])
          end if
       end associate
    end subroutine bound_edges
@@ -152,23 +157,17 @@ contains
          (square(2) - square(1)))
    end function rise_on_axis
 
-   !> A part of the spacing, and of_change what the edge moves by: its error falls with the spacing,
-   !> all the more where heat follows the edge and moves it on. An edge of stick is so noisy that
-   !> finer nodes alone move it.
-   pure real(dp) function edge_bound(points, edge, part, noise, change) result(bound)
+   !> A part of what halved elements move an edge by and one of the spacing, and at least a third
+   !> part, of the spacing.
+   pure real(dp) function edge_bound(points, edge, change, parts) result(bound)
       type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: edge, change
-      real(dp), intent(in) :: part, noise     ! in the spacing
-      real(dp) :: spacing
+      real(dp), intent(in) :: edge, change, parts(3)
 
       ! Where there is no edge, or none on the finer mesh, nothing is known.
       bound = change + edge
       if (ieee_is_nan(bound)) return
-      spacing = nodal_spacing(points, edge)
-      bound = part*spacing
-      if (any(abs(points%arc_length - edge) <= same_place*spacing)) bound = max(part, at_node)* &
-         spacing
-      bound = bound + of_change*max(0.0_dp, abs(change) - noise*spacing)
+      bound = max(parts(1)*abs(change) + parts(2)*nodal_spacing(points, edge), &
+         parts(3)*nodal_spacing(points, edge))
    end function edge_bound
 
    !> Spacing of the slave's nodes at an edge.

@@ -14,6 +14,7 @@ module temperature_laws
    implicit none
    private
    public :: face_temperatures_type, law_at, temperature_derivatives, law_jumps, largest_jump
+   public :: relative_jump
    public :: is_below_zero, radiation_ends
 
    !> Temperatures of the two faces at a contact point.
@@ -127,23 +128,26 @@ contains
    !> Whether the law jumps at gamma = p = 0 by more than rounding, at any temperature.
    elemental logical function law_jumps(law)
       type(conductance_law_type), intent(in) :: law      !! as the deck has it
-
-      if (.not. varies_with_temperature(law)) then
-         law_jumps = jumps_here(law)
-      else
-         law_jumps = radiation_ends(law)
-         if (.not. law_jumps) law_jumps = jumps_here(law_at(law, largest_jump(law)))
-      end if
-   end function law_jumps
-
-   !> The same with the values that the law has.
-   pure logical function jumps_here(law)
-      type(conductance_law_type), intent(in) :: law
       real(dp), parameter :: rounding = 1.0e-12_dp
 
-      jumps_here = abs(law_jump(law)) > rounding*max(conductance(law, .true., 0.0_dp, 0.0_dp), &
-         conductance(law, .false., 0.0_dp, 0.0_dp))
-   end function jumps_here
+      law_jumps = radiation_ends(law)
+      if (.not. law_jumps) law_jumps = relative_jump(law) > rounding
+   end function law_jumps
+
+   !> The jump of the law at gamma = p = 0 in the larger value there, at the temperatures at which
+   !> it is largest [-].
+   elemental real(dp) function relative_jump(law)
+      type(conductance_law_type), intent(in) :: law      !! as the deck has it
+      type(conductance_law_type) :: there
+      real(dp) :: larger
+
+      there = law
+      if (varies_with_temperature(law)) there = law_at(law, largest_jump(law))
+      larger = max(conductance(there, .true., 0.0_dp, 0.0_dp), &
+         conductance(there, .false., 0.0_dp, 0.0_dp))
+      relative_jump = 0.0_dp
+      if (larger > 0.0_dp) relative_jump = abs(law_jump(there))/larger
+   end function relative_jump
 
    !> Whether faces radiate until they meet, and no longer when they have.
    elemental logical function radiation_ends(law)

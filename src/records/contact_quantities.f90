@@ -25,10 +25,10 @@ module contact_quantities
       quantity_type('peak_pressure', of_interface, 'stress', head='peak', is_estimated=.true., &
       is_traded=.true., is_published=.false., description='largest contact pressure'), &
       quantity_type('edge_contact', of_interface, 'length', label='edge of contact s =', &
-      head='contact', is_estimated=.true., is_traded=.true., resolution=0.08_dp, &
+      head='contact', is_estimated=.true., is_traded=.true., resolution=0.05_dp, &
       description='outer edge of the contact zone with the largest s; NaN: none'), &
       quantity_type('edge_stick', of_interface, 'length', label='of stick s =', head='stick', &
-      is_estimated=.true., is_traded=.true., resolution=0.9_dp, &
+      is_estimated=.true., is_traded=.true., resolution=0.7_dp, &
       description='outer edge of the widest stick zone; NaN: none'), &
       quantity_type('edges_contact', of_interface, 'length', values=edges_kept, &
       description='s of all edges of contact, ascending, padded with NaN'), &

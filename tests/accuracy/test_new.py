@@ -152,8 +152,8 @@ def told_shares():
         if row["problem"] != "all":
             found.append([row["problem"], f"largest {row['largest']}", row["held, kept aside"],
                           1 / float(row["least bound/error"]), row["kept aside"]])
-    for row in rows("Edges of contact of all families"):
-        found.append([row["family"], "edge of contact", *(row[name] for name in HEAD[3:])])
+    for row in rows("Edges of all families"):
+        found.append([row["family"], f"edge of {row['edge of']}", *(row[name] for name in HEAD[3:])])
     return found
 
 

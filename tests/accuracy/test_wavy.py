@@ -1,70 +1,114 @@
-"""Bounds of the edge of contact on wavy faces and other periodic profiles, with heat and without, against
-closed forms and a spectral solution (wavy_faces)."""
+"""Bounds of the edges of contact and of stick on families of faces, with heat and without, against closed
+forms and independent solutions (wavy_faces, edge_solutions)."""
 
 import h5py
 import numpy as np
+import edge_solutions
 import wavy_faces
 from deck_runs import run
 from report import Table, check_parts, rows
 
-TITLE = "Bounds of edges on wavy faces"
+TITLE = "Bounds of edges against known solutions"
 TEXT = """
-An elastic half-space is pressed on a hard face of a periodic profile, with 24 to 40 elements a wave, in 1, 5
-or 10 increments, with node pairs and with mortar points; width of the contact, heat, mesh and increments are
-drawn. Without heat and with heat into or out of the half-space through a perfect contact the edge is known
-in closed form (Westergaard; Panek and Dundurs). Where the conductance is continuous in gap and pressure, and
-for the families that chose no constant, it is that of a spectral solution
-(`tests/accuracy/wavy_faces.py`), which is accurate to 1 % of the spacing: smaller errors are not judged. Each
-deck is solved on the mesh as it is, half of them refined once as well. The constants of the edge of contact
-were chosen on seeds below 2 modulo 4; the families that chose none are flat punches with round edges, wedges, and two elastic bodies
-of other materials, all with heat.
+An elastic half-space is pressed on a hard face, with node pairs and with mortar points; width of the contact,
+heat, mesh, increments and whatever else a family has are drawn. The half-space has the period 1 in a plane, or
+is inside a smooth tube, so that a block of finite depth has the same edges.
+
+| family | face | edge by |
+|---|---|---|
+| cold; heat in; heat out | a cosine, without heat and with heat through a perfect contact | closed forms: Westergaard; Panek and Dundurs |
+| continuous, heat in; heat out | the same, conductance continuous in gap and pressure | spectral solution |
+| punches with round edges; wedges; two elastic bodies | the same, other faces, and both bodies elastic | spectral solution |
+| cylinder and sphere, cold; hot | parabolas (Hertz), with heat through a perfect contact into or out of them (Barber) | Galerkin's method, transforms of the fields being Bessel functions |
+| receding layer | a layer on a half-space, pressed on a part of its top (Keer, Dundurs and Tsai) | the same |
+| Cattaneo and Mindlin | shear after pressure, equal bodies on a cosine: edges of contact and of stick | closed form |
+| Spence | pressure alone, rough rigid cylinder, 10 to 40 increments: edges of contact and of stick | cell by cell |
+
+Meshes have 24 to 40 elements a period, the last four kinds 16 to 48, and 1 to 20 increments. All but Cattaneo and
+Mindlin were refined once as well, seeds below 8. The solutions are accurate to 1 % of the spacing, that of Spence's
+edge of stick to 10 %: smaller errors are not judged (`tests/accuracy/wavy_faces.py`).
+
+The constants of the edges were chosen on seeds below 2 modulo 4 of this table and on some decks of *Bounds of
+errors*; seeds 100 to 119 of closed forms, which are not in it, chose them as well. Punches, wedges and two elastic
+bodies chose none. *Drawn last* are seeds 16 to 23, on the meshes as they are: they were solved once, after the
+constants and the form of the bounds were final; then the widening by a jump was made proportional to it, which
+changes nothing where it is complete or no heat flows, as in these. Of the decks that chose no constant, 271 of 274
+edges of contact hold, but 30 of 33 edges of stick only: 91 %, less than the goal of 95 %.
 """
-LEAST = 0.01           # of the spacing: errors that the spectral solution may have
+LEAST = {"edge_contact": 0.01, "edge_stick": 0.1}    # of the spacing: errors that the solutions may have
+POINTS = ("node pairs", "mortar points")
+QUANTITIES = {"edge_contact": "contact", "edge_stick": "stick"}
 LEVELS = {0: wavy_faces.SEEDS, 1: range(8)}   # refinements, and the seeds solved with them
-TESTED = (("cold", 1), ("cold", 2), ("heat in", 1), ("heat out", 4))
-
-
-def is_chosen(seed):
-    """Return whether the constants were chosen on the decks of a seed."""
-    return seed % 4 < 2
+TESTED = (("cold", 1), ("cold", 2), ("heat in", 1), ("heat out", 4), ("sphere, hot", 0), ("Spence", 1),
+          ("Cattaneo and Mindlin", 2))
 
 
 def judged(face, level, folder):
-    """Return error and bound of the edge of contact in the spacing; NaN where the deck has no solution, the
+    """Return error and bound of each known edge in the spacing; NaN where the deck has no solution, the
     bound alone where it is uncertain."""
     path = folder / f"{face.name.replace(' ', '_').replace(',', '')}_{level}.inp"
     cards = f"*REFINE, LEVELS={level}\n" if level else ""
     path.write_text(face.text.replace("*STEP", f"{cards}*STEP", 1))
-    if run("run", "--quiet", path, "--out", folder).returncode:
-        return np.array([np.nan, np.nan])
-    with h5py.File(path.with_suffix(".vtkhdf")) as file:
-        value, bound = file["errors/J/edge_contact"][-1][:2]
-    return np.array([value - face.edge, bound]) / face.spacing * 2**level
+    exact = {"edge_contact": face.edge, "edge_stick": face.stick}
+    found = {quantity: np.array([np.nan, np.nan]) for quantity, edge in exact.items() if np.isfinite(edge)}
+    if run("run", "--quiet", path, "--out", folder).returncode == 0:
+        with h5py.File(path.with_suffix(".vtkhdf")) as file:
+            for quantity in found:
+                value, bound = file[f"errors/J/{quantity}"][-1][:2]
+                error = value + file["contact/J/x"][0] - exact[quantity]
+                found[quantity] = np.array([error, bound]) / face.spacing * 2**level
+    for file in folder.glob(f"{path.stem}.*"):
+        file.unlink()
+    return found
+
+
+def group_of(family, seed):
+    """Return the group in which the decks of a seed are judged."""
+    if seed in wavy_faces.LAST:
+        return "drawn last"
+    if family in wavy_faces.NEW:
+        return "new"
+    return "chosen on" if seed % 4 < 2 else "kept aside"
 
 
 def tables(folder):
-    """Return the table of all families."""
-    table = Table("Edges of contact of all families", ["family", "points", "decks", "held", "not solved",
-                                                       "worst error/bound", "median bound/error"])
-    for family in wavy_faces.CHOSEN + wavy_faces.NEW:
-        found = [(seed, judged(wavy_faces.drawn(family, seed), level, folder))
-                 for level, seeds in LEVELS.items() for seed in seeds]
-        groups = {"chosen on": is_chosen, "kept aside": lambda seed: not is_chosen(seed)}
-        if family in wavy_faces.NEW:
-            groups = {"new": lambda seed: True}
-        for pairing, title in enumerate(("node pairs", "mortar points")):
-            for group, is_in in groups.items():
-                some = [case for seed, case in found if seed % 2 == pairing and is_in(seed)]
-                table.rows.append([family, title, group, *shares(np.array(some))])
-    return [table]
+    """Return the tables of all families together, and of each."""
+    groups, together = {}, {}
+    for family in wavy_faces.CHOSEN + wavy_faces.KNOWN + wavy_faces.NEW:
+        # *REFINE leaves the sides of a period that it divides apart.
+        cases = [(seed, level) for level, seeds in LEVELS.items() for seed in seeds
+                 if family != wavy_faces.SHEARED or level == 0]
+        cases += [(seed, 0) for seed in wavy_faces.LAST if family not in wavy_faces.SPECTRAL]
+        for seed, level in cases:
+            points, group = POINTS[seed % 2], group_of(family, seed)
+            for quantity, case in judged(wavy_faces.drawn(family, seed), level, folder).items():
+                groups.setdefault((quantity, family, points, group), []).append(case)
+                together.setdefault((quantity, points, group), []).append(case)
+    head = ["edge of", "family", "points", "decks", "held", "not solved", "worst error/bound",
+            "median bound/error"]
+    both = [Table("Edges of all families together", [head[0], *head[2:]]), Table("Edges of all families", head)]
+    for table, found in zip(both, (together, groups), strict=True):
+        for (quantity, *key), cases in sorted(found.items(), key=lambda item: order(item[0])):
+            table.rows.append([QUANTITIES[quantity], *key, *shares(np.array(cases), LEAST[quantity])])
+    return both
 
 
-def shares(cases):
+def order(key):
+    """Return the place of a row: by edge, family, points and group."""
+    families = wavy_faces.CHOSEN + wavy_faces.KNOWN + wavy_faces.NEW
+    return list(QUANTITIES).index(key[0]), *(
+        families.index(part) if part in families else POINTS.index(part) if part in POINTS else part
+        for part in key[1:])
+
+
+def shares(cases, least):
     """Return how many of the bounds hold, how many decks have no solution, the worst error over bound, and the
-    median of bound over error."""
+    median of bound over error; errors above the least one are judged."""
     error, bound = np.abs(cases).T
-    is_solved, is_judged = np.isfinite(error), error > LEAST
+    is_solved, is_judged = np.isfinite(error), error > least
     known = is_judged & np.isfinite(bound)
+    if not known.any():
+        return "-", int((~is_solved).sum()), "-", "-"
     held = int((error[known] <= bound[known]).sum())
     text = f"{held}/{known.sum()}, {100 * held / known.sum():.0f} %"
     uncertain = int((is_judged & ~known).sum())
@@ -84,14 +128,36 @@ def test_the_spectral_solution_has_the_edge_of_the_closed_form(monkeypatch):
         assert abs(found - a) < part / (2 * wavy_faces.CELLS)
 
 
-def test_bounds_of_edges_hold_on_wavy_faces(tmp_path):
-    """Four decks with closed forms, as the document says that bounds hold."""
+def test_galerkins_method_has_the_loads_of_the_closed_form():
+    """Of the wave with heat and without; of a small sphere those of Hertz and of a hot disc."""
+    for a, heat in ((0.3, 0.0), (0.4, 2.0), (0.12, 3.0)):
+        pressure, drop = edge_solutions.perfect(a, lambda x: wavy_faces.HEIGHT * wavy_faces.cosine(x), heat,
+                                                wavy_faces.MODULUS, 1.0, wavy_faces.BULGE, False)
+        told = wavy_faces.closed_form(a, heat)
+        assert np.allclose([pressure, drop + wavy_faces.DEPTH * heat], told, rtol=1e-5)
+    a, area = 0.02, np.pi / 4
+    pressure, drop = edge_solutions.perfect(a, lambda r: r**2 / 2, 1.0, 1.0, 1.0, 0.0, True)
+    assert abs(pressure * area / (4 / 3 * a**3) - 1) < 1e-4
+    # The tube holds heat up as far as it is near.
+    assert 0 < 1 - drop / (area / (4 * a)) < 4 * a
+
+
+def test_friction_that_locks_in_leaves_the_contact_of_the_wave():
+    """Almost: it stiffens it. Without friction the pressure is that of the closed form."""
+    mean, pressure, gap, _ = edge_solutions.gripped(lambda x: wavy_faces.HEIGHT * wavy_faces.cosine(x),
+                                                    wavy_faces.MODULUS, 0.3, 1e-9, 0.3, 80)
+    edge = wavy_faces.edge_of((np.arange(80) + 0.5) / 160, pressure, gap)
+    assert abs(mean / wavy_faces.closed_form(edge, 0.0)[0] - 1) < 0.003
+
+
+def test_bounds_of_edges_hold_on_families_with_known_edges(tmp_path):
+    """A deck of some families, as the document says that bounds hold."""
     check_parts([TEXT])
     for family, seed in TESTED:
-        error, bound = np.abs(judged(wavy_faces.drawn(family, seed), 0, tmp_path))
-        assert error <= bound < 10 * error
+        for error, bound in np.abs(list(judged(wavy_faces.drawn(family, seed), 0, tmp_path).values())):
+            assert error <= bound < 10 * error
 
 
 def test_the_document_has_all_families():
-    told = {row["family"] for row in rows("Edges of contact of all families")}
-    assert told == {*wavy_faces.CHOSEN, *wavy_faces.NEW}
+    told = {row["family"] for row in rows("Edges of all families")}
+    assert told == {*wavy_faces.CHOSEN, *wavy_faces.NEW, *wavy_faces.KNOWN}
