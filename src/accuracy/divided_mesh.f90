@@ -16,7 +16,7 @@ module divided_mesh
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
    use load_histories, only: end_of_step
-   use local_refinement, only: choose_neighbours, elements_at_surfaces
+   use local_refinement, only: choose_neighbours, elements_at_surfaces, largest_part
    use mesh_division, only: child_element, divide, division_type, refined_members
    use model, only: model_type
    use records, only: field_record_type
@@ -25,11 +25,14 @@ module divided_mesh
    use solution_state, only: solution_state_type
    use steps, only: boundary_type, solves_heat, step_type
    use simulation, only: make_initial_state, simulation_type
+   use thermal_matrix, only: heat_across
    implicit none
    private
    public :: divided_mesh_type
 
-   integer, parameter :: margin = 1   !! sides beyond the closed ones whose elements are divided
+   integer, parameter :: margin = 1   !! sides beyond those that count whose elements are divided
+   !> Part of the heat that crosses all contact points which the elements divided for it carry
+   real(dp), parameter :: of_heat = 0.99_dp
 
    !> The divided model and its run, of which only the ends of steps are solved.
    type :: divided_mesh_type
@@ -111,8 +114,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: chosen(size(model%mesh%element_number))
 
-      chosen = elements_at_contact(model, simulation%bodies%points, &
-         simulation%state%contact%contact_state /= contact_open) .or. also
+      associate (points => simulation%bodies%points, state => simulation%state)
+         chosen = elements_at_contact(model, points, state%contact%contact_state /= contact_open &
+            .or. largest_part(abs(heat_across(points%weight, state%carrying, state%jump)), &
+            of_heat)) .or. also
+      end associate
       call choose_neighbours(model, chosen)
       if (allocated(self%is_divided)) then
          if (all(self%is_divided .eqv. chosen)) return
@@ -121,22 +127,22 @@ contains
       call prepare(self, model, chosen, error)
    end subroutine divide_at_contact
 
-   !> Elements at closed contact points, with those next to them on the faces, and at ties; all of
-   !> the faces where nothing is closed.
-   pure function elements_at_contact(model, points, is_closed) result(chosen)
+   !> Elements at the contact points that count, with those next to them on the faces, and at ties;
+   !> all of the faces where none counts.
+   pure function elements_at_contact(model, points, counts) result(chosen)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: is_closed(:)                 ! (m)
+      logical, intent(in) :: counts(:)                    ! (m) closed, or with much heat
       logical :: chosen(size(model%mesh%element_number))
       logical :: at_face(size(chosen)), is_near(size(model%mesh%node_number))
       integer :: beyond, e, k
 
       at_face = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
       is_near = .false.
-      do k = 1, size(is_closed)
-         if (is_closed(k)) is_near(points%nodes_of(k)) = .true.
+      do k = 1, size(counts)
+         if (counts(k)) is_near(points%nodes_of(k)) = .true.
       end do
-      if (.not. any(is_closed)) is_near = .true.
+      if (.not. any(counts)) is_near = .true.
       do beyond = 0, margin
          do e = 1, size(chosen)
             chosen(e) = at_face(e) .and. any(is_near(nodes_of(e)))

@@ -32,7 +32,7 @@ module error_estimator
    use text, only: append, to_text
    implicit none
    private
-   public :: error_estimator_type, largest_part, squared_errors
+   public :: error_estimator_type, squared_errors
 
    !> Error of the increments in the change that doubling them makes: that of errors that fall with
    !> their length; of a peak pressure between mortar points with its square root, as what closes at
@@ -42,7 +42,6 @@ module error_estimator
    !> Part of the change from the round before that is left: one that divides elements leaves less.
    real(dp), parameter :: left_by_round = 0.5_dp
 
-   integer, parameter :: halvings = 50   !! of the interval that holds the least value
    !> Relative error of a body below which its fields are smooth but for rounding.
    real(dp), parameter :: rounding = 1.0e-8_dp
 
@@ -406,26 +405,5 @@ contains
       end do
       area = abs(area)
    end function area_of
-
-   !> The largest values, as many as have a part of the sum of all.
-   pure function largest_part(values, part) result(chosen)
-      real(dp), intent(in) :: values(:)     !! not negative
-      real(dp), intent(in) :: part          !! of their sum
-      logical :: chosen(size(values))
-      real(dp) :: high, least, middle
-      integer :: k
-
-      least = 0.0_dp
-      high = maxval(values)
-      do k = 1, halvings
-         middle = 0.5_dp*(least + high)
-         if (sum(values, mask=values >= middle) >= part*sum(values)) then
-            least = middle
-         else
-            high = middle
-         end if
-      end do
-      chosen = values >= least .and. values > 0.0_dp
-   end function largest_part
 
 end module error_estimator

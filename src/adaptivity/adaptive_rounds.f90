@@ -16,13 +16,13 @@ module adaptive_rounds
    use contact_quantities, only: estimated
    use contact_system, only: contact_open
    use element_kinds, only: element_corner_count
-   use error_estimator, only: error_estimator_type, largest_part, squared_errors
+   use error_estimator, only: error_estimator_type, squared_errors
    use errors, only: error_type
    use growing_modes, only: analyse_stability
    use increments, only: advance
    use interface_quantities, only: closed_length, point_before
    use kinds, only: dp
-   use local_refinement, only: elements_at_surfaces
+   use local_refinement, only: elements_at_surfaces, largest_part
    use mesh, only: mesh_type
    use model, only: model_type
    use quantity_types, only: quantity_type

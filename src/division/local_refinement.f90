@@ -21,13 +21,15 @@ module local_refinement
    private
    public :: elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours, &
       hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, place_hanging, &
-      distance_of_lines
+      distance_of_lines, largest_part
 
    !> Part of DISTANCE= by which an element must come nearer: what only touches stays out.
    real(dp), parameter :: rounding = 1.0e-9_dp
 
    !> Part of its longest side within which an element lies at a point.
    real(dp), parameter :: near = 0.75_dp
+
+   integer, parameter :: halvings = 50   !! of the interval that holds the least of largest_part
 
 contains
 
@@ -409,5 +411,26 @@ contains
          to_point = norm2(point - piece(:, 1) - min(max(part, 0.0_dp), 1.0_dp)*along)
       end associate
    end function to_point
+
+   !> The largest values, as many as have a part of the sum of all.
+   pure function largest_part(values, part) result(chosen)
+      real(dp), intent(in) :: values(:)     !! not negative
+      real(dp), intent(in) :: part          !! of their sum
+      logical :: chosen(size(values))
+      real(dp) :: high, least, middle
+      integer :: k
+
+      least = 0.0_dp
+      high = maxval(values)
+      do k = 1, halvings
+         middle = 0.5_dp*(least + high)
+         if (sum(values, mask=values >= middle) >= part*sum(values)) then
+            least = middle
+         else
+            high = middle
+         end if
+      end do
+      chosen = values >= least .and. values > 0.0_dp
+   end function largest_part
 
 end module local_refinement
