@@ -11,7 +11,7 @@ module divided_mesh
    use equations, only: equation_nodes
    use field_recovery, only: error_record_type, point_map_type
    use errors, only: error_type
-   use heat_equation, only: heat_equation_type
+   use heat_equation, only: heat_across, heat_equation_type
    use heat_reduction, only: heat_reduction_type
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
@@ -25,7 +25,6 @@ module divided_mesh
    use solution_state, only: solution_state_type
    use steps, only: boundary_type, solves_heat, step_type
    use simulation, only: make_initial_state, simulation_type
-   use thermal_matrix, only: heat_across
    implicit none
    private
    public :: divided_mesh_type
