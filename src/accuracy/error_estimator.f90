@@ -260,8 +260,11 @@ contains
                change(:, i), self%histories%scatter(i, before), self%most_locked(i), &
                self%energies(1), jump_of(i))
             ! Halved elements show how far another state moves an edge, but not which it is.
-            bounds = merge(max(bounds, spread(:, i)), bounds + spread(:, i), &
-               estimated%resolution > 0.0_dp .and. .not. ieee_is_nan(bounds))
+            where (estimated%resolution > 0.0_dp .and. .not. ieee_is_nan(bounds + spread(:, i)))
+               bounds = max(bounds, spread(:, i))
+            elsewhere
+               bounds = bounds + spread(:, i)
+            end where
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
                left_by_round*abs(self%histories%change_since(i, before)))
          end associate

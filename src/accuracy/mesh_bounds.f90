@@ -193,7 +193,8 @@ contains
 
    !> Sum of the shear forces of stuck contact points, without their signs, times the spacing at
    !> the edge of contact, over which the last of them came to stick [force length]. What slides
-   !> across several nodes before it sticks does so at a slip whose error is as many times smaller.
+   !> across several node pairs before it sticks does so at a slip whose error is as many times
+   !> smaller.
    pure real(dp) function locked_in(points, contact)
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
@@ -201,9 +202,9 @@ contains
       locked_in = 0.0_dp
       if (.not. allocated(contact%shear)) return
       associate (spacing => nodal_spacing(points, contact%edge_contact))
-         if (spacing <= 0.0_dp) return
          locked_in = sum(abs(points%weight*contact%shear), &
-            mask=contact%contact_state == contact_stick)*spacing/ &
+            mask=contact%contact_state == contact_stick)*spacing
+         if (spacing > 0.0_dp .and. points%pairing /= pairing_surfaces) locked_in = locked_in/ &
             max(1.0_dp, least_slip_zone(points, contact)/spacing)
       end associate
    end function locked_in
