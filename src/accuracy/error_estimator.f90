@@ -262,7 +262,7 @@ contains
             ! Halved elements show how far another state moves an edge, but not which it is.
             where (estimated%resolution > 0.0_dp .and. .not. ieee_is_nan(bounds + spread(:, i)))
                bounds = max(bounds, spread(:, i))
-            elsewhere
+            else where
                bounds = bounds + spread(:, i)
             end where
             where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
