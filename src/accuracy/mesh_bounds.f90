@@ -83,7 +83,8 @@ contains
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
       if (length > 0.0_dp) locked = most_locked/length
-      associate (shear => bounds(find_quantity(estimated, 'shear_force')), &
+      associate (force => bounds(find_quantity(estimated, 'normal_force')), &
+         shear => bounds(find_quantity(estimated, 'shear_force')), &
          peak => bounds(find_quantity(estimated, 'peak_pressure')))
          shear = shear + locked*merge(of_locked_with_hats, of_locked, has_hats) + &
             missing_friction(points, contact)
@@ -91,8 +92,8 @@ contains
             contact%normal_force
          peak = peak + rise_on_axis(points, contact%pressure)
          ! Both meshes may have the same peak by chance: it errs by as large a part as the force.
-         if (contact%normal_force > 0.0_dp) peak = max(peak, bounds(find_quantity(estimated, &
-            'normal_force'))*maxval(contact%pressure)/contact%normal_force)
+         if (contact%normal_force > 0.0_dp .and. .not. ieee_is_nan(peak + force)) peak = max(peak, &
+            force*maxval(contact%pressure)/contact%normal_force)
          if (peaks_at_corner(points, contact)) peak = ieee_value(1.0_dp, ieee_quiet_nan)
       end associate
       call bound_edges(points, contact, change, known_scatter, 1.0_dp + of_jump*jump, bounds)
