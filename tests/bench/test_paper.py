@@ -22,10 +22,10 @@ ESTIMATES = {path.stem for path in (SOURCES / "accuracy").glob("*.f90")}
 # Calls from one place to another that begin a stage: modules, or `module:procedure`.
 STAGES = {
     "reading the deck": ({"deck_preparation"}, {"deck_reader", "deck_builder"}),
-    "assembling": ({"deck_run"}, {"increments:assemble"}),
-    "reducing": ({"deck_run"}, {"increments:reduce"}),
-    "iterating": ({"increments"}, {"increment_solution:solve_points"}),
-    "recovering": ({"increments"}, {"increment_solution:recover_fields", "increment_records"}),
+    "assembling": ({"deck_run"}, {"simulation:assemble"}),
+    "reducing": ({"deck_run"}, {"simulation:reduce"}),
+    "iterating": ({"increment_attempts"}, {"increment_solution:solve_points"}),
+    "recovering": ({"increments", "increment_attempts"}, {"increment_solution:recover_fields", "increment_records"}),
     "estimating errors": ({"adaptive_rounds"}, ESTIMATES),
     "writing": ({"deck_run"}, OUTPUT),
 }

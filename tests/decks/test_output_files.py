@@ -345,4 +345,5 @@ def test_a_folder_that_vanishes_during_a_run_is_said(tmp_path):
         (tmp_path / "out").rename(tmp_path / "elsewhere")
         _, messages = process.communicate(timeout=PATIENCE)
     assert process.returncode == 3, messages
-    assert "No such file or directory" in messages
+    # Which file misses its folder first depends on the instant.
+    assert any(reason in messages for reason in ("No such file or directory", "it was removed or replaced")), messages
