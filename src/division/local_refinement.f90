@@ -5,7 +5,7 @@
 !> Nodes that hang: on a side of an element beside which lie two elements of half its size, nodes of
 !> these that the large element does not have. The fields along the side are those of the large
 !> element, and so the values at these nodes follow from the side's nodes by its shape functions.
-!> Distance between lines of straight pieces.
+!> Distance between lines of straight pieces; the largest values that have a part of a sum.
 module local_refinement
    use contact_definitions, only: contact_definition_type, pairing_surfaces
    use element_kinds, only: element_corner_count

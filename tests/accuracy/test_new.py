@@ -8,6 +8,7 @@ import h5py
 import hot_dies
 import new_families
 import numpy as np
+import pytest
 from deck_runs import run, solve
 from report import Table, check_parts, rows
 from skew_waves import SkewWave
@@ -203,6 +204,13 @@ def test_bounds_hold_on_some_problems_that_chose_no_constant(tmp_path):
     cases = [case for family, seed in TESTED
              for case in judged(new_families.drawn(family, seed), tmp_path).values()]
     assert len(cases) >= 20 and np.mean([error <= bound for error, bound in cases]) >= 0.95, cases
+
+
+@pytest.mark.parametrize("family", new_families.FAMILIES[1:])
+def test_heat_through_the_gas_beside_the_contact_is_bounded(family, tmp_path):
+    """Much of it crosses open contact points, away from the closed ones."""
+    error, bound = judged(new_families.drawn(family, 5), tmp_path)["heat_rate"]
+    assert error <= bound <= 10 * error
 
 
 def test_the_document_has_all_families():
