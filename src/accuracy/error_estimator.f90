@@ -15,6 +15,7 @@ module error_estimator
    use increment_quantities, only: history_value
    use interface_quantities, only: quantities_of, quantities_of_state, regime_of
    use kinds, only: dp
+   use local_refinement, only: elements_at_surfaces
    use mesh, only: mesh_type
    use mesh_bounds, only: bounds_of_mesh, locked_in
    use model, only: model_type
@@ -53,6 +54,7 @@ module error_estimator
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
       type(quantity_histories_type) :: histories   !! quantities at the increments before
+      logical, allocatable :: has_triangles(:)     !! (interfaces) whether sides of its faces are theirs
       real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
       integer, allocatable :: regime(:)            !! (interfaces) regime_of their contact
       !> Squared relative errors that are left in elements that are not divided, of both fields and
@@ -75,11 +77,15 @@ contains
       class(error_estimator_type), intent(inout) :: self  !! fresh
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation     !! the run, started
+      integer :: i
 
       self%is_on = model%estimates_errors
       if (.not. self%is_on) return
       allocate (self%most_locked(size(model%contacts)), source=0.0_dp)
       allocate (self%regime(size(model%contacts)), source=contact_open)
+      self%has_triangles = [(any(elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
+         model%contacts(i)%master]) .and. element_corner_count(model%mesh%element_kind) == 3), &
+         i=1, size(model%contacts))]
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 
@@ -115,7 +121,8 @@ contains
          call simulation%bodies%view(i, points)
          associate (contact => record%contacts(i))
             values(:, i) = quantities_of(points, contact)
-            self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact))
+            self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact, &
+               self%has_triangles(i)))
             if (regime_of(contact) /= self%regime(i)) call self%histories%begin_anew(i)
             self%regime(i) = regime_of(contact)
          end associate

@@ -35,17 +35,19 @@ module mesh_bounds
    !> Error of shear force, that with hats, and that of peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp
    real(dp), parameter :: of_locked_in_peak = 0.15_dp
-   !> Error of an edge of contact in what halved elements move it by. The part of the spacing is in
-   !> the table of quantities; it is larger where means with hats tell the edge, and grows by the
-   !> relative jump of the conductance there: heat enters up to a node, an error of first order.
-   real(dp), parameter :: of_edge_change = 1.5_dp, of_hats = 3.0_dp, of_jump = 1.0_dp
-   !> Error of an edge of stick in the spacing, beyond what halved elements move it by: where
-   !> contact ends too, and elsewhere. There it is at least that of the table of quantities.
-   real(dp), parameter :: of_both = 0.15_dp, of_stick = 0.4_dp
+   !> Error of an edge of contact in what halved elements move it by. The part of the spacing of the
+   !> contact points is in the table of quantities; it grows by the relative jump of the conductance
+   !> there: heat enters up to a node, an error of first order.
+   real(dp), parameter :: of_edge_change = 1.5_dp, of_jump = 1.0_dp
+   !> Error of an edge of stick in what halved elements move it by, in that with hats, and, beyond
+   !> that, in the spacing of the nodes: where contact ends too, and elsewhere. There it is at least
+   !> that of the table of quantities.
+   real(dp), parameter :: of_stick_change = 1.0_dp, of_stick_change_with_hats = 1.5_dp
+   real(dp), parameter :: of_both = 0.15_dp, of_stick = 0.5_dp
    real(dp), parameter :: same_place = 1.0e-6_dp    !! of the spacing
    !> Error of normal force and heat rate in the squared relative error of the energy norm that
-   !> elements have that are not halved.
-   real(dp), parameter :: of_energy = 0.25_dp
+   !> elements have that are not halved: all of it, and what is left of it beside the scatter.
+   real(dp), parameter :: of_energy_alone = 1.0_dp, of_energy = 0.25_dp
 
 contains
 
@@ -62,7 +64,7 @@ contains
       !> Jump of the conductance at an edge in the larger value there; 0 where no heat moves it [-]
       real(dp), intent(in) :: jump
       real(dp) :: bounds(size(estimated))
-      real(dp) :: known_scatter(size(estimated)), length, locked
+      real(dp) :: known_scatter(size(estimated)), left(size(estimated)), length, locked
       logical :: has_hats, is_alone(size(estimated))
 
       has_hats = points%pairing == pairing_surfaces
@@ -75,10 +77,11 @@ contains
       bounds = bounds*abs(change) + known_scatter
       ! Where displacements and temperatures are prescribed, force and heat rate err as the energy,
       ! by the square of its norm's error.
-      associate (force => bounds(find_quantity(estimated, 'normal_force')), &
-         heat => bounds(find_quantity(estimated, 'heat_rate')))
-         force = force + of_energy*energy*abs(contact%normal_force)
-         heat = heat + of_energy*energy*abs(contact%heat_rate)
+      left = energy*merge(of_energy_alone, of_energy, is_alone)
+      associate (f => find_quantity(estimated, 'normal_force'), &
+         h => find_quantity(estimated, 'heat_rate'))
+         bounds(f) = bounds(f) + left(f)*abs(contact%normal_force)
+         bounds(h) = bounds(h) + left(h)*abs(contact%heat_rate)
       end associate
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
@@ -126,20 +129,30 @@ contains
       real(dp) :: part
 
       associate (outer => find_quantity(estimated, 'edge_contact'), &
-         inner => find_quantity(estimated, 'edge_stick'))
-         part = estimated(outer)%resolution*of_nodes
-         if (points%pairing == pairing_surfaces) part = of_hats*part
-         bounds(outer) = edge_bound(points, contact%edge_contact, change(outer), &
-            [of_edge_change, part, 0.0_dp])
+         inner => find_quantity(estimated, 'edge_stick'), &
+         spacing => nodal_spacing(points, contact%edge_stick))
+         part = estimated(outer)%resolution*of_nodes*edge_spacing(points, contact%edge_contact)
+         bounds(outer) = edge_bound(contact%edge_contact, change(outer), of_edge_change, part, &
+            0.0_dp)
          if (ends_with_contact(points, contact)) then
-            bounds(inner) = edge_bound(points, contact%edge_stick, change(inner), &
-               [of_edge_change, max(of_both, part), 0.0_dp])
+            bounds(inner) = edge_bound(contact%edge_stick, change(inner), of_edge_change, &
+               max(of_both*spacing, part), 0.0_dp)
          else
-            bounds(inner) = scatter(inner) + edge_bound(points, contact%edge_stick, &
-               change(inner), [1.0_dp, of_stick, estimated(inner)%resolution])
+            bounds(inner) = scatter(inner) + edge_bound(contact%edge_stick, change(inner), &
+               merge(of_stick_change_with_hats, of_stick_change, points%pairing == &
+               pairing_surfaces), of_stick*spacing, estimated(inner)%resolution*spacing)
          end if
       end associate
    end subroutine bound_edges
+
+   !> A multiple of what halved elements move an edge by, and a length, at least another one; NaN
+   !> where there is no edge, or none on the finer mesh.
+   pure real(dp) function edge_bound(edge, change, of_change, length, least) result(bound)
+      real(dp), intent(in) :: edge, change, of_change, length, least
+
+      bound = change + edge
+      if (.not. ieee_is_nan(bound)) bound = max(of_change*abs(change) + length, least)
+   end function edge_bound
 
    !> How far the pressure on the axis, which few elements tell, is from the even parabola through
    !> the two contact points beside it, where it is the largest there; 0 elsewhere.
@@ -160,19 +173,6 @@ contains
       rise = abs(pressure(k) - (pressure(k + way)*square(2) - pressure(k + 2*way)*square(1))/ &
          (square(2) - square(1)))
    end function rise_on_axis
-
-   !> A part of what halved elements move an edge by and one of the spacing, and at least a third
-   !> part, of the spacing.
-   pure real(dp) function edge_bound(points, edge, change, parts) result(bound)
-      type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: edge, change, parts(3)
-
-      ! Where there is no edge, or none on the finer mesh, nothing is known.
-      bound = change + edge
-      if (ieee_is_nan(bound)) return
-      bound = max(parts(1)*abs(change) + parts(2)*nodal_spacing(points, edge), &
-         parts(3)*nodal_spacing(points, edge))
-   end function edge_bound
 
    !> Spacing of the slave's nodes at an edge.
    pure real(dp) function nodal_spacing(points, edge)
@@ -195,18 +195,20 @@ contains
    !> Sum of the shear forces of stuck contact points, without their signs, times the spacing at
    !> the edge of contact, over which the last of them came to stick [force length]. What slides
    !> across several node pairs before it sticks does so at a slip whose error is as many times
-   !> smaller.
-   pure real(dp) function locked_in(points, contact)
+   !> smaller; not so with triangles, whose two sides at a node differ: all points err alike.
+   pure real(dp) function locked_in(points, contact, has_triangles)
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
+      logical, intent(in) :: has_triangles
 
       locked_in = 0.0_dp
       if (.not. allocated(contact%shear)) return
       associate (spacing => nodal_spacing(points, contact%edge_contact))
          locked_in = sum(abs(points%weight*contact%shear), &
             mask=contact%contact_state == contact_stick)*spacing
-         if (spacing > 0.0_dp .and. points%pairing /= pairing_surfaces) locked_in = locked_in/ &
-            max(1.0_dp, least_slip_zone(points, contact)/spacing)
+         if (has_triangles .or. points%pairing == pairing_surfaces) return
+         if (spacing > 0.0_dp) locked_in = locked_in/max(1.0_dp, least_slip_zone(points, &
+            contact)/spacing)
       end associate
    end function locked_in
 

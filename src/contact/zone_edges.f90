@@ -1,13 +1,12 @@
 !> Edges of the contact and stick zones, sharpened below the nodal spacing.
 !>
-!> Edge of contact, between a closed and an open contact point: near it p goes like sqrt(a - s) and
-!> the gap like (s - a)^(3/2), so that p^2 from inside and gap^(2/3) from outside go to zero
-!> smoothly. The contact points next to the edge err most, pressures more than gaps: the edge is the
-!> zero of a parabola through gap^(2/3) of the second to fourth open contact point, kept between the
-!> two contact points. Where there are not so many, it is the mean of the zeros of straight lines
-!> through the two contact points on each side. Of mortar points the gap is the mean of
-!> (s - a)^(3/2) with a hat function, and they are as far apart as one or two node pairs: the edge
-!> is that of the C (s - a)^(3/2) whose means are the gaps of the first two open ones.
+!> Edge of contact, between a closed and an open contact point: beyond it the gap is
+!> C (s - a)^(3/2) + D (s - a)^(5/2) + ..., before it p goes like sqrt(a - s). The contact points
+!> next to the edge err most, pressures more than gaps: the edge is the a with which both terms are
+!> the gaps of the second to fourth open contact point, kept between the two contact points. Where
+!> fewer are open, it takes the first to third, or the first term alone and the first two; where
+!> there is but one, p^2 on a straight line through two contact points. Of mortar points the gaps
+!> are the means of these terms with hat functions.
 !>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
@@ -32,7 +31,7 @@ module zone_edges
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
    integer, parameter :: fitted_spacings = 4   !! node spacings of two three-node sides
-   integer, parameter :: halvings = 60         !! of the interval with the edge
+   integer, parameter :: halvings = 50         !! of the interval with the edge
 
    !> States of the contact points of an interface, along it.
    type :: contact_profile_type
@@ -122,97 +121,112 @@ contains
       type(contact_profile_type), intent(in) :: profile
       integer, intent(in) :: k
       real(dp) :: edge
-      real(dp) :: g(3)
+      integer :: first, last
 
-      associate (s => profile%s, gap => profile%gap)
-         if (profile%hat_spacings > 0 .and. k + 2 <= size(s)) then
-            if (profile%contact_state(k + 2) == contact_open .and. gap(k + 1) > 0.0_dp .and. &
-               gap(k + 2) > gap(k + 1)) then
-               edge = end_of_hats(s(k:min(k + 3, size(s))), gap(k + 1:k + 2))
+      associate (gap => profile%gap)
+         last = k + count_open(profile%contact_state(k + 1:min(k + 4, size(gap))))
+         do while (last > k + 1)
+            first = max(k + 1, last - 2)
+            if (gap(first) > 0.0_dp .and. all(gap(first:last - 1) < gap(first + 1:last))) then
+               edge = end_of_gap(profile, k, first, last)
                return
             end if
-         else if (k + 4 <= size(s)) then
-            g = max(gap(k + 2:k + 4), 0.0_dp)**(2.0_dp/3.0_dp)
-            if (all(profile%contact_state(k + 2:k + 4) == contact_open) .and. g(1) < g(2) .and. &
-               g(2) < g(3)) then
-               edge = s(k + 2)*g(2)*g(3)/((g(2) - g(1))*(g(3) - g(1))) - &
-                  s(k + 3)*g(1)*g(3)/((g(2) - g(1))*(g(3) - g(2))) + &
-                  s(k + 4)*g(1)*g(2)/((g(3) - g(1))*(g(3) - g(2)))
-               edge = min(max(edge, s(k)), s(k + 1))
-               return
-            end if
-         end if
+            last = last - 1
+         end do
       end associate
-      edge = end_of_lines(profile%s, profile%contact_state, profile%pressure, profile%gap, k)
+      edge = end_of_pressure(profile, k)
    end function contact_end
 
-   !> Edge a of the C (s - a)^(3/2) whose means with two hat functions are the gaps there.
-   pure function end_of_hats(s, gap) result(edge)
-      real(dp), intent(in) :: s(:)      ! last closed, two open, and the next contact point, if any
-      real(dp), intent(in) :: gap(2)    ! of the two
+   !> Number of open contact points before the first closed one.
+   pure integer function count_open(contact_state) result(number)
+      integer, intent(in) :: contact_state(:)
+
+      number = findloc(contact_state /= contact_open, .true., dim=1) - 1
+      if (number < 0) number = size(contact_state)
+   end function count_open
+
+   !> Edge a beyond contact point k with which C (s - a)^(3/2) + D (s - a)^(5/2) are the gaps of
+   !> three contact points, or the first term those of two.
+   pure function end_of_gap(profile, k, first, last) result(edge)
+      type(contact_profile_type), intent(in) :: profile
+      integer, intent(in) :: k, first, last      ! first..last: the contact points with these gaps
       real(dp) :: edge
-      real(dp) :: ends(2)
-      integer :: step
+      real(dp), dimension(first:last) :: p, q    ! both terms there, without their factors
+      real(dp) :: ends(2), bend
+      integer :: j, step
 
-      ends = s(:2)
-      do step = 1, halvings
-         edge = 0.5_dp*sum(ends)
-         if (mean_beyond(s(:3), edge)*gap(2) > gap(1)*mean_beyond(s(2:), edge)) then
-            ends(1) = edge
+      ends = profile%s(k:k + 1)
+      associate (g => profile%gap, i => first)
+         do step = 1, halvings
+            edge = 0.5_dp*sum(ends)
+            p = [(term(profile, j, edge, 3), j=first, last)]
+            ! Positive where the edge is too far: gap over first term then bends up, or falls.
+            if (last - first == 1) then
+               bend = p(i + 1)*g(i) - p(i)*g(i + 1)
+            else
+               q = [(term(profile, j, edge, 5), j=first, last)]
+               bend = g(i)*(p(i + 1)*q(i + 2) - p(i + 2)*q(i + 1)) + &
+                  g(i + 1)*(p(i + 2)*q(i) - p(i)*q(i + 2)) + &
+                  g(i + 2)*(p(i)*q(i + 1) - p(i + 1)*q(i))
+            end if
+            if (bend > 0.0_dp) then
+               ends(2) = edge
+            else
+               ends(1) = edge
+            end if
+         end do
+      end associate
+   end function end_of_gap
+
+   !> (s - a)^(n/2) beyond a at a contact point: its mean with the hat function there, or its value.
+   pure real(dp) function term(profile, k, a, n)
+      type(contact_profile_type), intent(in) :: profile
+      integer, intent(in) :: k, n
+      real(dp), intent(in) :: a
+
+      associate (s => profile%s)
+         if (profile%hat_spacings > 0) then
+            term = mean_beyond(s(k - 1:min(k + 1, size(s))), a, n)
          else
-            ends(2) = edge
+            term = sqrt(max(s(k) - a, 0.0_dp))**n
          end if
-      end do
-   end function end_of_hats
+      end associate
+   end function term
 
-   !> Mean of (x - a)^(3/2) beyond a with the hat function of the second of two or three contact
+   !> Mean of (x - a)^(n/2) beyond a with the hat function of the second of two or three contact
    !> points.
-   pure real(dp) function mean_beyond(s, a)
+   pure real(dp) function mean_beyond(s, a, n)
       real(dp), intent(in) :: s(:), a
+      integer, intent(in) :: n
       real(dp) :: root(size(s))
-      real(dp) :: once(size(s)), twice(size(s))   ! the integrals of (x - a)^(3/2)
+      real(dp) :: once(size(s)), twice(size(s))   ! the integrals of (x - a)^(n/2)
 
       root = sqrt(max(s - a, 0.0_dp))
-      once = root**5/2.5_dp
-      twice = root**7/8.75_dp
+      once = root**(n + 2)/(0.5_dp*n + 1.0_dp)
+      twice = root**(n + 4)/((0.5_dp*n + 1.0_dp)*(0.5_dp*n + 2.0_dp))
       mean_beyond = once(2) - (twice(2) - twice(1))/(s(2) - s(1))
       if (size(s) > 2) mean_beyond = mean_beyond + (twice(3) - twice(2))/(s(3) - s(2)) - once(2)
       mean_beyond = 2*mean_beyond/(s(size(s)) - s(1))
    end function mean_beyond
 
-   !> The same by straight lines through at most two contact points on each side.
-   pure function end_of_lines(s, contact_state, pressure, gap, k) result(edge)
-      real(dp), intent(in) :: s(:), pressure(:), gap(:)
-      integer, intent(in) :: contact_state(:), k
+   !> The same where p^2 on a straight line through contact points k - 1 and k vanishes; halfway
+   !> where there is no such line.
+   pure function end_of_pressure(profile, k) result(edge)
+      type(contact_profile_type), intent(in) :: profile
+      integer, intent(in) :: k
       real(dp) :: edge
-      real(dp) :: before, here, inside, outside
-      logical :: has_inside, has_outside
+      real(dp) :: before, here
 
-      has_inside = k > 1
-      if (has_inside) has_inside = contact_state(k - 1) /= contact_open
-      has_outside = k + 2 <= size(s)
-      if (has_outside) has_outside = contact_state(k + 2) == contact_open
-      inside = s(k + 1)
-      if (has_inside) then
-         before = pressure(k - 1)**2
-         here = pressure(k)**2
-         if (before > here) then
-            inside = min(s(k) + (s(k) - s(k - 1))*here/(before - here), s(k + 1))
-         end if
-      end if
-      outside = s(k)
-      if (has_outside) then
-         here = gap(k + 1)**(2.0_dp/3.0_dp)
-         before = gap(k + 2)**(2.0_dp/3.0_dp)
-         if (before > here) then
-            outside = max(s(k + 1) - (s(k + 2) - s(k + 1))*here/(before - here), s(k))
-         end if
-      end if
-      edge = 0.5_dp*(s(k) + s(k + 1))
-      if (has_inside .and. has_outside) edge = 0.5_dp*(inside + outside)
-      if (has_inside .and. .not. has_outside) edge = inside
-      if (has_outside .and. .not. has_inside) edge = outside
-   end function end_of_lines
+      associate (s => profile%s)
+         edge = 0.5_dp*(s(k) + s(k + 1))
+         if (k == 1) return
+         if (profile%contact_state(k - 1) == contact_open) return
+         before = profile%pressure(k - 1)**2
+         here = profile%pressure(k)**2
+         edge = s(k + 1)
+         if (before > here) edge = min(s(k) + (s(k) - s(k - 1))*here/(before - here), s(k + 1))
+      end associate
+   end function end_of_pressure
 
    !> Edges of the stick zones, ascending, padded with NaN, and the outer edge of the widest zone.
    pure subroutine stick_edges(profile, friction, edges, outer)

@@ -28,7 +28,7 @@ module contact_quantities
       head='contact', is_estimated=.true., is_traded=.true., resolution=0.05_dp, &
       description='outer edge of the contact zone with the largest s; NaN: none'), &
       quantity_type('edge_stick', of_interface, 'length', label='of stick s =', head='stick', &
-      is_estimated=.true., is_traded=.true., resolution=0.7_dp, &
+      is_estimated=.true., is_traded=.true., resolution=1.0_dp, &
       description='outer edge of the widest stick zone; NaN: none'), &
       quantity_type('edges_contact', of_interface, 'length', values=edges_kept, &
       description='s of all edges of contact, ascending, padded with NaN'), &

@@ -344,22 +344,30 @@ class Contact:
     # Zone edges, sharpened below the nodal spacing
 
     def contact_edge(self, state, k):
-        """Edge between the closed pair k and the open pair k+1: g^(2/3) of the second to fourth open pair to zero, or,
-        where there are not so many, p^2 from inside and g^(2/3) from outside."""
-        s, places = self.s, []
-        if k + 4 < self.count and (state.status[k + 2:k + 5] == OPEN).all():
-            g = np.maximum(state.g[k + 2:k + 5], 0)**(2 / 3)
-            if (np.diff(g) > 0).all():
-                return np.clip(np.polyfit(g / g[-1], s[k + 2:k + 5], 2)[-1], s[k], s[k + 1])
-        if k > 0 and state.status[k - 1] != OPEN:
-            inner, last = state.p[k - 1]**2, state.p[k]**2
-            reach = (s[k] - s[k - 1]) * last / (inner - last) if inner > last else np.inf
-            places.append(min(s[k] + reach, s[k + 1]))
-        if k + 2 < self.count and state.status[k + 2] == OPEN:
-            first, outer = state.g[k + 1]**(2 / 3), state.g[k + 2]**(2 / 3)
-            reach = (s[k + 2] - s[k + 1]) * first / (outer - first) if outer > first else np.inf
-            places.append(max(s[k + 1] - reach, s[k]))
-        return np.mean(places) if places else (s[k] + s[k + 1]) / 2
+        """Edge between the closed pair k and the open pair k+1: the a with which C (s - a)^(3/2) + D (s - a)^(5/2) are
+        the gaps of the second to fourth open pair, or where there are not so many of the first three, or C alone the
+        first two, or p^2 from inside."""
+        s, g = self.s, state.g
+        last = k
+        while last < min(k + 4, self.count - 1) and state.status[last + 1] == OPEN:
+            last += 1
+        for last in range(last, k + 1, -1):
+            pairs = np.arange(max(k + 1, last - 2), last + 1)
+            if g[pairs[0]] > 0 and (np.diff(g[pairs]) > 0).all():
+                low, high = s[k], s[k + 1]
+                for _ in range(50):
+                    middle = (low + high) / 2
+                    # What is left of the gap is even, or on a line.
+                    highest = np.polyfit(s[pairs] - s[k], g[pairs] / (s[pairs] - middle)**1.5, len(pairs) - 1)[0]
+                    if (highest > 0) == (len(pairs) == 3):
+                        high = middle
+                    else:
+                        low = middle
+                return (low + high) / 2
+        if k == 0 or state.status[k - 1] == OPEN:
+            return (s[k] + s[k + 1]) / 2
+        inner, outer = state.p[k - 1]**2, state.p[k]**2
+        return min(s[k] + (s[k] - s[k - 1]) * outer / (inner - outer), s[k + 1]) if inner > outer else s[k + 1]
 
     def edges(self, state):
         """(edge_contact, edge_stick): outer edges of the contact zone with the largest s and of the widest stick zone.
