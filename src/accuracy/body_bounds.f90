@@ -186,9 +186,9 @@ contains
             if (self%found%point(q, b) == 0) cycle
             associate (errors => record%body_errors(b))
                left = left_at(simulation, record, errors%value(q), q, errors%node(q), energies)
-               change = max(fine%value(q, b) - errors%value(q), vertex_near(divided, values, &
-                  errors%node(q)) - errors%value(q), change_at(self, model, divided, record, &
-                  self%found%point(q, b), trim(maxima(q)%name)))
+               change = max(fine%value(q, b) - errors%value(q), vertex_near(divided, model%mesh, &
+                  values, errors%node(q)) - errors%value(q), change_at(self, model, divided, &
+                  record, self%found%point(q, b), trim(maxima(q)%name)))
                errors%mesh(q) = of_change*change + left
             end associate
          end do

@@ -145,19 +145,27 @@ contains
       end do
    end function points_after
 
-   !> The largest value on the sides at a node by the parabola through both ends and the middle of
-   !> each, which is new on sides of two nodes; -huge where none has its vertex within.
-   pure real(dp) function vertex_near(divided, values, node) result(largest)
+   !> The largest value on the sides of the elements at a node by the parabola through both ends and
+   !> the middle of each, which is new on sides of two nodes; -huge where none has its vertex within.
+   pure real(dp) function vertex_near(divided, mesh, values, node) result(largest)
       type(divided_mesh_type), intent(in) :: divided
+      type(mesh_type), intent(in) :: mesh                 !! before
       real(dp), intent(in) :: values(:)                   !! (nodes of the divided mesh and more)
       integer, intent(in) :: node                         !! of the mesh before
-      integer :: middle, s
+      logical :: is_near(size(mesh%node_number))
+      integer :: e, middle, s
       real(dp) :: bend, slope
 
+      is_near = .false.
+      do e = 1, size(mesh%element_kind)
+         associate (own => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+            if (any(own == node)) is_near(own) = .true.
+         end associate
+      end do
       largest = -huge(1.0_dp)
       associate (sides => divided%division%sides)
          do s = 1, sides%count
-            if (all(sides%ends(:, s) /= node)) cycle
+            if (.not. all(is_near(sides%ends([1, 3], s)))) cycle
             middle = merge(sides%ends(2, s), divided%division%between(1, s), sides%ends(2, s) > 0)
             if (middle == 0) cycle
             associate (a => values(sides%ends(1, s)), b => values(middle), c => &

@@ -25,7 +25,7 @@ module contact_quantities
       quantity_type('peak_pressure', of_interface, 'stress', head='peak', is_estimated=.true., &
       is_traded=.true., is_published=.false., description='largest contact pressure'), &
       quantity_type('edge_contact', of_interface, 'length', label='edge of contact s =', &
-      head='contact', is_estimated=.true., is_traded=.true., resolution=0.05_dp, &
+      head='contact', is_estimated=.true., is_traded=.true., resolution=0.04_dp, &
       description='outer edge of the contact zone with the largest s; NaN: none'), &
       quantity_type('edge_stick', of_interface, 'length', label='of stick s =', head='stick', &
       is_estimated=.true., is_traded=.true., resolution=1.0_dp, &

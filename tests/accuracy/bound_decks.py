@@ -17,7 +17,8 @@ FINE, HEIGHT = make_decks.FINE, make_decks.HEIGHT
 FAMILIES = ("plane", "ball", "ring", "punch")
 SEEDS = range(20)
 FITTED = range(16)   # of these every second one of a family chose the constants
-MISMATCHED = [seed for seed in range(20, 52) if FAMILIES[seed % len(FAMILIES)] != "ring"]
+LAST = range(52, 68)          # drawn when all constants and forms were final
+MISMATCHED = [seed for seed in range(20, 68) if FAMILIES[seed % len(FAMILIES)] != "ring"]
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def known_decks():
 
 def all_decks():
     """Return the known decks, then those of the seeds."""
-    return known_decks() + [drawn_deck(seed) for seed in SEEDS]
+    return known_decks() + [drawn_deck(seed) for seed in (*SEEDS, *LAST)]
 
 
 def mismatched_deck(seed):

@@ -30,6 +30,7 @@ FILE = Path(__file__).resolve().parent / "converged.csv"
 SAME = "same"  # increments
 TESTED = (4, 5, 7)  # seeds of decks with mortar points that a test judges
 LEAST = 1e-7   # of the value: errors that are rounding, or forces that the deck prescribes
+LEAST_EDGE = 0.01   # of the spacing of the contact points: errors that converged edges may have
 ANALYSIS = re.compile(r"^(\*(?:STATIC|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)", re.M | re.I)
 
 
@@ -126,14 +127,19 @@ def judged(deck, folder, levels=LEVELS, parts=PARTS, increments=""):
     for level in levels:
         for part in parts:
             with h5py.File(run(deck, level, part, folder)) as file:
-                last = file[f"contact/{deck.face}/s"][-1]
+                places = file[f"contact/{deck.face}/s"][:]
                 for quantity, rows in file[f"errors/{deck.face}"].items():
                     if quantity not in exact:
                         continue
                     for step, row in enumerate(rows[:], 1):
                         value, true = row[0], exact[quantity][step - 1]
-                        is_end = quantity.startswith("edge") and value >= last * (1 - 1e-6)
-                        if is_end or not abs(true - value) > LEAST * abs(true):
+                        least = LEAST * abs(true)
+                        if quantity.startswith("edge"):
+                            beyond = np.searchsorted(places, value + 1e-6 * places[-1])
+                            if beyond == len(places):
+                                continue
+                            least = LEAST_EDGE * (places[beyond] - places[max(0, beyond - 1)])
+                        if not abs(true - value) > least:
                             continue
                         cases.append(Case(deck.name, deck.is_fitted, level, part, step, quantity, true,
                                           true - value, row[1]))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import held_bounds
 import numpy as np
-from bound_decks import (FITTED, SEEDS, all_decks, drawn_deck, known_decks, mismatched_deck,
+from bound_decks import (LAST, all_decks, drawn_deck, known_decks, mismatched_deck,
                          mismatched_decks)
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT
 from instructions import profile
@@ -23,12 +23,12 @@ requests for an accuracy all use it. It is the sum of three parts.
 
 | part | how it is found |
 |---|---|
-| mesh | The elements at closed contact points and at those through which 99 % of the heat crosses, with those next to them on the faces, and at ties are divided into four, and the last increment of the step is solved with them, from the displacements and temperatures before it. The bound is a multiple of what that changes, plus how much the quantity scatters about a smooth history over the last nine increments, because errors change sign as the edge of contact passes a node, plus a quarter of the squared error of the recovered energy norms in the other elements for force and heat rate. No scatter is counted across a corner of an amplitude. Where a whole face closes, opens, sticks or slips within an increment, the history begins anew; a face that is all open, all sticks or all slips has no scatter. In a later round of a [request](#accuracy-on-request) no more is counted than what the histories of both rounds differ by; half of what both rounds differ by at the end is the least bound there. A peak on the axis may also be off by what it rises over the parabola of the pressures beside it. A peak errs by at least as large a part as the normal force. |
+| mesh | The elements at closed contact points and at those through which 99 % of the heat crosses, with those next to them on the faces, and at ties are divided into four, and the last increment of the step is solved with them, from the displacements and temperatures before it. The bound is a multiple of what that changes, plus how much the quantity scatters about a smooth history over the last nine increments, because errors change sign as the edge of contact passes a node, plus, for force and heat rate, a quarter of the squared error of the recovered energy norms in the other elements, and all of it where there is no scatter: where displacements and temperatures are given, both err as the energy. No scatter is counted across a corner of an amplitude. Where a whole face closes, opens, sticks or slips within an increment, the history begins anew; a face that is all open, all sticks or all slips has no scatter. In a later round of a [request](#accuracy-on-request) no more is counted than what the histories of both rounds differ by; half of what both rounds differ by at the end is the least bound there. A peak on the axis may also be off by what it rises over the parabola of the pressures beside it. A peak errs by at least as large a part as the normal force. |
 | mesh: node pairs | The change counts 2.1 times, since an error that falls with h is twice as large; three times where there is no scatter, as in steps of fewer increments. Of heat rates 0.7 of the scatter counts. |
 | mesh: mortar points | The change counts three times. |
 | mesh: corners | Where contact ends at a corner, as in a press fit with sharp ends, stresses vary nearly as the inverse root of the distance: the change counts 3.4 times. |
-| mesh: friction | The slip at which a node sticks is that of the mesh over which contact grew. The sum of stuck shear forces times the spacing at the edge is largest at some increment; 0.4 of that (0.6 with mortar points), over the closed length, is added to the shear force, and 0.15 of it in proportion to the peak pressure. Between node pairs, where a zone of slip of several spacings is between all that sticks and all that is open, it is as many times smaller. A contact point that supports hold along the face has no friction: where its neighbour slips, what it lacks is added to the shear force. |
-| mesh: edges | The error of an edge depends on where it lies between two nodes, and is far smaller on the divided elements, so what these move it by is nearly its error. For the edge of contact 1.5 times that, plus 0.05 of the spacing of the contact points: three times as much with mortar points, and up to twice as much where the conductance jumps as the gap closes, because heat then enters up to a node. For the edge of stick what divided elements move it by plus 0.4 of the spacing, at least 0.7 of it, with mortar points plus its scatter; where both edges are one, as for the edge of contact, with at least 0.15 of the spacing. A quarter of the squared error of the recovered energy norms in the other elements is added as a part of the closed length. |
+| mesh: friction | The slip at which a node sticks is that of the mesh over which contact grew. The sum of stuck shear forces times the spacing at the edge is largest at some increment; 0.4 of that (0.6 with mortar points), over the closed length, is added to the shear force, and 0.15 of it in proportion to the peak pressure. Between node pairs of quadrilaterals, where a zone of slip of several spacings is between all that sticks and all that is open, it is as many times smaller. A contact point that supports hold along the face has no friction: where its neighbour slips, what it lacks is added to the shear force. |
+| mesh: edges | The error of an edge depends on where it lies between two nodes, and is far smaller on the divided elements, so what these move it by is nearly its error. For the edge of contact 1.5 times that, plus 0.04 of the spacing of the contact points, and up to twice as much of it where the conductance jumps as the gap closes, because heat then enters up to a node. For the edge of stick what divided elements move it by, with mortar points 1.5 times that, plus 0.5 of the spacing of the nodes, at least all of it, with mortar points plus its scatter; where both edges are one, as for the edge of contact, with at least 0.15 of the spacing. A quarter of the squared error of the recovered energy norms in the other elements is added as a part of the closed length. |
 | mesh: jumps | Where the conductance jumps as a gap closes, a contact point beside an edge may be closed and warm, or open and cold, and both satisfy all conditions on the mesh; the increments decide which is found. The end of the step is solved again from OPEN and from CLOSED. What states differ by that differ so is added to the bounds; that of an edge is at least as large. The listing says it. |
 | increments | Where friction or the scheme of (3.4) makes the path matter, a companion run with increments of twice the size is solved in parallel on the contact points alone. The bound is the difference, for the peak pressure between mortar points with friction 2.4 times that, because its error falls with the square root of the increments. |
 | iteration | Residual of the fixed point over the distance of the coupling gain from 1. |
@@ -52,29 +52,28 @@ increments as written and half as long. A true error is that to the converged va
 times at the faces and twice elsewhere with increments a quarter as long, corrected by what increments a
 sixteenth as long change. Decks with a number have materials, friction, geometry and loads drawn at random
 (`tests/accuracy/bound_decks.py`). The constants were chosen on one part of the decks, the others judge
-them; those from 16 on were run only when the form of the bounds was final as well. Errors below 1e-7 of
-the value and edges at the end of a face are not judged, and no bound judged here is uncertain. The factor
-2.1 was 2 until a deck kept aside, the cracked plate, was seen: its errors fall with h, so that bounds
-equalled them within 1 %, as they do for four such plates of other materials and laws. The missing scatter
-of the edge of stick was chosen with the shares of all decks in sight. They were chosen while the fine mesh
-was relaxed and also divided the elements with 90 % of the squared error; the decks with node pairs were
-judged again without a change of them when it was solved instead. The goals are 95 % that hold, which all
-quantities reach but edges of stick between mortar points, and a median of bound over error of at most 4, which shear
-forces and edges of contact miss in part. [Bounds of edges against known
-solutions](#bounds-of-edges-against-known-solutions) judges edges on families of their own.
+them; those from 52 on, *drawn last*, were run once, when all constants and forms were final. Errors below
+1e-7 of the value, of edges below 0.01 of the spacing, and edges at the end of a face are not judged, and no
+bound judged here is uncertain. The factor 2.1 was 2 until a deck kept aside, the cracked plate, was seen:
+its errors fall with h, so that bounds equalled them within 1 %, as they do for four such plates of other
+materials and laws. The parts of the spacing of the edge of stick were chosen with the shares of all decks in
+sight but those drawn last. The goals are 95 % that hold and a median of bound over error of at most 4.
+[Bounds of edges against known solutions](#bounds-of-edges-against-known-solutions) judges edges on families
+of their own.
 
 With faces that do not match, the constants were chosen on decks of seeds below 20 and from 100 to
-143. The decks of seeds 20 to 51, the published cylinder with 30 sides on 22, and Hertz with 3 on 2
+143, those of the edge of stick on all below 52. The decks of seeds from 20 on, the published cylinder with 30 sides on 22, and Hertz with 3 on 2
 judge them; only the factor 2.4 of the peak pressure was found on these themselves. "Same
 increments" compares with the fine mesh in the same increments, without the error of these.
 """
 QUANTITIES = {"normal_force": "normal force", "heat_rate": "heat rate",
               "peak_pressure": "peak pressure"}
 EDGES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
-LATE = {drawn_deck(seed).name for seed in SEEDS if seed not in FITTED}
-DECKS = {"chosen on": lambda case: case.is_fitted, "kept aside": lambda case: not case.is_fitted,
-         "of these from 16 on": lambda case: case.deck in LATE, "all": lambda case: True}
-MORTAR = {"drawn": lambda case: "mortar" in case.deck,
+LATE = {drawn_deck(seed).name for seed in LAST}
+DECKS = {"chosen on": lambda case: case.is_fitted, "kept aside": lambda case: not (case.is_fitted or is_late(case)),
+         "drawn last": lambda case: is_late(case), "all": lambda case: True}
+MORTAR = {"drawn": lambda case: "mortar" in case.deck and not is_late(case),
+          "drawn last": lambda case: is_late(case),
           "cylinder 30 to 22": lambda case: "cylinder" in case.deck,
           "Hertz 3 to 2": lambda case: "Hertz" in case.deck}
 ANALYSIS = re.compile(r"^(\*(?:STATIC|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)", re.M | re.I)
@@ -95,6 +94,11 @@ CASES = (Case("cylinder", CYLINDER, "FACE", True),
          Case("Hertz", HERTZ, "FACE"),
          Case("cracked plate", INPUT / "examples" / "cracked_plate.inp", "CRACK"),
          Case("press fit", INPUT / "examples" / "press_fit.inp", "SEAT"))
+
+
+def is_late(case):
+    """Return whether a deck was drawn last."""
+    return case.deck.removesuffix(", mortar") in LATE
 
 
 def case_deck(case, level, parts, folder, estimates, pairing="NODES"):
@@ -164,8 +168,9 @@ def mismatched(folder):
     decks = mismatched_decks()
     same = [case for deck in decks for case in held_bounds.judged_with_same_increments(deck, folder)]
     drawn = [case for deck in decks if "mortar" in deck.name for case in held_bounds.judged(deck, folder)]
+    groups = {name: MORTAR[name] for name in ("drawn", "drawn last")}
     return [shares(same, "Faces that do not match, same increments", MORTAR),
-            shares(drawn, "Faces that do not match, shorter increments", {"drawn": MORTAR["drawn"]})]
+            shares(drawn, "Faces that do not match, shorter increments", groups)]
 
 
 def misses(cases):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import h5py
 import numpy as np
-from deck_runs import solve
+from deck_runs import run
 from instructions import instructions
 from maxima_decks import FAMILIES, KINDS
 
@@ -20,7 +20,7 @@ temperature of each body, with contact and without, and of stresses and temperat
 
 | part | how it is found |
 |---|---|
-| mesh | The elements at the node and those next to them are divided into four, with those at the contact, and the last increment is solved with them. The bound is 2.1 times what the node's value changes, of stress at least the von Mises stress of the change of its components, as far as that is below twice the largest change of the von Mises stress at the nodes of the elements there, and at least what the value rises at new nodes beside it or on the parabolas through the nodes of its sides. A quarter of the squared error of the recovered energy norms in the other elements is added as a part of the stress, 1.5 times that of the heat flux as a part of the range of temperatures where the temperature is not given. |
+| mesh | The elements at the node and those next to them are divided into four, with those at the contact, and the last increment is solved with them. The bound is 2.1 times what the node's value changes, of stress at least the von Mises stress of the change of its components, as far as that is below twice the largest change of the von Mises stress at the nodes of the elements there, and at least what the value rises at new nodes beside it or on the parabolas through the nodes of the sides of its elements. A quarter of the squared error of the recovered energy norms in the other elements is added as a part of the stress, 1.5 times that of the heat flux as a part of the range of temperatures where the temperature is not given. |
 | increments | As large a part of the value as the largest one of normal force, heat rate and peak pressure of the interfaces |
 | iteration | As for interfaces |
 
@@ -38,8 +38,8 @@ A bound is *uncertain* where the scheme of (3.4) takes the past.
 **How they are judged.** Problems with closed forms, drawn at random (`tests/accuracy/maxima_decks.py`),
 of elements of eight, eight reduced, four, four with incompatible modes, six and three nodes, with 2, 4, 8 and 16 elements along
 each side. The constants 2.1 and 0.25 are those of interfaces; 1.5 was chosen on draws 0 and 1, what counts of changes near on 0 to 2, and draws 3 to 5
-judge them. Errors below 1e-5 of the value and meshes of straight sides that turn by more than 30 degrees are
-not judged. Where an error passes zero by chance, the ratio of a bound to it says nothing; so bounds are also compared with the largest
+judge them. Errors below 1e-5 of the value are not judged, nor stress that is larger round a singular corner which the
+summary names, as where straight sides turn by more than 30 degrees. Where an error passes zero by chance, the ratio of a bound to it says nothing; so bounds are also compared with the largest
 error of all draws of a problem on the same mesh. Components of stress may change where their errors do not matter: in reduced
 elements in a rod with a uniform source the von Mises stress errs by the fourth power of the spacing, its components by the second, and
 bounds were up to 400 times the error until changes at the nodes near limited them.
@@ -54,7 +54,6 @@ WORDS = {"tube": "hot tube under pressures", "bent": "bent ring", "rotor": "turn
 HEAD = ["problem", "largest", "held, chosen on", "held, kept aside", "median bound/error",
         "kept aside", "least bound/error", "largest bound/error",
         "largest over the largest error of the draws"]
-CURVED = "tube", "bent", "rotor", "hole", "sphere"
 
 
 @dataclass(frozen=True)
@@ -71,19 +70,21 @@ class Case:
 
 
 def judged(family, draw, folder, kinds=KINDS):
-    """Return the cases of a drawn problem on all meshes."""
+    """Return the cases of a drawn problem on all meshes; not of stress that is larger round a corner which
+    the run names as singular."""
     seed = [draw, zlib.crc32(family.encode())]
     make, exact = FAMILIES[family](np.random.default_rng(seed))
     cases = []
     for kind in kinds:
         for n in SIZES:
-            if family in CURVED and kind in ("4", "4I", "3") and n == 2:
-                continue
             deck = folder / f"{family}-{draw}-{kind}-{n}.inp"
             deck.write_text("\n".join(make(kind, n)) + "\n")
-            with h5py.File(solve(deck)) as file:
+            process = run("run", deck, "--out", folder)
+            assert process.returncode == 0, process.stderr
+            has_corner = "corner, round which stress is larger" in process.stdout
+            with h5py.File(deck.with_suffix(".vtkhdf")) as file:
                 for name, true in zip(("von_mises", "temperature"), exact, strict=True):
-                    if true is None:
+                    if true is None or name == "von_mises" and has_corner:
                         continue
                     value, bound, *_ = file[f"errors/body 1/{name}"][-1]
                     error = abs(value - true) / true
@@ -174,6 +175,12 @@ def test_bounds_shrink_with_errors_that_fall_by_the_fourth_power(tmp_path):
     cases = judged("rod", 0, tmp_path, ("8R",))
     assert [case.mesh[1] for case in cases if case.name == "von mises"] == [2, 4]
     assert all(case.error <= case.bound < 30 * case.error for case in cases if case.name == "von mises")
+
+
+def test_a_maximum_between_nodes_is_bounded_by_all_sides_beside_the_highest_one(tmp_path):
+    """A midside node, whose own side runs across the slope, may be the highest of two that are equal."""
+    cases = judged("warm_tube", 5, tmp_path, ("8R",))
+    assert len(cases) == 3 and all(case.error <= case.bound for case in cases)
 
 
 def test_no_bound_is_far_above_the_errors_of_all_draws():

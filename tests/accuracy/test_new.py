@@ -30,13 +30,13 @@ in each step) are drawn
 (`tests/accuracy/new_families.py`). References are accurate to 1e-5 of forces and 1e-3 of the spacing: errors below
 2e-5 of the value and 2e-3 of the spacing are not judged.
 
-**What these decks changed.** No constant was chosen on them, but two forms were, because bounds failed here at first:
-elements are divided where heat crosses open contact points, too (before, 11 of 26 heat rates held where a gas conducts
-in the gap), and a peak errs by at least as large a part as the force (before, 85 of 93 held).
-
-**What no bound sees here.** Elements that grow by 35 % from one to the next outside the contact leave errors of the
-normal force of up to 2.5 times its bound; finer ones there mend it. Triangles make a shear while the contact
-grows that is larger than the bound of the shear force. Other errors exceed their bounds by a few per cent.
+**What these decks changed.** No constant was chosen on them, but forms were, because bounds failed on those first
+drawn (seeds below 64): elements are divided where heat crosses open contact points, too (before, 11 of 26 heat rates
+held where a gas conducts in the gap); a peak errs by at least as large a part as the force (before, 85 of 93 held);
+where there is no scatter the whole energy of elements that are not divided counts (before, 75 of 80 normal forces
+held, since elements grow by 35 % from one to the next outside the contact); triangles lock friction in however wide
+the zone of slip is (before, 13 of 20 shear forces with node pairs held). *Drawn last* are seeds 64 to 95: they were
+solved once, after all of this.
 """
 LEAST, LEAST_EDGE = 2e-5, 2e-3
 QUANTITIES = {"normal_force": "normal force", "shear_force": "shear force", "heat_rate": "heat rate",
@@ -54,6 +54,7 @@ of this document, *drawn contacts* being those of [Bounds that hold](#bounds-tha
 node pairs and mortar points, or partly chose constants, medians are those of the parts.
 """
 HEAD = ["family", "points", "bounds of", "held", "worst error/bound", "median bound/error"]
+GROUPS = {"first drawn": new_families.SEEDS, "drawn last": new_families.LAST}
 
 
 def written(problem, folder, more=""):
@@ -95,22 +96,24 @@ def shares(cases):
 
 
 def held_tables(folder):
-    """Return the table of the families, and that of the heat by laws."""
-    table = Table(TITLE_OF_SHARES, HEAD)
-    laws = Table("Heat rates of the dies by conductance", ["dies", "points", "conductance", *HEAD[3:]])
+    """Return the tables of the families together, and of each."""
+    groups, together = {}, {}
     for family in new_families.FAMILIES:
-        found = [(seed, judged(new_families.drawn(family, seed), folder)) for seed in new_families.SEEDS]
-        assert not any("unsolved" in case for _, case in found), "a deck has no solution"
-        for pairing, points in enumerate(POINTS):
-            for quantity, title in QUANTITIES.items():
-                some = {seed: case[quantity] for seed, case in found if seed % 2 == pairing and quantity in case}
-                if some:
-                    table.rows.append([family, points, title, *shares(list(some.values()))])
-                for law in new_families.LAWS:
-                    own = [case for seed, case in some.items() if new_families.LAWS[seed // 2 % 4] == law]
-                    if quantity == "heat_rate" and own:
-                        laws.rows.append([family, points, law, *shares(own)])
-    return [table, laws]
+        for group, seeds in GROUPS.items():
+            for seed in seeds:
+                found = judged(new_families.drawn(family, seed), folder)
+                assert "unsolved" not in found, "a deck has no solution"
+                for quantity, case in found.items():
+                    key = POINTS[seed % 2], QUANTITIES[quantity]
+                    groups.setdefault((family, *key, group), []).append(case)
+                    together.setdefault((*key[::-1], group), []).append(case)
+    both = [Table("Bounds on all these families together", [*HEAD[2:0:-1], "decks", *HEAD[3:]]),
+            Table(TITLE_OF_SHARES, [*HEAD[:3], "decks", *HEAD[3:]])]
+    for table, cases in zip(both, (together, groups), strict=True):
+        order = [*new_families.FAMILIES, *QUANTITIES.values(), *POINTS, *GROUPS]
+        table.rows += [[*key, *shares(cases[key])] for key in sorted(
+            cases, key=lambda key: [order.index(part) for part in key])]
+    return both
 
 
 @cache
@@ -162,7 +165,7 @@ def told_shares():
 def all_families(own):
     """Return the table of all families, those of this theme with the rows of a table."""
     cases = {}
-    for family, quantity, *shares_of in told_shares() + [[row[0], *row[2:]] for row in own.rows]:
+    for family, quantity, *shares_of in told_shares() + [[row[0], row[2], *row[4:]] for row in own.rows]:
         cases.setdefault((family, quantity), []).append(shares_of)
     table = Table("All families", [HEAD[0], *HEAD[2:]], text=ALL_TEXT)
     for key, parts in cases.items():
@@ -177,8 +180,8 @@ def all_families(own):
 
 def tables(folder):
     """Return the tables of the theme."""
-    own, laws = held_tables(folder)
-    return [own, laws, reference_table(folder), all_families(own)]
+    together, own = held_tables(folder)
+    return [together, own, reference_table(folder), all_families(own)]
 
 
 def test_references_agree_with_closed_forms():
@@ -214,6 +217,6 @@ def test_heat_through_the_gas_beside_the_contact_is_bounded(family, tmp_path):
 
 
 def test_the_document_has_all_families():
-    own = Table(TITLE_OF_SHARES, HEAD, [[*row.values()] for row in rows(TITLE_OF_SHARES)])
+    own = Table(TITLE_OF_SHARES, [], [[*row.values()] for row in rows(TITLE_OF_SHARES)])
     assert {row[0] for row in own.rows} == {*new_families.FAMILIES}
     assert [[*row.values()] for row in rows("All families")] == all_families(own).rows
