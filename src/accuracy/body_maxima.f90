@@ -146,7 +146,8 @@ contains
    end function points_after
 
    !> The largest value on the sides of the elements at a node by the parabola through both ends and
-   !> the middle of each, which is new on sides of two nodes; -huge where none has its vertex within.
+   !> the middle of each, which is new on sides of two nodes; -huge where none has its vertex
+   !> within.
    pure real(dp) function vertex_near(divided, mesh, values, node) result(largest)
       type(divided_mesh_type), intent(in) :: divided
       type(mesh_type), intent(in) :: mesh                 !! before

@@ -54,7 +54,7 @@ module error_estimator
       type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
       type(quantity_histories_type) :: histories   !! quantities at the increments before
-      logical, allocatable :: has_triangles(:)     !! (interfaces) whether sides of its faces are theirs
+      logical, allocatable :: has_triangles(:)     !! (interfaces) with some at its faces
       real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
       integer, allocatable :: regime(:)            !! (interfaces) regime_of their contact
       !> Squared relative errors that are left in elements that are not divided, of both fields and

@@ -126,11 +126,11 @@ contains
       real(dp), intent(in) :: change(:), scatter(:)
       real(dp), intent(in) :: of_nodes      ! error of an edge of contact in its resolution
       real(dp), intent(inout) :: bounds(:)
-      real(dp) :: part
+      real(dp) :: part, spacing
 
+      spacing = nodal_spacing(points, contact%edge_stick)
       associate (outer => find_quantity(estimated, 'edge_contact'), &
-         inner => find_quantity(estimated, 'edge_stick'), &
-         spacing => nodal_spacing(points, contact%edge_stick))
+         inner => find_quantity(estimated, 'edge_stick'))
          part = estimated(outer)%resolution*of_nodes*edge_spacing(points, contact%edge_contact)
          bounds(outer) = edge_bound(contact%edge_contact, change(outer), of_edge_change, part, &
             0.0_dp)

@@ -1,12 +1,12 @@
 !> Edges of the contact and stick zones, sharpened below the nodal spacing.
 !>
-!> Edge of contact, between a closed and an open contact point: beyond it the gap is
-!> C (s - a)^(3/2) + D (s - a)^(5/2) + ..., before it p goes like sqrt(a - s). The contact points
-!> next to the edge err most, pressures more than gaps: the edge is the a with which both terms are
-!> the gaps of the second to fourth open contact point, kept between the two contact points. Where
-!> fewer are open, it takes the first to third, or the first term alone and the first two; where
-!> there is but one, p^2 on a straight line through two contact points. Of mortar points the gaps
-!> are the means of these terms with hat functions.
+!> Edge of contact, between a closed and an open contact point: near it p goes like sqrt(a - s) and
+!> the gap like (s - a)^(3/2), so that gap^(2/3) goes to zero smoothly. The contact points next to
+!> the edge err most, pressures more than gaps: the edge is the zero of a parabola through gap^(2/3)
+!> of the second to fourth open contact point, kept between the two contact points. Where fewer are
+!> open, it goes through the first to third, or a straight line through the first two; where there
+!> is but one, p^2 is on a straight line through two contact points. Of mortar points the gap is the
+!> mean of (s - a)^(3/2) with a hat function, and the distance from the edge that with this gap.
 !>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
@@ -145,30 +145,26 @@ contains
       if (number < 0) number = size(contact_state)
    end function count_open
 
-   !> Edge a beyond contact point k with which C (s - a)^(3/2) + D (s - a)^(5/2) are the gaps of
-   !> three contact points, or the first term those of two.
+   !> Edge a beyond contact point k with which gap^(2/3) is A d + B d^2 at three contact points in a
+   !> distance d from it, or A d at two.
    pure function end_of_gap(profile, k, first, last) result(edge)
       type(contact_profile_type), intent(in) :: profile
-      integer, intent(in) :: k, first, last      ! first..last: the contact points with these gaps
+      integer, intent(in) :: k, first, last      ! first..last: the contact points
       real(dp) :: edge
-      real(dp), dimension(first:last) :: p, q    ! both terms there, without their factors
-      real(dp) :: ends(2), bend
+      real(dp), dimension(first:last) :: d, g
+      real(dp) :: bend, ends(2)
       integer :: j, step
 
+      g = profile%gap(first:last)**(2.0_dp/3.0_dp)
       ends = profile%s(k:k + 1)
-      associate (g => profile%gap, i => first)
+      associate (i => first)
          do step = 1, halvings
             edge = 0.5_dp*sum(ends)
-            p = [(term(profile, j, edge, 3), j=first, last)]
-            ! Positive where the edge is too far: gap over first term then bends up, or falls.
-            if (last - first == 1) then
-               bend = p(i + 1)*g(i) - p(i)*g(i + 1)
-            else
-               q = [(term(profile, j, edge, 5), j=first, last)]
-               bend = g(i)*(p(i + 1)*q(i + 2) - p(i + 2)*q(i + 1)) + &
-                  g(i + 1)*(p(i + 2)*q(i) - p(i)*q(i + 2)) + &
-                  g(i + 2)*(p(i)*q(i + 1) - p(i + 1)*q(i))
-            end if
+            d = [(distance(profile, j, edge), j=first, last)]
+            ! Positive where the edge is too far: g/d then bends up, or falls.
+            bend = g(i)*d(i + 1) - g(i + 1)*d(i)
+            if (last - first == 2) bend = bend*d(i + 2)*(d(i + 2) - d(i + 1)) - &
+               (g(i + 1)*d(i + 2) - g(i + 2)*d(i + 1))*d(i)*(d(i + 1) - d(i))
             if (bend > 0.0_dp) then
                ends(2) = edge
             else
@@ -176,34 +172,34 @@ contains
             end if
          end do
       end associate
+      edge = ends(1)
+      if (ends(2) >= profile%s(k + 1)) edge = ends(2)
    end function end_of_gap
 
-   !> (s - a)^(n/2) beyond a at a contact point: its mean with the hat function there, or its value.
-   pure real(dp) function term(profile, k, a, n)
+   !> Distance of a contact point from a, beyond it; of mortar points that at which (x - a)^(3/2) is
+   !> its mean with the hat function.
+   pure real(dp) function distance(profile, k, a)
       type(contact_profile_type), intent(in) :: profile
-      integer, intent(in) :: k, n
+      integer, intent(in) :: k
       real(dp), intent(in) :: a
 
       associate (s => profile%s)
-         if (profile%hat_spacings > 0) then
-            term = mean_beyond(s(k - 1:min(k + 1, size(s))), a, n)
-         else
-            term = sqrt(max(s(k) - a, 0.0_dp))**n
-         end if
+         distance = max(s(k) - a, 0.0_dp)
+         if (profile%hat_spacings > 0) distance = &
+            mean_beyond(s(k - 1:min(k + 1, size(s))), a)**(2.0_dp/3.0_dp)
       end associate
-   end function term
+   end function distance
 
-   !> Mean of (x - a)^(n/2) beyond a with the hat function of the second of two or three contact
+   !> Mean of (x - a)^(3/2) beyond a with the hat function of the second of two or three contact
    !> points.
-   pure real(dp) function mean_beyond(s, a, n)
+   pure real(dp) function mean_beyond(s, a)
       real(dp), intent(in) :: s(:), a
-      integer, intent(in) :: n
       real(dp) :: root(size(s))
-      real(dp) :: once(size(s)), twice(size(s))   ! the integrals of (x - a)^(n/2)
+      real(dp) :: once(size(s)), twice(size(s))   ! the integrals of (x - a)^(3/2)
 
       root = sqrt(max(s - a, 0.0_dp))
-      once = root**(n + 2)/(0.5_dp*n + 1.0_dp)
-      twice = root**(n + 4)/((0.5_dp*n + 1.0_dp)*(0.5_dp*n + 2.0_dp))
+      once = root**5/2.5_dp
+      twice = root**7/8.75_dp
       mean_beyond = once(2) - (twice(2) - twice(1))/(s(2) - s(1))
       if (size(s) > 2) mean_beyond = mean_beyond + (twice(3) - twice(2))/(s(3) - s(2)) - once(2)
       mean_beyond = 2*mean_beyond/(s(size(s)) - s(1))

@@ -243,7 +243,7 @@ contains
          length = s(closed + 1) - s(closed)
          edge%edge = max((a - s(closed))/length, least_length)
          edge%pressure = along%pressure(closed)
-         mean = mean_beyond(s(closed:min(closed + 2, m)), a, 3)
+         mean = mean_beyond(s(closed:min(closed + 2, m)), a)
          edge%gap_rate = huge(1.0_dp)**0.25_dp
          if (mean > 0.0_dp) edge%gap_rate = along%gap(closed + 1)/mean*length**1.5_dp
       end associate

@@ -73,18 +73,18 @@ def bent_on_a_block(path, friction, cards=(), held="B.BOTTOM"):
         "*BOUNDARY", "A.LEFT, 11, 11, 200.", "A.RIGHT, 11, 11, -100.", "*END STEP"]))
 
 
-@pytest.mark.parametrize(("held", "near"), [("B.BOTTOM", 0.01), ("B", 0.05)])
+@pytest.mark.parametrize(("held", "near"), [("B.BOTTOM", 0.03), ("B", 0.1)])
 @pytest.mark.parametrize("friction", [["*FRICTION", "0.3"], []])
 def test_mesh_of_a_coupled_run(tmp_path, friction, held, near):
     """The bound of the mesh is three times what the next one changes, also where one body is held at all
-    of its nodes. In one increment, before which nothing has slipped: what friction left on the finer mesh
+    of its nodes, and the energy of the elements that are left. In one increment, before which nothing has slipped: what friction left on the finer mesh
     is not known."""
     coarse = errors(solve(bent_on_a_block(tmp_path / "coarse.inp", friction, held=held)), "P")
     fine = errors(solve(bent_on_a_block(tmp_path / "fine.inp", friction, ["*REFINE, LEVELS=1"], held)), "P")
     assert 1.0 < coarse["edge_contact"][0] < 3.0
     for name in ("normal_force", "heat_rate", "peak_pressure"):
         value, _, mesh, *_ = coarse[name]
-        assert 3 * abs(fine[name][0] - value) == pytest.approx(mesh, rel=near), name
+        assert 1 - near < 3 * abs(fine[name][0] - value) / mesh < 1 + 1e-6, name
 
 
 def test_a_later_step_divides_the_elements_at_its_contact(tmp_path):
@@ -220,7 +220,7 @@ def test_a_corner_of_an_amplitude_is_no_scatter(tmp_path, corner):
         assert value == pytest.approx(apart[name][0], rel=1e-6), name
     # Of these scatter is the larger part. The finer mesh of the second step is that of the first.
     assert bent["edge_contact"][1] == pytest.approx(apart["edge_contact"][1], rel=0.3)
-    assert 0.5 < bent["normal_force"][1] / apart["normal_force"][1] < 2.0
+    assert 0.25 < bent["normal_force"][1] / apart["normal_force"][1] < 2.0
 
 
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])

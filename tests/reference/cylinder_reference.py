@@ -344,9 +344,9 @@ class Contact:
     # Zone edges, sharpened below the nodal spacing
 
     def contact_edge(self, state, k):
-        """Edge between the closed pair k and the open pair k+1: the a with which C (s - a)^(3/2) + D (s - a)^(5/2) are
-        the gaps of the second to fourth open pair, or where there are not so many of the first three, or C alone the
-        first two, or p^2 from inside."""
+        """Edge between the closed pair k and the open pair k+1: the zero of a parabola through g^(2/3) of the second to
+        fourth open pair, or where there are not so many of the first three, or of a line through the first two, or of
+        one through p^2 inside."""
         s, g = self.s, state.g
         last = k
         while last < min(k + 4, self.count - 1) and state.status[last + 1] == OPEN:
@@ -354,16 +354,8 @@ class Contact:
         for last in range(last, k + 1, -1):
             pairs = np.arange(max(k + 1, last - 2), last + 1)
             if g[pairs[0]] > 0 and (np.diff(g[pairs]) > 0).all():
-                low, high = s[k], s[k + 1]
-                for _ in range(50):
-                    middle = (low + high) / 2
-                    # What is left of the gap is even, or on a line.
-                    highest = np.polyfit(s[pairs] - s[k], g[pairs] / (s[pairs] - middle)**1.5, len(pairs) - 1)[0]
-                    if (highest > 0) == (len(pairs) == 3):
-                        high = middle
-                    else:
-                        low = middle
-                return (low + high) / 2
+                roots = np.roots(np.polyfit(s[pairs] - s[k + 1], g[pairs]**(2 / 3), len(pairs) - 1)) + s[k + 1]
+                return np.clip(roots[np.argmin(np.abs(roots - s[k + 1]))].real, s[k], s[k + 1])
         if k == 0 or state.status[k - 1] == OPEN:
             return (s[k] + s[k + 1]) / 2
         inner, outer = state.p[k - 1]**2, state.p[k]**2
