@@ -41,7 +41,7 @@ COUNTS = (1, 5, 10)       # increments
 WIDTHS = range(12, 21)    # elements on half a wave
 MORE_WIDTHS, MORE_COUNTS = range(8, 25), (1, 4, 10, 20)
 # Those after the first 16 not for SPECTRAL.
-SEEDS, MORE, LAST = range(16), range(16, 24), range(24, 32)
+SEEDS, MORE, LAST = range(16), range(16, 32), range(32, 40)
 TOLD = ("edge", "stick", "pressure")
 FILE = Path(__file__).resolve().parent / "wavy_edges.csv"
 
