@@ -13,7 +13,7 @@ module error_estimator
    use element_kinds, only: element_corner_count
    use errors, only: error_type
    use increment_quantities, only: history_value
-   use interface_quantities, only: quantities_of, quantities_of_state, regime_of
+   use interface_quantities, only: quantities_of, quantities_of_state, regime_of, turns_at_peak
    use kinds, only: dp
    use local_refinement, only: elements_at_surfaces
    use mesh, only: mesh_type
@@ -149,7 +149,8 @@ contains
             errors%bound = errors%mesh + errors%increment + errors%iteration
             allocate (errors%why_not(size(estimated)))
             do q = 1, size(estimated)
-               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q)
+               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q, &
+                  turns_at_peak(record%contacts(i)))
             end do
          end associate
       end do
@@ -158,7 +159,7 @@ contains
             errors%bound = errors%mesh + errors%increment + errors%iteration
             allocate (errors%why_not(size(errors%value)))
             do q = 1, size(errors%value)
-               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q)
+               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q, .false.)
                if (errors%why_not(q)%value == '' .or. is_steady(model, record)) cycle
                errors%why_not(q)%value = 'heat is not in equilibrium at the end of the step'
             end do
@@ -196,11 +197,12 @@ contains
    end subroutine release
 
    !> Why a quantity has no bound; nothing where it has one.
-   pure function reason(doubled, no_mesh, errors, q) result(why_not)
+   pure function reason(doubled, no_mesh, errors, q, turns) result(why_not)
       type(doubled_increments_type), intent(in) :: doubled
       character(*), intent(in) :: no_mesh      ! why no quantity has one of the mesh, or nothing
       class(interface_errors_type), intent(in) :: errors
       integer, intent(in) :: q
+      logical, intent(in) :: turns             ! as turns_at_peak
       character(:), allocatable :: why_not
 
       why_not = ''
@@ -213,8 +215,11 @@ contains
          why_not = no_mesh
       else
          why_not = 'a finer mesh has no such edge'
-         if (q == find_quantity(estimated, 'peak_pressure')) why_not = &
-            'the peak is at a corner, where one face ends'
+         if (q == find_quantity(estimated, 'peak_pressure')) then
+            why_not = 'the peak is at a corner, where one face ends'
+            if (turns) why_not = 'friction turns round at the peak, and what sticks there is '// &
+               'smaller than the mesh'
+         end if
       end if
    end function reason
 

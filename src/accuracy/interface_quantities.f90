@@ -3,7 +3,7 @@ module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use contact_system, only: contact_open
+   use contact_system, only: contact_open, contact_slip
    use increment_records, only: measure_contact
    use friction_laws, only: friction_law_type
    use heat_equation, only: heat_across
@@ -15,7 +15,8 @@ module interface_quantities
    implicit none
    private
    public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &
-      peaks_at_corner, point_before, quantities_of, quantities_of_state, regime_of, rises_to_end
+      peaks_at_corner, point_before, quantities_of, quantities_of_state, regime_of, rises_to_end, &
+      turns_at_peak
 
    !> Regimes of a face with several contact states: a part of it is closed, or all of it.
    integer, parameter :: partly_closed = -1, closed = -2
@@ -151,6 +152,30 @@ contains
 
       peaks_at_corner = any(points%at_corner .and. peak_is_at_end(contact))
    end function peaks_at_corner
+
+   !> Whether friction turns round at the largest pressure: contact points beside it slip in
+   !> opposite directions, or one does beside an end that supports hold. What sticks between them is
+   !> smaller than the spacing, and up to there the pressure between bodies of different stiffness
+   !> rises as the logarithm of the distance, because shear jumps (J. Dundurs, J. Appl. Mech. 36
+   !> (1969) 650-652).
+   pure logical function turns_at_peak(contact) result(turns)
+      type(contact_record_type), intent(in) :: contact    !! state of the interface
+      integer :: k, m
+
+      m = size(contact%pressure)
+      turns = allocated(contact%shear) .and. m > 2 .and. any(contact%pressure > 0.0_dp)
+      if (.not. turns) return
+      k = maxloc(contact%pressure, dim=1)
+      associate (shear => contact%shear, slips => contact%contact_state == contact_slip)
+         if (k > 1 .and. k < m) then
+            turns = slips(k - 1) .and. slips(k + 1) .and. shear(k - 1)*shear(k + 1) < 0.0_dp
+         else
+            associate (next => merge(2, m - 1, k == 1))
+               turns = slips(next) .and. abs(shear(next)) > 0.0_dp .and. abs(shear(k)) <= 0.0_dp
+            end associate
+         end if
+      end associate
+   end function turns_at_peak
 
    !> Whether the pressure is largest at an end of the face and rises to it beyond the line through
    !> the two contact points before, as where it has no limit: by more than pressures of corners and

@@ -16,7 +16,7 @@ module mesh_bounds
    use contact_points, only: contact_points_type, on_axis
    use contact_quantities, only: estimated
    use contact_system, only: contact_open, contact_slip, contact_stick
-   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner
+   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner, turns_at_peak
    use kinds, only: dp
    use quantity_types, only: find_quantity
    use records, only: contact_record_type
@@ -97,7 +97,8 @@ contains
          ! Both meshes may have the same peak by chance: it errs by as large a part as the force.
          if (contact%normal_force > 0.0_dp .and. .not. ieee_is_nan(peak + force)) peak = max(peak, &
             force*maxval(contact%pressure)/contact%normal_force)
-         if (peaks_at_corner(points, contact)) peak = ieee_value(1.0_dp, ieee_quiet_nan)
+         if (peaks_at_corner(points, contact) .or. turns_at_peak(contact)) peak = &
+            ieee_value(1.0_dp, ieee_quiet_nan)
       end associate
       call bound_edges(points, contact, change, known_scatter, 1.0_dp + of_jump*jump, bounds)
       ! What is left in other elements; halved ones show how far the force moves an edge.

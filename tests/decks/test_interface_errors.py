@@ -58,6 +58,20 @@ def test_error_of_hertz_peak_pressure(tmp_path):
     assert abs(edge - value) <= bound
 
 
+def test_a_peak_where_friction_turns_round_is_uncertain(tmp_path):
+    """With little friction the whole face slips away from the axis: between both sides the shear jumps, and the
+    pressure rises with every mesh, as long as nothing sticks there."""
+    peaks = []
+    for level in (0, 2):
+        deck = bare(CYLINDER, tmp_path, f"{level}.inp", [f"*REFINE, LEVELS={level}"], {"0.155, 1.E5": "0.05, 1.E5"})
+        process = run("run", deck, "--out", tmp_path)
+        value, bound, *_ = errors(deck.with_suffix(".vtkhdf"), "FACE")["peak_pressure"]
+        assert np.isnan(bound)
+        assert "friction turns round at the peak, and what sticks there is smaller than the mesh" in process.stdout
+        peaks.append(value)
+    assert peaks[1] > peaks[0]
+
+
 def bent_on_a_block(path, friction, cards=(), held="B.BOTTOM"):
     """Write a deck with two blocks of one row each, the upper one bent by heat until it touches in part:
     all elements are at the faces."""
