@@ -55,6 +55,7 @@ module error_estimator
       type(solution_state_type) :: before          !! state before the present increment
       type(quantity_histories_type) :: histories   !! quantities at the increments before
       logical, allocatable :: has_triangles(:)     !! (interfaces) with some at its faces
+      logical, allocatable :: is_mixed(:)          !! (interfaces) of different stiffness
       real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
       integer, allocatable :: regime(:)            !! (interfaces) regime_of their contact
       !> Squared relative errors that are left in elements that are not divided, of both fields and
@@ -86,6 +87,8 @@ contains
       self%has_triangles = [(any(elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
          model%contacts(i)%master]) .and. element_corner_count(model%mesh%element_kind) == 3), &
          i=1, size(model%contacts))]
+      self%is_mixed = [(differ_in_stiffness(model, [model%contacts(i)%slave, &
+         model%contacts(i)%master]), i=1, size(model%contacts))]
       call self%doubled%start(model, simulation%bodies, simulation%state)
    end subroutine start
 
@@ -108,6 +111,7 @@ contains
       real(dp) :: values(size(estimated), size(record%contacts))
       type(contact_points_type) :: points
       character(:), allocatable :: no_mesh
+      logical :: turns
       integer :: i, q
 
       if (.not. self%is_on) return
@@ -145,12 +149,14 @@ contains
       call bound_increments(self, simulation, record)
       call bound_iteration(record)
       do i = 1, size(record%errors)
+         turns = self%is_mixed(i) .and. turns_at_peak(record%contacts(i))
          associate (errors => record%errors(i))
+            if (turns) errors%mesh(find_quantity(estimated, 'peak_pressure')) = &
+               ieee_value(1.0_dp, ieee_quiet_nan)
             errors%bound = errors%mesh + errors%increment + errors%iteration
             allocate (errors%why_not(size(estimated)))
             do q = 1, size(estimated)
-               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q, &
-                  turns_at_peak(record%contacts(i)))
+               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q, turns)
             end do
          end associate
       end do
@@ -202,7 +208,7 @@ contains
       character(*), intent(in) :: no_mesh      ! why no quantity has one of the mesh, or nothing
       class(interface_errors_type), intent(in) :: errors
       integer, intent(in) :: q
-      logical, intent(in) :: turns             ! as turns_at_peak
+      logical, intent(in) :: turns             ! whether friction turns round at the peak
       character(:), allocatable :: why_not
 
       why_not = ''
@@ -217,11 +223,39 @@ contains
          why_not = 'a finer mesh has no such edge'
          if (q == find_quantity(estimated, 'peak_pressure')) then
             why_not = 'the peak is at a corner, where one face ends'
-            if (turns) why_not = 'friction turns round at the peak, and what sticks there is '// &
-               'smaller than the mesh'
+            if (turns) why_not = 'friction turns round at the peak, where what sticks is '// &
+               'narrower than the elements'
          end if
       end if
    end function reason
+
+   !> Whether the elements at some surfaces differ in stiffness, or one has none and is rigid.
+   pure logical function differ_in_stiffness(model, surfaces) result(differ)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: surfaces(:)       ! indexes into the mesh's surfaces
+      logical :: at_face(size(model%mesh%element_kind))
+      integer :: e, i, first
+
+      differ = any([(size(model%mesh%surfaces(surfaces(i))%faces, 2), i=1, size(surfaces))] == 0)
+      if (differ) return
+      at_face = elements_at_surfaces(model%mesh, surfaces)
+      first = findloc(at_face, .true., dim=1)
+      do e = first + 1, size(at_face)
+         if (at_face(e)) differ = differ .or. any(abs(moduli(e) - moduli(first)) > &
+            rounding*abs(moduli(first)))
+      end do
+
+   contains
+
+      pure function moduli(element)
+         integer, intent(in) :: element
+         real(dp) :: moduli(4, 4)
+
+         moduli = model%materials(model%sections( &
+            model%mesh%element_section(element))%material)%elasticity
+      end function moduli
+
+   end function differ_in_stiffness
 
    !> Whether the fields at the end of a step depend on nothing before it.
    pure logical function is_steady(model, record)

@@ -15,8 +15,8 @@ module interface_quantities
    implicit none
    private
    public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &
-      peaks_at_corner, point_before, quantities_of, quantities_of_state, regime_of, rises_to_end, &
-      turns_at_peak
+      peaks_at_corner, point_before, quantities_of, quantities_of_state, regime_of, &
+      resolved_length, rises_to_end, turns_at_peak
 
    !> Regimes of a face with several contact states: a part of it is closed, or all of it.
    integer, parameter :: partly_closed = -1, closed = -2
@@ -116,6 +116,16 @@ contains
       end associate
    end function edge_spacing
 
+   !> How far an edge is known on a mesh; 0 at the end of the face [length].
+   pure real(dp) function resolved_length(quantity, points, edge) result(length)
+      type(quantity_type), intent(in) :: quantity      !! an edge, or another one: 0
+      type(contact_points_type), intent(in) :: points  !! the contact points of the interface
+      real(dp), intent(in) :: edge                     !! as arc length, or NaN [length]
+
+      length = quantity%resolution*edge_spacing(points, edge)
+      if (quantity%name == 'edge_stick') length = length/points%node_spacings
+   end function resolved_length
+
    !> The contact point before an edge, of those that have a next one.
    pure integer function point_before(s, edge)
       real(dp), intent(in) :: s(:)       !! (m >= 2) arc lengths, ascending [length]
@@ -155,7 +165,7 @@ contains
 
    !> Whether friction turns round at the largest pressure: contact points beside it slip in
    !> opposite directions, or one does beside an end that supports hold. What sticks between them is
-   !> smaller than the spacing, and up to there the pressure between bodies of different stiffness
+   !> narrower than the spacing. Up to there the pressure between bodies of different stiffness
    !> rises as the logarithm of the distance, because shear jumps (J. Dundurs, J. Appl. Mech. 36
    !> (1969) 650-652).
    pure logical function turns_at_peak(contact) result(turns)

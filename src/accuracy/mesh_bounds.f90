@@ -16,7 +16,8 @@ module mesh_bounds
    use contact_points, only: contact_points_type, on_axis
    use contact_quantities, only: estimated
    use contact_system, only: contact_open, contact_slip, contact_stick
-   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner, turns_at_peak
+   use interface_quantities, only: closed_length, edge_spacing, peaks_at_corner, &
+      resolved_length
    use kinds, only: dp
    use quantity_types, only: find_quantity
    use records, only: contact_record_type
@@ -64,7 +65,8 @@ contains
       !> Jump of the conductance at an edge in the larger value there; 0 where no heat moves it [-]
       real(dp), intent(in) :: jump
       real(dp) :: bounds(size(estimated))
-      real(dp) :: known_scatter(size(estimated)), left(size(estimated)), length, locked
+      real(dp), dimension(size(estimated)) :: known_scatter, not_halved
+      real(dp) :: length, locked
       logical :: has_hats, is_alone(size(estimated))
 
       has_hats = points%pairing == pairing_surfaces
@@ -77,11 +79,11 @@ contains
       bounds = bounds*abs(change) + known_scatter
       ! Where displacements and temperatures are prescribed, force and heat rate err as the energy,
       ! by the square of its norm's error.
-      left = energy*merge(of_energy_alone, of_energy, is_alone)
-      associate (f => find_quantity(estimated, 'normal_force'), &
-         h => find_quantity(estimated, 'heat_rate'))
-         bounds(f) = bounds(f) + left(f)*abs(contact%normal_force)
-         bounds(h) = bounds(h) + left(h)*abs(contact%heat_rate)
+      not_halved = energy*merge(of_energy_alone, of_energy, is_alone)
+      associate (force => find_quantity(estimated, 'normal_force'), &
+         heat => find_quantity(estimated, 'heat_rate'))
+         bounds(force) = bounds(force) + not_halved(force)*abs(contact%normal_force)
+         bounds(heat) = bounds(heat) + not_halved(heat)*abs(contact%heat_rate)
       end associate
       length = closed_length(contact, points%arc_length)
       locked = 0.0_dp
@@ -97,8 +99,7 @@ contains
          ! Both meshes may have the same peak by chance: it errs by as large a part as the force.
          if (contact%normal_force > 0.0_dp .and. .not. ieee_is_nan(peak + force)) peak = max(peak, &
             force*maxval(contact%pressure)/contact%normal_force)
-         if (peaks_at_corner(points, contact) .or. turns_at_peak(contact)) peak = &
-            ieee_value(1.0_dp, ieee_quiet_nan)
+         if (peaks_at_corner(points, contact)) peak = ieee_value(1.0_dp, ieee_quiet_nan)
       end associate
       call bound_edges(points, contact, change, known_scatter, 1.0_dp + of_jump*jump, bounds)
       ! What is left in other elements; halved ones show how far the force moves an edge.
@@ -132,7 +133,7 @@ contains
       spacing = nodal_spacing(points, contact%edge_stick)
       associate (outer => find_quantity(estimated, 'edge_contact'), &
          inner => find_quantity(estimated, 'edge_stick'))
-         part = estimated(outer)%resolution*of_nodes*edge_spacing(points, contact%edge_contact)
+         part = of_nodes*resolved_length(estimated(outer), points, contact%edge_contact)
          bounds(outer) = edge_bound(contact%edge_contact, change(outer), of_edge_change, part, &
             0.0_dp)
          if (ends_with_contact(points, contact)) then
@@ -141,7 +142,8 @@ contains
          else
             bounds(inner) = scatter(inner) + edge_bound(contact%edge_stick, change(inner), &
                merge(of_stick_change_with_hats, of_stick_change, points%pairing == &
-               pairing_surfaces), of_stick*spacing, estimated(inner)%resolution*spacing)
+               pairing_surfaces), of_stick*spacing, resolved_length(estimated(inner), points, &
+               contact%edge_stick))
          end if
       end associate
    end subroutine bound_edges
@@ -196,7 +198,8 @@ contains
    !> Sum of the shear forces of stuck contact points, without their signs, times the spacing at
    !> the edge of contact, over which the last of them came to stick [force length]. What slides
    !> across several node pairs before it sticks does so at a slip whose error is as many times
-   !> smaller; not so with triangles, whose two sides at a node differ: all points err alike.
+   !> smaller. With triangles the mesh on both sides of a node differs, all points err alike, and
+   !> nothing is smaller.
    pure real(dp) function locked_in(points, contact, has_triangles)
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact

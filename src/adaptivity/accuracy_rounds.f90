@@ -3,13 +3,15 @@
 !> The bounds are those of the error estimator. Where it knows nothing of the mesh, every round
 !> divides both faces (`adaptive_rounds`), and the larger one of the last two changes from round to
 !> round is the bound: one change can be small by chance. A pressure that has no limit has no bound
-!> whatever the changes are, and where it is at a corner, no round is spent on it.
+!> whatever the changes are, nor has one where friction turns round; where it is at a corner, no
+!> round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
-   use interface_quantities, only: closed_length, is_end_of_face, peak_is_at_end, peaks_at_corner
+   use interface_quantities, only: closed_length, is_end_of_face, peak_is_at_end, &
+      peaks_at_corner, turns_at_peak
    use kinds, only: dp
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
@@ -45,6 +47,7 @@ module accuracy_rounds
       real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: uncertain
       real(dp) :: allowed = 0.0_dp         !! what the target allows
       logical :: is_at_corner = .false.    !! whether there one face ends: it has no limit
+      logical :: is_turning = .false.      !! whether friction turns round there
       logical :: has_limit = .true.        !! whether it tends to one as the mesh is refined
       character(:), allocatable :: why_not !! why the run has no bound; empty where it has
       character(:), allocatable :: instead !! what there is where it has no value or no edge
@@ -151,6 +154,7 @@ contains
                if (quantity%name == 'peak_pressure') then
                   finding%is_at_end = any(peak_is_at_end(contact))
                   finding%is_at_corner = peaks_at_corner(points, contact)
+                  finding%is_turning = ieee_is_nan(finding%mesh) .and. turns_at_peak(contact)
                   finding%has_limit = .not. (finding%is_at_corner .or. &
                      grows(self%rounds, d, record%step))
                end if
@@ -228,7 +232,7 @@ contains
       associate (now => rounds(n)%findings(d, step), before => rounds(n - 1)%findings(d, step))
          if (.not. (now%is_there .and. before%is_there)) return
          now%change = abs(now%value - before%value)
-         if (.not. now%has_limit) then
+         if (now%is_turning .or. .not. now%has_limit) then
             now%mesh = ieee_value(1.0_dp, ieee_quiet_nan)
          else if (ieee_is_nan(now%mesh) .and. n > 2) then
             now%mesh = max(now%change, before%change)

@@ -20,7 +20,7 @@ module adaptive_rounds
    use errors, only: error_type
    use growing_modes, only: analyse_stability
    use increments, only: advance
-   use interface_quantities, only: closed_length, point_before
+   use interface_quantities, only: closed_length, point_before, resolved_length
    use kinds, only: dp
    use local_refinement, only: elements_at_surfaces, largest_part
    use mesh, only: mesh_type
@@ -225,10 +225,11 @@ contains
          end if
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity, &
             of_elements => self%division%levels)
-            ! Where no error of the mesh is known, the change by sides of half the size tells it.
-            if (ieee_is_nan(record%errors(i)%mesh(q))) where (elements_at_surfaces(model%mesh, &
-               [model%contacts(i)%slave, model%contacts(i)%master])) of_elements = &
-               max(of_elements, 1)
+            ! Where no error of the mesh is known, the change by sides of half the size tells it,
+            ! but not where friction turns round.
+            if (ieee_is_nan(record%errors(i)%mesh(q)) .and. .not. finding%is_turning) where ( &
+               elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
+               model%contacts(i)%master])) of_elements = max(of_elements, 1)
             call mark_edges(self, interfaces(i), edges_for(q, interfaces(i), record%contacts(i)), &
                max(levels, levels_of_edges(interfaces(i), record, i, q, finding%allowed)))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
@@ -244,18 +245,13 @@ contains
       type(increment_record_type), intent(in) :: record
       integer, intent(in) :: i, q
       real(dp), intent(in) :: allowed
-      type(quantity_type) :: quantity
-      integer :: k, levels, m
+      real(dp) :: length
+      integer :: levels
 
       levels = 0
-      quantity = estimated(q)
-      associate (s => points%arc_length, edge => record%errors(i)%value(q))
-         m = size(s)
-         if (.not. quantity%resolution > 0.0_dp .or. m < 2) return
-         k = point_before(s, edge)
-         levels = min(most_levels, max(0, ceiling(log(quantity%resolution*(s(k + 1) - s(k))/ &
-            (part*allowed))/log(2.0_dp))))
-      end associate
+      length = resolved_length(estimated(q), points, record%errors(i)%value(q))
+      if (length > 0.0_dp) levels = min(most_levels, max(0, ceiling(log(length/(part*allowed))/ &
+         log(2.0_dp))))
    end function levels_of_edges
 
    !> The edges near which a quantity errs: those of stick only for what friction decides, and where

@@ -5,8 +5,9 @@
 !> the edge err most, pressures more than gaps: the edge is the zero of a parabola through gap^(2/3)
 !> of the second to fourth open contact point, kept between the two contact points. Where fewer are
 !> open, it goes through the first to third, or a straight line through the first two; where there
-!> is but one, p^2 is on a straight line through two contact points. Of mortar points the gap is the
-!> mean of (s - a)^(3/2) with a hat function, and the distance from the edge that with this gap.
+!> is but one, p^2 is on a straight line through two contact points. The gap of a mortar point is a
+!> mean with its hat function; its distance d from a trial edge a is that for which d^(3/2) is the
+!> mean of (x - a)^(3/2).
 !>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
@@ -145,33 +146,31 @@ contains
       if (number < 0) number = size(contact_state)
    end function count_open
 
-   !> Edge a beyond contact point k with which gap^(2/3) is A d + B d^2 at three contact points in a
-   !> distance d from it, or A d at two.
+   !> Edge beyond contact point k: the largest zero of the parabola through gap^(2/3) at three
+   !> contact points, or where it is least; of the straight line through two.
    pure function end_of_gap(profile, k, first, last) result(edge)
       type(contact_profile_type), intent(in) :: profile
       integer, intent(in) :: k, first, last      ! first..last: the contact points
       real(dp) :: edge
-      real(dp), dimension(first:last) :: d, g
-      real(dp) :: bend, ends(2)
+      real(dp) :: d(last - first + 1), g(last - first + 1)   ! distances, gap^(2/3)
+      real(dp) :: bend, ends(2), slope
       integer :: j, step
 
       g = profile%gap(first:last)**(2.0_dp/3.0_dp)
       ends = profile%s(k:k + 1)
-      associate (i => first)
-         do step = 1, halvings
-            edge = 0.5_dp*sum(ends)
-            d = [(distance(profile, j, edge), j=first, last)]
-            ! Positive where the edge is too far: g/d then bends up, or falls.
-            bend = g(i)*d(i + 1) - g(i + 1)*d(i)
-            if (last - first == 2) bend = bend*d(i + 2)*(d(i + 2) - d(i + 1)) - &
-               (g(i + 1)*d(i + 2) - g(i + 2)*d(i + 1))*d(i)*(d(i + 1) - d(i))
-            if (bend > 0.0_dp) then
-               ends(2) = edge
-            else
-               ends(1) = edge
-            end if
-         end do
-      end associate
+      bend = 0.0_dp
+      do step = 1, halvings
+         edge = 0.5_dp*sum(ends)
+         d = [(distance(profile, j, edge), j=first, last)]
+         ! Newton's form of the polynomial in d: beyond the edge it is positive and rises at d = 0.
+         slope = (g(2) - g(1))/(d(2) - d(1))
+         if (size(d) > 2) bend = ((g(3) - g(2))/(d(3) - d(2)) - slope)/(d(3) - d(1))
+         if (g(1) - slope*d(1) + bend*d(1)*d(2) > 0.0_dp .and. slope > bend*(d(1) + d(2))) then
+            ends(2) = edge
+         else
+            ends(1) = edge
+         end if
+      end do
       edge = ends(1)
       if (ends(2) >= profile%s(k + 1)) edge = ends(2)
    end function end_of_gap
@@ -205,8 +204,8 @@ contains
       mean_beyond = 2*mean_beyond/(s(size(s)) - s(1))
    end function mean_beyond
 
-   !> The same where p^2 on a straight line through contact points k - 1 and k vanishes; halfway
-   !> where there is no such line.
+   !> Edge beyond contact point k where p^2 on a straight line through contact points k - 1 and k
+   !> vanishes; halfway to the next one where there is no such line, or it vanishes beyond that.
    pure function end_of_pressure(profile, k) result(edge)
       type(contact_profile_type), intent(in) :: profile
       integer, intent(in) :: k
@@ -219,8 +218,8 @@ contains
          if (profile%contact_state(k - 1) == contact_open) return
          before = profile%pressure(k - 1)**2
          here = profile%pressure(k)**2
-         edge = s(k + 1)
-         if (before > here) edge = min(s(k) + (s(k) - s(k - 1))*here/(before - here), s(k + 1))
+         if ((s(k + 1) - s(k))*(before - here) > (s(k) - s(k - 1))*here) edge = s(k) + (s(k) - &
+            s(k - 1))*here/(before - here)
       end associate
    end function end_of_pressure
 

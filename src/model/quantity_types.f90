@@ -59,8 +59,8 @@ module quantity_types
       logical :: is_estimated = .false.        !! its errors are bounded
       logical :: is_traded = .false.           !! rows of a trade are judged by it
       logical :: is_of_friction = .false.      !! 0 without friction
-      !> Of an edge of a zone: how far it is known on a mesh, in spacings of the contact points
-      !> about it (docs/accuracy.md); 0 for what is no edge.
+      !> Of an edge of a zone: how far it is known on a mesh, in spacings about it, of the contact
+      !> points for contact, of the nodes for stick (docs/accuracy.md); 0 for what is no edge.
       real(dp) :: resolution = 0.0_dp
       ! In the result file, as attributes of its dataset.
       character(120) :: description = ''       !! what it is, with its sign and codes

@@ -213,7 +213,7 @@ contains
       reason = ' (mostly of the mesh)'
       if (finding%is_at_corner) then
          reason = ' (no limit: it is at a corner, where one face ends)'
-      else if (.not. finding%has_limit) then
+      else if (.not. (finding%has_limit .or. finding%is_turning)) then
          reason = ' (no limit: it grows from mesh to mesh)'
       else if (ieee_is_nan(finding%bound)) then
          reason = ': '//finding%why_not

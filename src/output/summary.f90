@@ -327,8 +327,12 @@ contains
          if (is_in(size(s)) .and. mod(size(ends), 2) == 1) ends = [ends, s(size(s))]
       end associate
       do k = 2, size(ends), 2
-         words = words//', from '//to_text(ends(k - 1))//' to '//to_text(ends(k))//', width '// &
-            to_text(ends(k) - ends(k - 1))
+         if (ends(k) > ends(k - 1)) then
+            words = words//', from '//to_text(ends(k - 1))//' to '//to_text(ends(k))// &
+               ', width '//to_text(ends(k) - ends(k - 1))
+         else
+            words = words//', at '//to_text(ends(k))
+         end if
       end do
       words = words(3:)
    end function zones

@@ -229,7 +229,7 @@ def test_a_summary_tells_zones_without_an_edge(tmp_path):
     bounds = (tmp_path / "press_fit.lst").read_text().split("BOUNDS OF THE ERRORS OF SEAT")[1].split("\n\n")[0]
     assert "peak pressure" in bounds and "edge" not in bounds
     pellets = run("run", pellets_without_tables(tmp_path), "--out", tmp_path).stdout
-    assert re.search(r"\n    edge of contact +10 +mm, up to an end of the face, closed from 10 to 10, width 0\n", pellets)
+    assert re.search(r"\n    edge of contact +10 +mm, up to an end of the face, closed at 10\n", pellets)
     assert re.search(r"\n    edge of contact +0.51\d+ \+- .* mm, closed from 0 to 0.51\d+, width 0.51\d+\n", pellets)
     assert "edge of stick" not in press_fit, "there is no friction"
     rods = run("run", INPUT / "rods" / "r2.inp", "--out", tmp_path).stdout

@@ -59,14 +59,22 @@ def test_error_of_hertz_peak_pressure(tmp_path):
 
 
 def test_a_peak_where_friction_turns_round_is_uncertain_until_the_mesh_has_what_sticks(tmp_path):
-    """With little friction the whole face slips away from the axis: between both sides the shear jumps."""
-    words = "friction turns round at the peak, and what sticks there is smaller than the mesh"
+    """With little friction the whole face slips away from the axis: between both sides the shear jumps. Bodies of
+    one stiffness have a bound."""
+    words = "friction turns round at the peak, where what sticks is narrower than the elements"
     for friction, level, is_known in (("0.03", 0, False), ("0.03", 1, False), ("0.04", 0, False), ("0.04", 1, True)):
         deck = bare(CYLINDER, tmp_path, f"{friction}_{level}.inp", [f"*REFINE, LEVELS={level}"],
                     {"0.155, 1.E5": f"{friction}, 1.E5"})
         process = run("run", deck, "--out", tmp_path)
         _, bound, *_ = errors(deck.with_suffix(".vtkhdf"), "FACE")["peak_pressure"]
         assert np.isfinite(bound) == is_known == (words not in process.stdout)
+    alike = {"0.155, 1.E5": "0.03, 1.E5", "2.E4, 0.2": "2.E4, 0.4"}
+    deck = bare(CYLINDER, tmp_path, "alike.inp", (), alike)
+    assert words not in run("run", deck, "--out", tmp_path).stdout
+    # What changes from round to round is no bound either.
+    changes = {"0.155, 1.E5": "0.01, 1.E5"}
+    request = run("run", bare(CYLINDER, tmp_path, "asked.inp", (), changes), "--accuracy", "1%", "--out", tmp_path)
+    assert request.returncode == 4 and f"not met: uncertain, target 1 %: {words}" in request.stdout
 
 
 def bent_on_a_block(path, friction, cards=(), held="B.BOTTOM"):
