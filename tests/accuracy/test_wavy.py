@@ -17,19 +17,19 @@ is inside a smooth tube, so that a block of finite depth has the same edges.
 | family | face | edge by |
 |---|---|---|
 | cold; heat in; heat out | a cosine, without heat and with heat through a perfect contact | closed forms: Westergaard; Panek and Dundurs |
-| continuous, heat in; heat out | the same, conductance continuous in gap and pressure | spectral solution |
-| punches with round edges; wedges; two elastic bodies | the same, other faces, and both bodies elastic | spectral solution |
+| continuous, heat in; heat out | a cosine, conductance continuous in gap and pressure | spectral solution |
+| punches with round edges; wedges; two elastic bodies | other faces with such a conductance, and both bodies elastic | spectral solution |
 | cylinder and sphere, cold; hot | parabolas (Hertz), with heat through a perfect contact into or out of them (Barber) | Galerkin's method, transforms of the fields being Bessel functions |
-| receding layer | a layer on a half-space, pressed on a part of its top (Keer, Dundurs and Tsai) | the same |
+| receding layer | a layer on a half-space, pressed on a part of its top (Keer, Dundurs and Tsai) | Galerkin's method |
 | Cattaneo and Mindlin | shear after pressure, equal bodies on a cosine: edges of contact and of stick | closed form |
 | Spence | pressure alone, rough rigid cylinder, 10 to 40 increments: edges of contact and of stick | cell by cell |
 
-Meshes have 24 to 40 elements a period, the last four kinds 16 to 48, and 1 to 20 increments. All but Cattaneo and
+Meshes have 24 to 40 elements a period, from the cylinder on 16 to 48, and 1 to 20 increments. All but Cattaneo and
 Mindlin were refined once as well, seeds below 8. Errors are judged from 0.001 of the spacing on against the closed
 forms without heat (cold, Cattaneo and Mindlin), from 0.01 on against the other solutions, which are not more accurate,
 and from 0.1 on for Spence's edge of stick (`tests/accuracy/wavy_faces.py`).
 
-The constants of the edge of contact were chosen on seeds below 2 modulo 4 of the first 16 and on some decks of
+The constants of the edge of contact were chosen on seeds 0, 1, 4, 5, 8, 9, 12 and 13 and on some decks of
 *Bounds of errors*, those of the edge of stick with the others in sight as well. Punches, wedges and two elastic bodies
 chose none. *Drawn last* are seeds 32 to 39, on the meshes as they are: they were solved once, after the constants and
 the form of the bounds were final.
