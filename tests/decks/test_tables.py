@@ -122,7 +122,7 @@ def test_a_uniform_temperature_takes_the_constants_of_its_row(tmp_path, kind, te
 def test_tables_that_a_run_leaves_are_one_warning(tmp_path, temperature, told):
     tables_of = ISOTROPIC | {"expansion": [(1e-5, 0.0), (1.6e-5, 500.0)]}
     deck = write(tmp_path / "deck.inp", strained("CPE4", temperature, **tables_of))
-    process = run("run", deck)
+    process = run("run", deck, "--out", tmp_path)
     assert process.returncode == 0, process.stderr
     found = [line for line in process.stderr.splitlines() if "leaves the tables" in line]
     assert len(found) == (told is not None)
