@@ -36,6 +36,8 @@ module mesh_bounds
    !> Error of shear force, that with hats, and that of peak pressure in what friction locked in.
    real(dp), parameter :: of_locked = 0.4_dp, of_locked_with_hats = 0.6_dp
    real(dp), parameter :: of_locked_in_peak = 0.15_dp
+   !> How much more of it there is between node pairs of triangles.
+   real(dp), parameter :: of_triangles = 2.0_dp
    !> Error of an edge of contact in what halved elements move it by. The part of the spacing of the
    !> contact points is in the table of quantities; it grows by the relative jump of the conductance
    !> there: heat enters up to a node, an error of first order.
@@ -198,8 +200,8 @@ contains
    !> Sum of the shear forces of stuck contact points, without their signs, times the spacing at
    !> the edge of contact, over which the last of them came to stick [force length]. What slides
    !> across several node pairs before it sticks does so at a slip whose error is as many times
-   !> smaller. With triangles the mesh on both sides of a node differs, all points err alike, and
-   !> nothing is smaller.
+   !> smaller. With triangles the mesh on both sides of a node differs: it slips with any pressure,
+   !> however wide the zone of slip is.
    pure real(dp) function locked_in(points, contact, has_triangles)
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
@@ -210,9 +212,12 @@ contains
       associate (spacing => nodal_spacing(points, contact%edge_contact))
          locked_in = sum(abs(points%weight*contact%shear), &
             mask=contact%contact_state == contact_stick)*spacing
-         if (has_triangles .or. points%pairing == pairing_surfaces) return
-         if (spacing > 0.0_dp) locked_in = locked_in/max(1.0_dp, least_slip_zone(points, &
-            contact)/spacing)
+         if (points%pairing == pairing_surfaces) return
+         if (has_triangles) then
+            locked_in = of_triangles*locked_in
+         else if (spacing > 0.0_dp) then
+            locked_in = locked_in/max(1.0_dp, least_slip_zone(points, contact)/spacing)
+         end if
       end associate
    end function locked_in
 

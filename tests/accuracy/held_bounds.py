@@ -28,6 +28,9 @@ FINE = (2, 2)  # divisions of all elements, and beyond that of those at the face
 MOST = 0.7     # ratio of changes from mesh to mesh above which nothing is extrapolated
 FILE = Path(__file__).resolve().parent / "converged.csv"
 SAME = "same"  # increments
+# Edges without a converged value, by deck, step and quantity: this one lies where elements become five times as long,
+# and moves by 1.5 % from mesh to mesh.
+UNSETTLED = {("ball 17", 1, "edge_contact")}
 TESTED = (4, 5, 7)  # seeds of decks with mortar points that a test judges
 LEAST = 1e-7   # of the value: errors that are rounding, or forces that the deck prescribes
 LEAST_EDGE = 0.01   # of the spacing of the contact points: errors that converged edges may have
@@ -158,6 +161,9 @@ def renewed(deck, increments, folder):
         times = file["errors/time"][:]
     found = values_of(deck, FINE, 1, times, folder) if increments else converged_values(
         deck, times, folder)
+    for name, step, quantity in UNSETTLED:
+        if name == deck.name:
+            found[quantity][step - 1] = np.nan
     return [[deck.name, increments, step + 1, *(f"{found[q][step]:.10g}" if q in found else ""
                                                 for q in QUANTITIES)] for step in range(len(times))]
 

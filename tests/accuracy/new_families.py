@@ -15,7 +15,7 @@ from physics import material, mesh, nodes_of
 from skew_waves import SkewWave
 
 FAMILIES = "skew waves, friction", "hot dies, plane", "hot dies, axisymmetric"
-SEEDS, LAST = range(32), range(96, 128)
+SEEDS, LAST = range(32), range(128, 160)
 HEIGHT, DEPTH = 1e-5, 1.5     # of the wave, of each body
 KINDS = "8", "8", "8R", "6", "4"
 LAWS = "cold", "heat in", "heat out", "jump"

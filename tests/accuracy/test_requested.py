@@ -142,8 +142,7 @@ def judged_decks(folder):
                    "largest true error/target of these", "bounds that hold", "CPU s of all"],
                   text="""Known and drawn decks of [bounds that hold](#bounds-that-hold), and those with
 faces that do not match. Bounds are those of the last round at the step that decides; they hold less often
-than on meshes refined evenly, but most of those that do not are far below the target. The largest error is
-that of the edge of a ball, whose converged value itself differs by 1 % from mesh to mesh.""")
+than on meshes refined evenly, but most of those that do not are far below the target.""")
     matching = [replace(deck, text=re.sub(r"^\*REFINE.*\n", "", deck.text.split("*VERIFY")[0], flags=re.M))
                 for deck in all_decks()]
     others = [deck for deck in mismatched_decks() if "mortar" in deck.name]
