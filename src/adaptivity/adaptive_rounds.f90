@@ -123,10 +123,11 @@ contains
       !> In: allocated where not even the first can be solved
       type(error_type), allocatable, intent(inout) :: error
       type(state_table_type), intent(inout), optional :: restart   !! from which the run goes on
-      type(error_estimator_type) :: estimator
+      type(error_estimator_type), allocatable :: estimator
       type(contact_points_type), allocatable :: interfaces(:)
       type(round_indicators_type) :: indicators
 
+      allocate (estimator)
       call estimator%start(model, simulation)
       if (present(restart)) call estimator%exchange(restart)
       call self%accuracy%begin_round(model%accuracy, size(model%contacts), size(model%steps))
