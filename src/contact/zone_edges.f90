@@ -5,9 +5,9 @@
 !> the edge err most, pressures more than gaps: the edge is the zero of a parabola through gap^(2/3)
 !> of the second to fourth open contact point, kept between the two contact points. Where fewer are
 !> open, it goes through the first to third, or a straight line through the first two; where there
-!> is but one, p^2 is on a straight line through two contact points. The gap of a mortar point is a
-!> mean with its hat function; its distance d from a trial edge a is that for which d^(3/2) is the
-!> mean of (x - a)^(3/2).
+!> is but one, p^2 is on a straight line through two contact points. Mortar points, which are as far
+!> apart as two node pairs, count only near the edge. Their gap is a mean with a hat; their distance
+!> d from a trial edge a is that for which d^(3/2) is the mean of (x - a)^(3/2).
 !>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
@@ -33,6 +33,8 @@ module zone_edges
 
    integer, parameter :: fitted_spacings = 4   !! node spacings of two three-node sides
    integer, parameter :: halvings = 50         !! of the interval with the edge
+   !> How far from the first open one mortar points count, in the length of the side with the edge.
+   real(dp), parameter :: reach_of_hats = 6.0_dp
 
    !> States of the contact points of an interface, along it.
    type :: contact_profile_type
@@ -123,12 +125,16 @@ contains
       integer, intent(in) :: k
       real(dp) :: edge
       integer :: first, last
+      logical :: is_near
 
-      associate (gap => profile%gap)
+      associate (s => profile%s, gap => profile%gap)
          last = k + count_open(profile%contact_state(k + 1:min(k + 4, size(gap))))
          do while (last > k + 1)
             first = max(k + 1, last - 2)
-            if (gap(first) > 0.0_dp .and. all(gap(first:last - 1) < gap(first + 1:last))) then
+            is_near = profile%hat_spacings == 0 .or. last == k + 2 .or. s(last) - s(k + 1) <= &
+               reach_of_hats*(s(k + 1) - s(k))
+            if (is_near .and. gap(first) > 0.0_dp .and. all(gap(first:last - 1) < &
+               gap(first + 1:last))) then
                edge = end_of_gap(profile, k, first, last)
                return
             end if
