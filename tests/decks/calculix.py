@@ -15,7 +15,7 @@ import sys
 
 import numpy as np
 from blocks import write
-from deck_runs import DECKS, run
+from deck_runs import DECKS, PATIENCE, run
 
 sys.path.insert(0, str(DECKS.parents[1] / "post"))
 
@@ -44,7 +44,7 @@ def calculix(deck):
     folder = deck.parent / "ccx"   # both programs write .sta and .cvg
     shutil.copytree(deck.parent, folder, dirs_exist_ok=True, ignore=lambda *_: ["ccx"])
     process = subprocess.run(["ccx", deck.stem], cwd=folder, capture_output=True, text=True,
-                             timeout=60, env={**os.environ, "OMP_NUM_THREADS": "1"})
+                             timeout=PATIENCE, env={**os.environ, "OMP_NUM_THREADS": "1"})
     assert process.returncode == 0, process.stdout[-2000:]
     assert "*ERROR" not in process.stdout, process.stdout[-2000:]
     return read_dat((folder / deck.name).with_suffix(".dat"))

@@ -14,16 +14,17 @@ INPUT = DECKS.parents[1] / "input"
 CYLINDER = INPUT / "cylinder" / "cylinder.inp"
 COUPLED = INPUT / "cylinder" / "cylinder-coupled.inp"
 HERTZ = INPUT / "hertz" / "hertz.inp"
+PATIENCE = 600.0   # seconds after which a run hangs, whatever the build and the load of the machine
 OWN_MESH = "** On this mesh"   # begins the checks of CYLINDER that hold on no other
 
 
-def run(*arguments, folder=None, seconds=300):
+def run(*arguments, folder=None, seconds=PATIENCE):
     """Run the program with these arguments, in a folder; return the finished process."""
     command = [PROGRAM, *map(str, arguments)]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=seconds)
 
 
-def solve(deck, *arguments, status=0, seconds=300):
+def solve(deck, *arguments, status=0, seconds=PATIENCE):
     """Solve a deck, results beside it, with the exit status given; return the result file."""
     process = run("run", "--quiet", deck, "--out", deck.parent, *arguments, seconds=seconds)
     assert process.returncode == status, process.stderr

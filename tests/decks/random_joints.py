@@ -388,6 +388,6 @@ def trial(seed, folder):
     forces of its contacts are unique."""
     stack = Stack(seed).build()
     deck = stack.deck(folder / f"random{seed}.inp")
-    process = run("run", "--quiet", deck, "--out", folder, seconds=60)
+    process = run("run", "--quiet", deck, "--out", folder)
     faults = judge(stack, deck.with_suffix(".vtkhdf")) if process.returncode == 0 else ({}, False)
     return stack, process, *faults

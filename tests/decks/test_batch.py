@@ -15,8 +15,8 @@ import h5py
 import numpy as np
 import pytest
 import test_rods as rods
-from deck_runs import CYLINDER, INPUT, PROGRAM, copy_deck, datasets, run, solve
-from test_interrupted import INCREMENTS, PATIENCE, heat, lines_of
+from deck_runs import CYLINDER, INPUT, PATIENCE, PROGRAM, copy_deck, datasets, run, solve
+from test_interrupted import INCREMENTS, heat, lines_of
 
 GOOD = [INPUT / "rods" / f"{name}.inp" for name in ("r1", "r1b", "r3-middle")]
 TABLE = "thercon-batch.csv"
@@ -170,20 +170,18 @@ def test_a_crash_is_named_and_takes_no_other_deck_along(tmp_path, single, long):
     assert 10 < len(lines_of(tmp_path / "long.sta")) <= written <= int(row["increments"]) + 1
 
 
-def test_decks_that_run_are_listed_so_at_once_and_every_second(tmp_path, long):
-    """On a busy machine not every second is kept: some table comes so soon after the one before."""
+def test_decks_that_run_are_listed_so_at_once_and_again_as_they_go_on(tmp_path, long):
+    """How often depends on the load of the machine: at most once a second."""
     other, rest = heat(tmp_path, "other.inp", INCREMENTS), heat(tmp_path, "rest.inp", 1)
     process = start([long, other, rest], tmp_path, "--jobs", 2)
     wait_until(lambda: (tmp_path / TABLE).exists()
                and [row["outcome"] for row in table(tmp_path).values()].count("running") == 2)
-    rows, soon, until = [table(tmp_path)], 0, time.monotonic() + PATIENCE
-    while soon < 2:
+    rows, until = [table(tmp_path)], time.monotonic() + PATIENCE
+    while len(rows) < 4:
         assert time.monotonic() < until
         time.sleep(0.002)
         row = table(tmp_path)
-        pause = float(row["long"]["seconds"]) - float(rows[-1]["long"]["seconds"])
-        rows += [row] if pause > 0 else []
-        soon += 0 < pause < 1.5
+        rows += [row] if row["long"]["seconds"] != rows[-1]["long"]["seconds"] else []
     process.kill()
     process.communicate()
     for row in rows:
@@ -237,7 +235,7 @@ def test_memory_that_runs_out_takes_no_other_deck_along(tmp_path, single):
         resource.setrlimit(resource.RLIMIT_AS, (PLACE, PLACE))
 
     process = start([large, *GOOD], tmp_path, "--jobs", 2, preexec_fn=limit)
-    _, messages = process.communicate(timeout=300)
+    _, messages = process.communicate(timeout=PATIENCE)
     assert process.returncode == 3, messages
     assert_as_single(tmp_path, single)
     row = table(tmp_path)["large"]

@@ -20,7 +20,7 @@ FORCE, HEAT = 0.01, 0.02   # what is asked for
 def solved(folder, count):
     """Return the contact of a run of the deck with count elements along it: times, datasets."""
     deck = write(folder / "deck.inp", cylinder(count))
-    process = run("run", "--quiet", "--width", "200", deck, "--out", folder, seconds=500)
+    process = run("run", "--quiet", "--width", "200", deck, "--out", folder)
     assert process.returncode == 0, process.stderr
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
         contact = {name: item[()] for name, item in file["contact/Supper"].items()}

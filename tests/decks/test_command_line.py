@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from deck_runs import CYLINDER, INPUT, PROGRAM, copy_deck, run
+from deck_runs import CYLINDER, INPUT, PATIENCE, PROGRAM, copy_deck, run
 
 GOOD = [
     *without_unused_surfaces(block("BLOCK", [0.0, 1.0], [0.0, 1.0])),
@@ -56,7 +56,7 @@ def test_out_names_the_folder_of_the_results_and_makes_it(good, tmp_path):
 
 def test_messages_stand_in_their_order_where_both_outputs_are_one_file(good, bad):
     process = subprocess.run([PROGRAM, "check", bad, good, bad], stdout=subprocess.PIPE,
-                             stderr=subprocess.STDOUT, text=True, timeout=60)
+                             stderr=subprocess.STDOUT, text=True, timeout=PATIENCE)
     assert [line.split(":")[0] for line in process.stdout.splitlines() if ".inp:" in line] == [
         str(bad), str(good), str(bad)]
 

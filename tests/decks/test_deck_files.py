@@ -8,7 +8,7 @@ import threading
 import h5py
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from deck_runs import PROGRAM, run
+from deck_runs import PATIENCE, PROGRAM, run
 
 BODY = [
     *without_unused_surfaces(block("BLOCK", [0.0, 1.0], [0.0, 1.0])),
@@ -29,7 +29,7 @@ CONTROL = re.compile(rb"[\x00-\x09\x0b-\x1f\x7f]|\xc2[\x80-\x9f]")
 
 def check(deck, *arguments):
     """Check a deck; return its exit status and what it printed, as bytes."""
-    process = subprocess.run([PROGRAM, "check", deck, *arguments], capture_output=True, timeout=60,
+    process = subprocess.run([PROGRAM, "check", deck, *arguments], capture_output=True, timeout=PATIENCE,
                              check=False)
     return process.returncode, process.stdout + process.stderr
 
@@ -75,7 +75,7 @@ def test_a_deck_and_what_it_includes_are_read_from_fifos(tmp_path):
         os.mkfifo(tmp_path / name)
     threads = [feed(tmp_path / "deck.inp", "*INCLUDE, INPUT=body.inc\n" + "\n".join(STEP)),
                feed(tmp_path / "body.inc", "\n".join(BODY))]
-    process = run("run", "--quiet", tmp_path / "deck.inp", "--out", tmp_path / "out", seconds=60)
+    process = run("run", "--quiet", tmp_path / "deck.inp", "--out", tmp_path / "out")
     assert (process.returncode, process.stderr) == (0, "")
     for thread in threads:
         thread.join(10)
@@ -84,7 +84,7 @@ def test_a_deck_and_what_it_includes_are_read_from_fifos(tmp_path):
 
 def test_trade_reads_a_deck_through_a_pipe(tmp_path):
     process = subprocess.run([PROGRAM, "trade", "/dev/stdin", "--out", tmp_path, "--limit", "0.001"],
-                             text=True, input=GOOD, capture_output=True, check=False, timeout=300)
+                             text=True, input=GOOD, capture_output=True, check=False, timeout=PATIENCE)
     assert process.returncode == 0, process.stderr
     assert len((tmp_path / "stdin.trade.csv").read_text().splitlines()) > 3
 

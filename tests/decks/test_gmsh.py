@@ -7,7 +7,7 @@ import subprocess
 import h5py
 import pytest
 from blocks import write
-from deck_runs import DECKS, run
+from deck_runs import DECKS, PATIENCE, run
 from physics import judge
 
 FOLDER = DECKS / "gmsh"
@@ -28,7 +28,7 @@ def meshes(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("meshes")
     for path in [*FOLDER.glob("*.geo"), FOLDER / "make_meshes.sh"]:
         shutil.copy(path, folder)
-    subprocess.run(["bash", folder / "make_meshes.sh", gmsh], check=True, timeout=120)
+    subprocess.run(["bash", folder / "make_meshes.sh", gmsh], check=True, timeout=PATIENCE)
     return folder
 
 

@@ -14,11 +14,10 @@ import h5py
 import numpy as np
 import pytest
 import test_rods as rods
-from deck_runs import COUPLED, CYLINDER, HERTZ, PROGRAM, copy_deck, solve
+from deck_runs import COUPLED, CYLINDER, HERTZ, PATIENCE, PROGRAM, copy_deck, solve
 
 INCREMENTS, BEFORE = 200000, 100   # more than are solved while a test waits
 AT_MOST = 5.0    # CPU seconds that a run goes on behind a signal, however busy the machine is
-PATIENCE = 60.0  # seconds for what takes a small part of one
 
 
 def heat(folder, name, increments, share=1.0):

@@ -10,8 +10,8 @@ from contextlib import contextmanager, suppress
 import h5py
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from deck_runs import PROGRAM, run
-from test_interrupted import INCREMENTS, PATIENCE, heat, lines_of
+from deck_runs import PATIENCE, PROGRAM, run
+from test_interrupted import INCREMENTS, heat, lines_of
 
 SMALL = [
     *without_unused_surfaces(block("BLOCK", [0.0, 1.0], [0.0, 1.0])),

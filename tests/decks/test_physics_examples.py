@@ -7,7 +7,7 @@ from math import log, pi, radians, tan
 import h5py
 import numpy as np
 import pytest
-from deck_runs import INPUT, data_cards, run
+from deck_runs import INPUT, PATIENCE, data_cards, run
 from physics import DECKS  # noqa: F401  puts tests/reference on the path
 
 import conduction
@@ -281,7 +281,7 @@ def test_checks_of_an_example_are_those_of_the_closed_forms(name):
 def test_meshes_are_those_that_the_script_writes(tmp_path):
     script = tmp_path / "make_meshes.py"
     script.write_text((EXAMPLES / "make_meshes.py").read_text())
-    subprocess.run([sys.executable, script], check=True, timeout=60)
+    subprocess.run([sys.executable, script], check=True, timeout=PATIENCE)
     written = sorted(tmp_path.glob("*.mesh"))
     assert [path.name for path in written] == sorted(p.name for p in EXAMPLES.glob("*.mesh"))
     for path in written:

@@ -6,8 +6,8 @@ import re
 import select
 import subprocess
 
-from deck_runs import CYLINDER, PROGRAM, copy_deck, run
-from test_interrupted import PATIENCE, read_terminal
+from deck_runs import CYLINDER, PATIENCE, PROGRAM, copy_deck, run
+from test_interrupted import read_terminal
 
 
 def at_terminal(*arguments):

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 
-from deck_runs import CYLINDER, DECKS, OWN_MESH, copy_deck, solve
+from deck_runs import CYLINDER, DECKS, OWN_MESH, PATIENCE, copy_deck, solve
 
 sys.path[:0] = [str(DECKS.parent / "reference"), str(CYLINDER.parent)]
 import make_decks  # noqa: E402
@@ -57,7 +57,7 @@ def test_checks_of_the_deck_are_those_of_the_independent_solver():
 def test_deck_is_the_one_that_the_script_writes(tmp_path):
     folder = tmp_path / "cylinder"
     shutil.copytree(CYLINDER.parent, folder, ignore=shutil.ignore_patterns("*.inp"))
-    subprocess.run([sys.executable, folder / "make_decks.py"], check=True, timeout=60)
+    subprocess.run([sys.executable, folder / "make_decks.py"], check=True, timeout=PATIENCE)
     for deck in CYLINDER.parent.glob("*.inp"):
         assert (folder / deck.name).read_text() == deck.read_text(), deck.name
 

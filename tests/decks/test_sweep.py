@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from deck_runs import INPUT, PROGRAM
+from deck_runs import INPUT, PATIENCE, PROGRAM
 
 # `./setup.sh test` installs it there; the packages are none of those of the post-processing.
 SNAKEMAKE = Path(__file__).resolve().parents[2] / "build" / "sweep" / "bin" / "snakemake"
@@ -32,7 +32,7 @@ def start(folder):
     return subprocess.run(
         [SNAKEMAKE, "--cores", "2", "--keep-going", "--config", f"thercon={PROGRAM}",
          f"python={sys.executable}"],
-        cwd=folder, capture_output=True, text=True, timeout=300,
+        cwd=folder, capture_output=True, text=True, timeout=PATIENCE,
         env={**os.environ, "HOME": str(folder), "XDG_CACHE_HOME": str(folder / "cache")},
     )
 

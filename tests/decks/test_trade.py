@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import transients
 from blocks import write
-from deck_runs import CYLINDER, HERTZ, INPUT, PROGRAM, run, solve
+from deck_runs import CYLINDER, HERTZ, INPUT, PATIENCE, PROGRAM, run, solve
 from physics import DECKS  # noqa: F401  puts tests/reference on the path
 from test_known_rods import BRANCH, RODS
 from test_physics_rings import CLOSED, tubes
@@ -459,7 +459,7 @@ def next_child(process, before=None):
 def test_a_signal_ends_the_trade_and_its_child(number, tmp_path):
     with in_first_row(tmp_path) as (process, child):
         process.send_signal(number)
-        _, said = process.communicate(timeout=60)
+        _, said = process.communicate(timeout=PATIENCE)
     assert process.returncode == 5
     assert "ended by " + number.name in said
     assert [path.name for path in tmp_path.iterdir()] == ["decks"]
@@ -477,7 +477,7 @@ def test_a_trade_that_a_signal_ends_keeps_the_rows_that_were_measured(tmp_path):
     while len(begun) < 22 and process.poll() is None:   # a row has at most seven processes
         begun.update(children(process))
     process.send_signal(signal.SIGINT)
-    table, said = process.communicate(timeout=60)
+    table, said = process.communicate(timeout=PATIENCE)
     assert process.returncode == 5, said
     with open(tmp_path / "cylinder.trade.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -495,7 +495,7 @@ def test_a_row_that_the_system_kills_is_only_that_row_s_failure(tmp_path):
         os.kill(child, signal.SIGKILL)
         next_child(process, before=child)   # the second row
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=60)
+        _, said = process.communicate(timeout=PATIENCE)
     assert process.returncode == 5, said
     with open(tmp_path / "cylinder.trade.csv", newline="") as file:
         failed, _ = csv.DictReader(file)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import transients as two
 from blocks import write
-from deck_runs import PROGRAM, assert_alike, datasets, run, solve
+from deck_runs import PATIENCE, PROGRAM, assert_alike, datasets, run, solve
 from physics import judge, material, mesh
 
 TIGHT = ["*FIXED POINT, TOL=1.E-12"]
@@ -79,7 +79,7 @@ def test_an_increment_that_is_repeated_starts_from_the_same_state(tmp_path, case
 
 # Signals
 
-LONG, BEFORE, PATIENCE = 200000, 100, 60.0   # increments, those before a signal; seconds
+LONG, BEFORE = 200000, 100   # increments, those before a signal
 FIXED = {"times": f"1.E-5, {1e-5 * LONG!r}"}
 
 

@@ -15,7 +15,7 @@ class Outcome:
     def __init__(self, folder, name, *cards, status=0):
         """Write the cards as a deck, run it and keep how it ended."""
         deck = write(folder / f"{name}.inp", ["*OPTIONS, WIDTH=200"], *cards)
-        process = run("run", "--quiet", deck, "--out", folder, seconds=120)
+        process = run("run", "--quiet", deck, "--out", folder)
         self.path = deck.with_suffix(".vtkhdf")
         self.status, self.said = process.returncode, process.stderr
         assert self.status == status, self.said
