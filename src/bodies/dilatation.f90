@@ -6,15 +6,14 @@
 !> where B are the nodal forces of nodal temperatures and C_alpha has the coefficient T0 beta:alpha.
 !> A body that expands freely takes up nothing. T0 is the initial temperature from absolute zero.
 module dilatation
-   use element_kinds, only: plane_stress
    use kinds, only: dp
-   use materials, only: material_type
+   use materials, only: expansion_heat
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
    use thermal_matrix, only: assemble_capacity
    implicit none
    private
-   public :: dilatation_type, expansion_heat
+   public :: dilatation_type
 
    !> The operators of the term.
    type :: dilatation_type
@@ -41,18 +40,6 @@ contains
             mesh%element_plane(e)), e=1, size(mesh%element_plane))])
       end associate
    end subroutine prepare
-
-   !> beta:alpha of a material; in plane stress that of the strains in the plane.
-   pure real(dp) function expansion_heat(material, plane)
-      type(material_type), intent(in) :: material
-      integer, intent(in) :: plane                  !! plane_strain, ...
-      real(dp) :: beta(4)                           !! [stress/temperature]
-
-      beta = matmul(material%elasticity, [material%expansion, 0.0_dp])
-      expansion_heat = dot_product(beta(:3), material%expansion)
-      if (plane == plane_stress) expansion_heat = expansion_heat - &
-         beta(3)**2/material%elasticity(3, 3)
-   end function expansion_heat
 
    !> T0 B^T u - C_alpha T: heat that bodies have taken up beside rho c_p T.
    pure function taken_up(self, thermal_load, displacement, temperature) result(heat)

@@ -37,7 +37,8 @@ module contact_operator
 
    ! Newton's method for the heat of friction.
    integer, parameter :: most_steps = 100            !! contact states
-   real(dp), parameter :: rounding = 1.0e-13_dp      !! part of the largest heat that is none
+   !> Part of the largest heat, or of that of positions, that is none
+   real(dp), parameter :: rounding = 1.0e-13_dp
    real(dp), parameter :: converged = 1.0e-10_dp     !! the same, where it falls no more
    real(dp), parameter :: shortest = 0.02_dp         !! part of a step below which none is tried
 
@@ -133,7 +134,8 @@ contains
             rest = workspace%friction%found(bodies, state) - made
             residual = maxval(abs(rest))/max(maxval(abs(made)), maxval(abs(made + rest)), &
                tiny(1.0_dp))
-            if (residual <= rounding) return
+            if (residual <= rounding .or. maxval(abs(rest)) <= rounding* &
+               workspace%friction%of_positions(bodies, state, data%displacement_scale)) return
             if (residual <= converged .and. norm2(rest) >= 0.5_dp*last) return
             if (all(workspace%friction%parts(2, :) <= 0.0_dp)) then
                made = made + rest

@@ -41,6 +41,7 @@ module friction_heating
       procedure :: entering_part
       procedure :: late_start
       procedure :: found
+      procedure :: of_positions
       procedure :: changes
    end type friction_heating_type
 
@@ -163,6 +164,22 @@ contains
             slip_rate(heated)
       end associate
    end function found
+
+   !> Heat that positions of the faces would make in place of slips, which are their differences: it
+   !> is known to the rounding of this.
+   pure real(dp) function of_positions(self, bodies, contact, displacement) result(heat)
+      class(friction_heating_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(contact_state_type), intent(in) :: contact
+      real(dp), intent(in) :: displacement                 !! the largest one [length]
+
+      associate (heated => bodies%points%heated, law => bodies%laws%heat)
+         heat = maxval(abs(law%efficiency*contact%shear_force(heated)), &
+            mask=law%speed < 0.0_dp .and. contact%contact_state(heated) /= contact_open)
+         heat = max(heat, 0.0_dp)*max(displacement, maxval(abs(contact%tangential(heated))))/ &
+            self%duration
+      end associate
+   end function of_positions
 
    !> Slips of the contact points over the duration; 0 where they are open.
    pure function rates_of_slip(friction, bodies, contact) result(rate)

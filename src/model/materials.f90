@@ -2,14 +2,15 @@
 module materials
    use elasticity, only: anisotropic_elasticity, engineering_elasticity, isotropic_elasticity, &
       orthotropic_elasticity
+   use element_kinds, only: plane_stress
    use kinds, only: dp
    use named_items, only: named_type
    implicit none
    private
    public :: material_type, properties_type, section_type, property_type, orientation_type
-   public :: material_axes, strain_rotation, heat_capacity
+   public :: material_axes, strain_rotation, heat_capacity, least_heat_capacity
    public :: set_property, isotropic, engineering, orthotropic, anisotropic
-   public :: follows_temperature, thermal_strain, heat_content
+   public :: follows_temperature, thermal_strain, heat_content, expansion_heat
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
       of_specific_heat
 
@@ -278,6 +279,39 @@ contains
          from = to
       end do
    end function heat_content
+
+   !> beta:alpha of a material; in plane stress that of the strains in the plane.
+   pure real(dp) function expansion_heat(material, plane)
+      class(properties_type), intent(in) :: material
+      integer, intent(in) :: plane                      !! plane_strain, ...
+      real(dp) :: beta(4)                               !! [stress/temperature]
+
+      beta = matmul(material%elasticity, [material%expansion, 0.0_dp])
+      expansion_heat = dot_product(beta(:3), material%expansion)
+      if (plane == plane_stress) expansion_heat = expansion_heat - &
+         beta(3)**2/material%elasticity(3, 3)
+   end function expansion_heat
+
+   !> Smallest rho c, and the row where it is: between rows, where both factors are linear, their
+   !> product is nowhere below both of its ends.
+   pure subroutine least_heat_capacity(material, least, temperature)
+      type(material_type), intent(in) :: material
+      real(dp), intent(out) :: least                    !! [energy/(volume temperature)]
+      real(dp), intent(out) :: temperature              !! 0 of a material without tables
+      real(dp), allocatable :: rows(:)
+      real(dp) :: there
+      integer :: i
+
+      least = heat_capacity(material)
+      temperature = 0.0_dp
+      rows = content_rows(material)
+      do i = 1, size(rows)
+         there = capacity_at(material, rows(i))
+         if (i > 1 .and. there >= least) cycle
+         least = there
+         temperature = rows(i)
+      end do
+   end subroutine least_heat_capacity
 
    !> Temperatures of the rows of density and specific heat, ascending.
    pure function content_rows(material) result(rows)

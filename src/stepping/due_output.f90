@@ -7,7 +7,7 @@ module due_output
    use time_points, only: time_points_type
    implicit none
    private
-   public :: fields_are_due, is_judged, needs_recovery, restart_is_due, &
+   public :: fields_are_due, is_judged, met_within, needs_recovery, restart_is_due, &
       stability_is_due, table_is_due
 
    real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
@@ -36,9 +36,10 @@ contains
 
       table_is_due = is_nth(frequency, record)
       if (table_is_due .or. .not. allocated(points%times)) return
-      associate (start => sum(model%steps(:record%step - 1)%period))
+      associate (start => sum(model%steps(:record%step - 1)%period), &
+         step => model%steps(record%step))
          table_is_due = any(abs(points%in_step(start) + start - record%time) <= &
-            tolerance(record, model))
+            met_within(record%time, min(step%first_increment, step%smallest_increment)))
       end associate
    end function table_is_due
 
@@ -68,13 +69,12 @@ contains
    end function is_nth
 
    !> How near the end of an increment meets an instant.
-   pure real(dp) function tolerance(record, model)
-      type(increment_record_type), intent(in) :: record
-      type(model_type), intent(in) :: model
+   elemental real(dp) function met_within(time, increment)
+      real(dp), intent(in) :: time        !! either of them, total time [time]
+      real(dp), intent(in) :: increment   !! least one that counts [time]
 
-      tolerance = 1.0e-12_dp*abs(record%time) + landing*min( &
-         model%steps(record%step)%first_increment, model%steps(record%step)%smallest_increment)
-   end function tolerance
+      met_within = 1.0e-12_dp*abs(time) + landing*increment
+   end function met_within
 
    !> Whether a check is judged on an increment.
    pure logical function is_judged(check, record, model)
@@ -85,8 +85,8 @@ contains
       if (check%at_last) then
          is_judged = record%last_of_step .and. record%step == size(model%steps)
       else
-         is_judged = abs(record%time - check%when) <= 1.0e-12_dp*abs(check%when) &
-            + landing*model%steps(record%step)%first_increment
+         is_judged = abs(record%time - check%when) <= met_within(check%when, &
+            model%steps(record%step)%first_increment)
       end if
    end function is_judged
 

@@ -1,6 +1,7 @@
 !> Where a run is in its steps, and how long its increments are: fixed, cut back where one fails
 !> and grown again behind it.
 module increment_control
+   use due_output, only: met_within
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use model, only: model_type
@@ -13,7 +14,7 @@ module increment_control
    public :: increment_control_type, next_end
 
    real(dp), parameter :: remainder = 1.0e-6_dp   !! part of an increment too small for one
-   real(dp), parameter :: rounding = 1.0e-13_dp   !! of the period: what sums of increments lose
+   real(dp), parameter :: rounding = 1.0e-13_dp   !! of a time: what sums of times lose
    real(dp), parameter :: cut = 0.25_dp           !! part of a failed increment that is tried next
    real(dp), parameter :: growth = 2.0_dp         !! of increments after one that did not fail
    real(dp), parameter :: hardly_longer = 1.001_dp !! factor that makes no longer increment
@@ -33,6 +34,7 @@ module increment_control
       real(dp) :: step_time = 0.0_dp          !! time since then [time]
       real(dp) :: largest = 0.0_dp            !! largest size of the next increment [time]
       real(dp) :: useful = 0.0_dp             !! size below which none is shortened [time]
+      real(dp) :: spacing = 0.0_dp            !! of instants of the step that differ [time]
       !> Of a longer attempt at this increment that erred too much: its size [time], error, and
       !> largest change of a temperature; 0 without one
       real(dp), private :: longer(3) = 0.0_dp
@@ -72,37 +74,50 @@ contains
       self%cut_backs = 0
       self%useful = 0.0_dp
       self%largest = model%steps(self%step)%first_increment
+      self%spacing = rounding*(self%step_start + model%steps(self%step)%period)
       self%landings = landing_times(model, model%steps(self%step), self%step_start)
    end subroutine enter_step
 
-   !> Times of *VERIFY cards, corners of amplitudes and instants of *TIME POINTS; with DIRECT
-   !> increments land on none of them.
+   !> Corners of amplitudes, and instants of output that neither they nor the ends of the step meet:
+   !> times of *VERIFY cards and of *TIME POINTS. With DIRECT increments land on none of them.
    pure function landing_times(model, step, step_start) result(times)
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
       real(dp), intent(in) :: step_start
-      real(dp), allocatable :: times(:)
+      real(dp), allocatable :: times(:), output(:)
       integer :: i
 
-      allocate (times(0))
+      times = [0.0_dp, step%period]
       if (step%direct) return
-      do i = 1, size(model%verifications)
-         if (.not. model%verifications(i)%at_last) then
-            times = [times, model%verifications(i)%when - step_start]
-         end if
-      end do
-      times = [times, step%field_points%in_step(step_start), &
-         step%contact_print_points%in_step(step_start)]
-      if (allocated(step%node_prints)) times = [times, &
-         (step%node_prints(i)%points%in_step(step_start), i=1, size(step%node_prints))]
-      if (allocated(step%element_prints)) times = [times, &
-         (step%element_prints(i)%points%in_step(step_start), i=1, size(step%element_prints))]
       do i = 1, size(model%amplitudes)
          associate (curve => model%amplitudes(i))
             times = [times, curve%times - merge(step_start, 0.0_dp, curve%total_time)]
          end associate
       end do
+      output = pack(model%verifications%when, .not. model%verifications%at_last) - step_start
+      call add_output(times, output, met_within(output + step_start, step%first_increment), step)
+      output = [step%field_points%in_step(step_start), &
+         step%contact_print_points%in_step(step_start)]
+      if (allocated(step%node_prints)) output = [output, &
+         (step%node_prints(i)%points%in_step(step_start), i=1, size(step%node_prints))]
+      if (allocated(step%element_prints)) output = [output, &
+         (step%element_prints(i)%points%in_step(step_start), i=1, size(step%element_prints))]
+      call add_output(times, output, met_within(output + step_start, &
+         min(step%first_increment, step%smallest_increment)), step)
    end function landing_times
+
+   !> Adds the instants of output that are within the step and that none of the others meets.
+   pure subroutine add_output(times, output, tolerance, step)
+      real(dp), allocatable, intent(inout) :: times(:)   ! from the start of the step [time]
+      real(dp), intent(in) :: output(:), tolerance(:)    ! [time]
+      type(step_type), intent(in) :: step
+      integer :: k
+
+      do k = 1, size(output)
+         if (output(k) < 0.0_dp .or. output(k) > step%period) cycle
+         if (all(abs(times - output(k)) > tolerance(k))) times = [times, output(k)]
+      end do
+   end subroutine add_output
 
    !> Whether the present step is solved to its end.
    pure logical function step_is_over(self, model)
@@ -122,7 +137,7 @@ contains
       associate (step => model%steps(self%step))
          clock%step_time = next_end(self%step_time, self%largest, &
             merge(step%period, step%first_increment, step%grows .or. adapts_increments(step)), &
-            step%period, self%landings)
+            step%period, self%landings, self%spacing)
          clock%period = step%period
          clock%total_time = self%step_start + clock%step_time
          clock%ramped = step%ramped
@@ -370,24 +385,25 @@ contains
 
    !> The end of the next increment: the next multiple of the first increment, reckoned and not
    !> added up, or an earlier instant on which the step must land; short of these where increments
-   !> were cut back. A remainder too small for an increment goes to the one before it.
-   pure function next_end(step_time, size_allowed, first, period, landings) result(ending)
+   !> were cut back. A remainder too small for an increment goes to the one before it, unless that
+   !> would go over an instant on which the step must land.
+   pure function next_end(step_time, size_allowed, first, period, landings, spacing) result(ending)
       real(dp), intent(in) :: step_time      !! end of the last increment [time]
       real(dp), intent(in) :: size_allowed   !! largest size of the next one [time]
       real(dp), intent(in) :: first          !! first increment [time]
       real(dp), intent(in) :: period         !! length of the step [time]
       real(dp), intent(in) :: landings(:)    !! (n) instants on which it must land [time]
+      real(dp), intent(in) :: spacing        !! least distance of two instants that differ [time]
       real(dp) :: ending                     !! all from the start of the step [time]
-      real(dp) :: least, target
+      real(dp) :: target
       integer :: i
 
-      associate (tolerance => max(remainder*size_allowed, rounding*period))
-         least = step_time + tolerance
-         target = (floor(least/first) + 1)*first
-         do i = 1, size(landings)
-            if (landings(i) > least .and. landings(i) < target) target = landings(i)
-         end do
+      associate (tolerance => max(remainder*size_allowed, spacing))
+         target = (floor((step_time + tolerance)/first) + 1)*first
          if (target > period - tolerance) target = period
+         do i = 1, size(landings)
+            if (landings(i) > step_time + spacing .and. landings(i) < target) target = landings(i)
+         end do
          ending = step_time + size_allowed
          if (target <= ending + tolerance) ending = target
       end associate

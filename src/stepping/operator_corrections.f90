@@ -29,7 +29,9 @@ module operator_corrections
    public :: corrections_type
 
    real(dp), parameter :: settled = 1.0e-9_dp  !! part of heat and forces that is left over
-   real(dp), parameter :: rounding = 1.0e-13_dp !! part of all heat of a body that is none
+   !> Part of terms that cancel which is their rounding, sqrt(n) epsilon of a solution of n = 2e5
+   !> unknowns; and that of which it is the settled part
+   real(dp), parameter :: rounding = 1.0e-13_dp, noise = rounding/settled
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
 
@@ -153,7 +155,8 @@ contains
       self%passes = self%passes + 1
       left_over = corrections_of(self, model, bodies, stage, next%temperature, &
          next%displacement) - self%values
-      if (.not. allocated(self%scale)) self%scale = scales_of(self, bodies, stage, next)
+      if (.not. allocated(self%scale)) self%scale = scales_of(self, model, bodies, &
+         stage, next)
       last = self%left_over
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
@@ -368,28 +371,42 @@ contains
       end function content_at
    end function nodal_contents
 
-   !> Largest heat and forces of a solution, by which what is left over is small.
-   function scales_of(self, bodies, stage, next) result(scale)
+   !> Largest heat and forces of a solution, by which what is left over is small. Where their terms
+   !> cancel, as in a body of one temperature, only rounding is left of them: then it is the scale at
+   !> which this rounding counts as settled.
+   function scales_of(self, model, bodies, stage, next) result(scale)
       class(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: next
       real(dp) :: scale(size(self%values))
-      real(dp) :: heat, force
+      real(dp) :: heat, force, warmth, shift, expansion
 
-      associate (n => size(next%temperature))
+      warmth = maxval(abs(next%temperature))
+      shift = maxval(abs(next%displacement))
+      expansion = 0.0_dp
+      if (allocated(bodies%thermal_load%value)) expansion = maxval(abs(bodies%thermal_load%value))
+      associate (n => size(next%temperature), thermal => bodies%thermal, &
+         mechanical => bodies%mechanical, dilatation => bodies%dilatation)
          heat = maxval(abs(self%values(:2*n)))
-         if (allocated(bodies%thermal%matrix%value)) heat = max(heat, &
-            maxval(abs(bodies%thermal%matrix%multiply(next%temperature))))
+         if (allocated(thermal%matrix%value)) heat = max(heat, maxval(abs( &
+            thermal%matrix%multiply(next%temperature))), noise*thermal%largest_entry*warmth)
          if (stage%duration > 0.0_dp) heat = max(heat, maxval(abs(bodies%capacity%multiply( &
-            next%temperature - stage%temperature)))/stage%duration)
-         if (allocated(self%strain_before)) heat = max(heat, maxval(abs( &
-            bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
-            stage%displacement)))/stage%duration, rounding/settled*maxval(abs( &
-            bodies%capacity%multiply(bodies%dilatation%absolute)))/stage%duration)
+            next%temperature - stage%temperature)))/stage%duration, noise*max(maxval(abs( &
+            stage%content)), maxval(bodies%capacity%multiply(abs(next%temperature))))/ &
+            stage%duration)
+         if (allocated(self%strain_before)) heat = max(heat, maxval(abs(dilatation%of_strains( &
+            bodies%thermal_load, next%displacement - stage%displacement)))/stage%duration, &
+            noise*max(maxval(bodies%capacity%multiply(dilatation%absolute)), &
+            maxval(dilatation%absolute)*expansion*shift)/stage%duration)
          force = maxval(abs(self%values(2*n + 1:)))
-         if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
-            maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
+         if (allocated(mechanical%matrix%value)) force = max(force, maxval(abs( &
+            mechanical%matrix%multiply(next%displacement))), noise*mechanical%largest_entry*shift, &
+            noise*expansion*max(warmth, maxval(abs(model%initial_temperature)), &
+            maxval(abs(model%materials%no_strain))))
+         if (allocated(bodies%initial_force)) force = max(force, &
+            noise*maxval(abs(bodies%initial_force)))
          scale(:2*n) = max(heat, tiny(heat))
          scale(2*n + 1:) = max(force, tiny(force))
       end associate

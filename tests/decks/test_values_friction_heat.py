@@ -159,6 +159,16 @@ def test_slip_that_ends_within_an_increment_heats_by_its_work(tmp_path, scheme):
     judge(tmp_path, deck, [("NT", "MIN", "LAST", rise, 1e-6), ("NT", "MAX", "LAST", rise, 1e-6)])
 
 
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+@pytest.mark.parametrize(("scheme", "times"), [
+    ("CRANK-NICOLSON", "0.1, 20."), ("CRANK-NICOLSON", "0.05, 12."), ("CRANK-NICOLSON", "0.02, 4."),
+    ("GALERKIN", "0.05, 12."), ("GALERKIN", "0.02, 4."), ("L-STABLE", "0.1, 20.")])
+def test_blocks_come_to_rest_after_they_slid(tmp_path, scheme, pairing, times):
+    """Slips become the rounding of positions, and the heat that they make no longer converges."""
+    made = course_of(tmp_path, slid(scheme, pairing, 3e-3, times=times))["heat_friction"]
+    assert abs(made[-1]) < 0.01 * np.nanmax(made)
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_bodies_that_do_not_expand_slide_at_a_rate(tmp_path, scheme):
     """Where the whole face slides, at the speed of the top, heat is the friction times that."""

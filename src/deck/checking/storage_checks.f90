@@ -3,8 +3,10 @@ module storage_checks
    use card_places, only: place_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
+   use element_kinds, only: element_node_count
    use kinds, only: dp
-   use materials, only: follows_temperature, heat_capacity, of_elasticity, of_expansion
+   use materials, only: expansion_heat, follows_temperature, heat_capacity, least_heat_capacity, &
+      of_density, of_elasticity, of_expansion, of_specific_heat
    use model, only: model_type
    use steps, only: solves_heat
    use text, only: to_text
@@ -69,11 +71,53 @@ contains
          return
       end if
       n = minloc(model%initial_temperature, dim=1, mask=model%mesh%node_body > 0)
-      if (model%initial_temperature(n) > model%constants%absolute_zero) return
+      if (model%initial_temperature(n) > model%constants%absolute_zero) then
+         call check_strained_capacity(place, model, report)
+         return
+      end if
       call report%error(place, 'DILATATION needs temperatures above absolute zero, '// &
          to_text(model%constants%absolute_zero)//', but node '// &
          to_text(model%mesh%node_number(n))//' starts at '// &
          to_text(model%initial_temperature(n)))
    end subroutine check_dilatation
+
+   !> The capacity at constant strain, rho c_p - T0 beta:alpha, must be positive, or heat would make
+   !> bodies that cannot expand colder, without limit. What does not expand needs none.
+   subroutine check_strained_capacity(place, model, report)
+      type(place_type), intent(in) :: place
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: taken(size(model%materials)), here, least, row
+      integer :: e, m, n, hottest(size(taken))
+      character(:), allocatable :: at_row
+
+      taken = 0.0_dp
+      associate (mesh => model%mesh, start => model%initial_temperature, &
+         zero => model%constants%absolute_zero)
+         do e = 1, size(mesh%element_kind)
+            m = model%sections(mesh%element_section(e))%material
+            associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+               n = nodes(maxloc(start(nodes), dim=1))
+            end associate
+            here = (start(n) - zero)*expansion_heat(model%materials(m), mesh%element_plane(e))
+            if (here > taken(m)) hottest(m) = n
+            taken(m) = max(taken(m), here)
+         end do
+         do m = 1, size(taken)
+            call least_heat_capacity(model%materials(m), least, row)
+            if (taken(m) <= 0.0_dp .or. least > taken(m)) cycle
+            at_row = ''
+            if (any([follows_temperature(model%materials(m), of_density), &
+               follows_temperature(model%materials(m), of_specific_heat)])) at_row = &
+               ' at temperature '//to_text(row)
+            call report%error(place, 'DILATATION: the heat capacity of material '// &
+               model%materials(m)%name//' at constant strain, rho c_p - T0 beta:alpha, is '// &
+               to_text(least - taken(m))//', not positive: rho c_p is '//to_text(least)//at_row// &
+               ', T0 is '//to_text(start(hottest(m)) - zero)//' at node '// &
+               to_text(mesh%node_number(hottest(m)))//'; give *DENSITY and *SPECIFIC HEAT '// &
+               'whose product is above '//to_text(taken(m))//', in the units of *ELASTIC')
+         end do
+      end associate
+   end subroutine check_strained_capacity
 
 end module storage_checks
