@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from blocks import block, solid, write
 from deck_runs import CYLINDER, copy_deck, run, solve
+from physics import material, mesh
 
 DIRECT = {", STEADY STATE, DIRECT": ", STEADY STATE", "20., 900.": "100., 900."}
 CHECK = '*VERIFY, KIND=ANALYTIC, SOURCE="prescribed"'
@@ -55,3 +56,28 @@ def test_increments_land_on_the_corners_of_amplitudes_in_step_or_total_time(
         "*STEP", "*STATIC", "0.5, 2.", "*END STEP"])
     with h5py.File(solve(deck)) as file:
         np.testing.assert_allclose(file["history/time"], ends, rtol=1e-12)
+
+
+@pytest.mark.parametrize("timing", ["", ", TIME=TOTAL TIME"])
+@pytest.mark.parametrize("width", [1e-3, 4e-4, 1e-5])
+@pytest.mark.parametrize("where", [0.0, 500.0, "end"])
+def test_the_heat_of_a_pulse_arrives_however_short_it_is(tmp_path, timing, width, where):
+    """Without diffusion in the way: all of the body has the heat of the pulse, 0.5, at the end. It
+    rises and falls in the second of two steps of 1000, which begins with increments of 1."""
+    start = 1000.0 - width if where == "end" else where
+    times = [start, start + width / 2, start + width]
+    if timing:
+        times = [1000.0 + time for time in times]
+    corners = ", ".join(f"{time!r}, {factor}" for time, factor in zip(times, (0, 1, 0), strict=True))
+    deck = write(tmp_path / "pulse.inp", mesh("BODY", [0.0, 1.0], [0.0, 1.0, 2.0], "CPE4"),
+                 material("BODY", conductivity=1.0, density=1.0, specific_heat=1.0), [
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", f"*AMPLITUDE, NAME=PULSE{timing}",
+        corners, "*STEP, INC=1000", "*HEAT TRANSFER", "1., 1000.", "*END STEP",
+        "*STEP, INC=1000", "*HEAT TRANSFER", "1., 1000.", "*DFLUX, AMPLITUDE=PULSE",
+        f"BODY, BF, {1.0 / width!r}", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        found = file["VTKHDF/PointData/temperature"][-6:]
+        np.testing.assert_allclose(found, 0.5, rtol=1e-6)
+        for time in times:
+            total = time if timing else time + 1000.0
+            assert np.abs(file["history/time"][()] - total).min() <= 1e-12 * total

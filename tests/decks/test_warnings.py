@@ -381,6 +381,31 @@ def test_an_amplitude_that_begins_after_its_step(tmp_path, total, times, idle):
     assert (one(found, "*AMPLITUDE") == said) if idle else (found == [])
 
 
+@pytest.mark.parametrize(("direct", "total", "rows", "told"), [
+    (True, "", "0., 0., 0.6, 0., 0.65, 1., 0.7, 0.", ("1", 1, 0.65, 0, 0)),
+    (False, "", "0., 0., 0.6, 0., 0.65, 1., 0.7, 0.", None),
+    (True, "", "0., 0., 0.4, 1., 0.8, -0.2, 1., 0.", ("1", 1, 0.4, 0, 0.7)),
+    (True, "", "0., 0., 0.3, 0.7, 0.5, 1., 1., 0.", None),
+    (True, "", "0., 0., 0.499, 0.999, 1., 0.", None),
+    (True, ", TIME=TOTAL TIME", "0., 0., 1.6, 0.1, 1.7, 2., 3., 1.", ("2", 2, 1.7, "9.375E-2", 1.76923)),
+    (True, ", TIME=TOTAL TIME", "0., 0., 1., 0.1, 1.5, 2., 3., 1.", None)])
+def test_a_peak_that_fixed_increments_step_over(tmp_path, direct, total, rows, told):
+    """Two steps of two increments of 0.5."""
+    how, cards = ", DIRECT" if direct else "", ["*AMPLITUDE, NAME=PULSE" + total, rows]
+    first = [card.replace("STEADY STATE", "STEADY STATE" + how).replace("1., 1.", "0.5, 1.")
+             for card in HEATED]
+    first[-1:-1] = ["*DLOAD, AMPLITUDE=PULSE", "A, BX, 1."]
+    second = [*first[:3], "*END STEP"]
+    found = warnings(tmp_path, cards, conducting([*first, *second]))
+    if not told:
+        assert found == []
+        return
+    number, factor, time, before, after = told
+    assert one(found, "*AMPLITUDE") == (
+        f"amplitude PULSE: the increments of step {number}, fixed by DIRECT, step over its factor "
+        f"{factor} at {time}, and see {before} and {after}; without DIRECT they end on its corners")
+
+
 @pytest.mark.parametrize(("gap", "closes"), [(1e-3, True), (0.2, False)])
 def test_contact_that_never_closes(tmp_path, gap, closes):
     """The upper block is pushed down by 0.1."""

@@ -29,6 +29,9 @@ module deck_checks
    !> An amplitude that ends before this part of its step is over ends long before it.
    real(dp), parameter :: long_before = 0.5_dp
 
+   !> Part of its range by which an amplitude may leave what fixed increments see of it.
+   real(dp), parameter :: most_missed = 0.01_dp
+
 contains
 
    !> Checks the model before it is refined.
@@ -247,8 +250,8 @@ contains
       has_field_value = .false.
    end function has_field_value
 
-   !> Warns of amplitudes that end long before the step in which a request begins to follow them, or
-   !> begin after it.
+   !> Warns of amplitudes that end long before the step in which a request begins to follow them,
+   !> begin after it, or have peaks within fixed increments.
    subroutine check_amplitudes(cards, requests, model, told, report)
       type(cards_type), intent(in) :: cards
       type(request_list_type), intent(in) :: requests
@@ -277,6 +280,12 @@ contains
                call report%warning(cards%keywords(card_of(cards, a))%place, message)
                cycle
             end if
+            message = missed_peak(curve, model, s)
+            if (len(message) > 0) then
+               told(a) = .true.
+               call report%warning(cards%keywords(card_of(cards, a))%place, message)
+               cycle
+            end if
             last = curve%times(size(curve%times))
             if (last - start >= long_before*period .or. is_level(curve)) cycle
             told(a) = .true.
@@ -287,6 +296,41 @@ contains
          end associate
       end do
    end subroutine check_amplitudes
+
+   !> Says which corner of an amplitude the increments of a step with DIRECT step over, farthest
+   !> beyond its values at their ends; empty for none. The amplitude acts from a step on, in it
+   !> alone where its times are those of the step.
+   function missed_peak(curve, model, first_step) result(message)
+      type(amplitude_type), intent(in) :: curve
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: first_step
+      character(:), allocatable :: message
+      real(dp) :: before, beyond, ends(2), start, worst
+      integer :: k, s
+
+      message = ''
+      worst = most_missed*(maxval(curve%values) - minval(curve%values))
+      do s = first_step, merge(size(model%steps), first_step, curve%total_time)
+         if (.not. model%steps(s)%direct) cycle
+         start = 0.0_dp
+         if (curve%total_time) start = sum(model%steps(:s - 1)%period)
+         associate (first => model%steps(s)%first_increment, period => model%steps(s)%period)
+            do k = 1, size(curve%times)
+               if (curve%times(k) <= start .or. curve%times(k) >= start + period) cycle
+               before = floor((curve%times(k) - start)/first)*first
+               ends = [amplitude_value(curve, start + before), &
+                  amplitude_value(curve, start + min(before + first, period))]
+               beyond = max(curve%values(k) - maxval(ends), minval(ends) - curve%values(k))
+               if (beyond <= worst) cycle
+               worst = beyond
+               message = 'amplitude '//curve%name//': the increments of step '//to_text(s)// &
+                  ', fixed by DIRECT, step over its factor '//to_text(curve%values(k))// &
+                  ' at '//to_text(curve%times(k))//', and see '//to_text(ends(1))//' and '// &
+                  to_text(ends(2))//'; without DIRECT they end on its corners'
+            end do
+         end associate
+      end do
+   end function missed_peak
 
    !> Whether an amplitude that is not always 0 is so over an interval.
    pure logical function is_idle(curve, start, length)

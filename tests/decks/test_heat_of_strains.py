@@ -1,0 +1,72 @@
+"""A body that is held all around has the capacity at constant strain, rho c_p - T0 beta:alpha, which
+must be positive."""
+
+import re
+
+import h5py
+import numpy as np
+import pytest
+from blocks import write
+from deck_runs import run
+from physics import material, mesh
+
+START, ABSOLUTE, POWER, TIME = 20.0, 293.0, 3.0, 0.5
+ALPHA = np.array([1e-3, 2e-3, 0.5e-3])
+YOUNG, POISSON, SHEAR = (1000.0, 400.0, 600.0), (0.3, 0.25, 0.2), (300.0, 250.0, 200.0)
+TURNED = ["*ORIENTATION, NAME=TURNED", "1., 0., 0., 0., 1., 0.", "3, 30."]
+
+
+def expansion_heat(plane, is_isotropic):
+    """Return beta:alpha; in plane stress beta has no part across the plane."""
+    (a, b, c), (ab, ac, bc) = YOUNG, POISSON
+    alpha = np.full(3, ALPHA[0]) if is_isotropic else ALPHA
+    if is_isotropic:
+        b, c, ac, bc = a, a, ab, ab
+    compliance = np.array([[1 / a, -ab / a, -ac / a], [-ab / a, 1 / b, -bc / b],
+                           [-ac / a, -bc / b, 1 / c]])
+    n = 2 if plane == "CPS" else 3
+    return alpha[:n] @ np.linalg.solve(compliance[:n, :n], alpha[:n])
+
+
+def held(folder, kind, is_isotropic, ratio):
+    """Run a body that is held and heated within; its rho c_p is a multiple of T0 beta:alpha."""
+    capacity = ratio * ABSOLUTE * expansion_heat(kind[:3], is_isotropic)
+    given = {"elastic": (YOUNG[0], POISSON[0]), "expansion": ALPHA[0]}
+    if not is_isotropic:
+        given = {"elastic": (*YOUNG, *POISSON, *SHEAR), "elastic_type": "ENGINEERING CONSTANTS",
+                 "expansion": tuple(ALPHA), "expansion_type": "ORTHO"}
+    turned = not is_isotropic and not kind.startswith("CAX")
+    deck = write(folder / "deck.inp", ["*OPTIONS, ERRORS=NO"], TURNED if turned else [],
+                 mesh("BODY", [1.0, 2.0, 3.0], [0.0, 0.5, 1.0], kind),
+                 material("BODY", conductivity=1.0, density=2.0, specific_heat=capacity / 2.0,
+                          section=", ORIENTATION=TURNED" if turned else "", **given), [
+        f"*PHYSICAL CONSTANTS, ABSOLUTE ZERO={START - ABSOLUTE!r}",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"BODY, {START!r}", "*BOUNDARY", "BODY, 1, 2",
+        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, DILATATION=YES", f"0.1, {TIME!r}",
+        "*DFLUX", f"BODY, BF, {POWER!r}", "*END STEP"])
+    return capacity, deck, run("run", "--quiet", deck, "--out", folder)
+
+
+KINDS = pytest.mark.parametrize("kind", ["CPE4", "CPS8", "CAX8", "CAX4"])
+MATERIALS = pytest.mark.parametrize("is_isotropic", [True, False], ids=["isotropic", "orthotropic"])
+
+
+@KINDS
+@MATERIALS
+def test_a_held_body_warms_by_its_capacity_at_constant_strain(tmp_path, kind, is_isotropic):
+    capacity, deck, process = held(tmp_path, kind, is_isotropic, 1.01)
+    assert process.returncode == 0, process.stderr
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        nodes = int(file["VTKHDF/NumberOfPoints"][0])
+        found = file["VTKHDF/PointData/temperature"][-nodes:]
+    rise = POWER * TIME / (capacity - capacity / 1.01)
+    np.testing.assert_allclose(found - START, rise, rtol=1e-6)
+
+
+@KINDS
+@MATERIALS
+def test_a_capacity_at_constant_strain_that_is_not_positive_is_refused(tmp_path, kind, is_isotropic):
+    capacity, _, process = held(tmp_path, kind, is_isotropic, 0.999)
+    assert process.returncode == 1
+    told = re.search(r"rho c_p - T0 beta:alpha, is (\S+), not positive", process.stderr)
+    assert float(told[1]) == pytest.approx(-capacity / 999, rel=1e-4)
