@@ -29,9 +29,9 @@ module operator_corrections
    public :: corrections_type
 
    real(dp), parameter :: settled = 1.0e-9_dp  !! part of heat and forces that is left over
-   !> Part of terms that cancel which is their rounding, sqrt(n) epsilon of a solution of n = 2e5
-   !> unknowns; and that of which it is the settled part
-   real(dp), parameter :: rounding = 1.0e-13_dp, noise = rounding/settled
+   !> Part of terms that cancel which is their rounding: sqrt(n) epsilon in a solution of n = 2e5
+   !> unknowns
+   real(dp), parameter :: rounding = 1.0e-13_dp
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
 
@@ -371,9 +371,8 @@ contains
       end function content_at
    end function nodal_contents
 
-   !> Largest heat and forces of a solution, by which what is left over is small. Where their terms
-   !> cancel, as in a body of one temperature, only rounding is left of them: then it is the scale at
-   !> which this rounding counts as settled.
+   !> Largest heat and forces of a solution, by which what is left over is small; at least those of
+   !> which the rounding of their terms is the settled part.
    function scales_of(self, model, bodies, stage, next) result(scale)
       class(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -381,35 +380,53 @@ contains
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: next
       real(dp) :: scale(size(self%values))
-      real(dp) :: heat, force, warmth, shift, expansion
+      real(dp) :: heat, force, least(2)
 
-      warmth = maxval(abs(next%temperature))
-      shift = maxval(abs(next%displacement))
-      expansion = 0.0_dp
-      if (allocated(bodies%thermal_load%value)) expansion = maxval(abs(bodies%thermal_load%value))
-      associate (n => size(next%temperature), thermal => bodies%thermal, &
-         mechanical => bodies%mechanical, dilatation => bodies%dilatation)
-         heat = maxval(abs(self%values(:2*n)))
-         if (allocated(thermal%matrix%value)) heat = max(heat, maxval(abs( &
-            thermal%matrix%multiply(next%temperature))), noise*thermal%largest_entry*warmth)
+      least = rounding/settled*largest_terms(model, bodies, stage, next)
+      associate (n => size(next%temperature))
+         heat = max(maxval(abs(self%values(:2*n))), least(1))
+         if (allocated(bodies%thermal%matrix%value)) heat = max(heat, &
+            maxval(abs(bodies%thermal%matrix%multiply(next%temperature))))
          if (stage%duration > 0.0_dp) heat = max(heat, maxval(abs(bodies%capacity%multiply( &
-            next%temperature - stage%temperature)))/stage%duration, noise*max(maxval(abs( &
-            stage%content)), maxval(bodies%capacity%multiply(abs(next%temperature))))/ &
-            stage%duration)
-         if (allocated(self%strain_before)) heat = max(heat, maxval(abs(dilatation%of_strains( &
-            bodies%thermal_load, next%displacement - stage%displacement)))/stage%duration, &
-            noise*max(maxval(bodies%capacity%multiply(dilatation%absolute)), &
-            maxval(dilatation%absolute)*expansion*shift)/stage%duration)
-         force = maxval(abs(self%values(2*n + 1:)))
-         if (allocated(mechanical%matrix%value)) force = max(force, maxval(abs( &
-            mechanical%matrix%multiply(next%displacement))), noise*mechanical%largest_entry*shift, &
-            noise*expansion*max(warmth, maxval(abs(model%initial_temperature)), &
-            maxval(abs(model%materials%no_strain))))
-         if (allocated(bodies%initial_force)) force = max(force, &
-            noise*maxval(abs(bodies%initial_force)))
+            next%temperature - stage%temperature)))/stage%duration)
+         if (allocated(self%strain_before)) heat = max(heat, maxval(abs( &
+            bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
+            stage%displacement)))/stage%duration)
+         force = max(maxval(abs(self%values(2*n + 1:))), least(2))
+         if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
+            maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
          scale(:2*n) = max(heat, tiny(heat))
          scale(2*n + 1:) = max(force, tiny(force))
       end associate
    end function scales_of
+
+   !> Largest terms of which heat and forces are sums. They cancel where a body has one temperature,
+   !> or moves as a whole.
+   pure function largest_terms(model, bodies, stage, next) result(terms)
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: next
+      real(dp) :: terms(2)                                   ! [power], [force]
+      real(dp) :: shift, stored, thermal_load, warmth
+
+      warmth = maxval(abs(next%temperature))
+      shift = maxval(abs(next%displacement))
+      thermal_load = 0.0_dp
+      if (allocated(bodies%thermal_load%value)) thermal_load = &
+         maxval(abs(bodies%thermal_load%value))
+      terms(1) = bodies%thermal%largest_entry*warmth
+      if (stage%duration > 0.0_dp) then
+         stored = max(maxval(abs(stage%content)), maxval(bodies%capacity%multiply( &
+            abs(next%temperature))))
+         if (stage%dilates) stored = max(stored, maxval(bodies%capacity%multiply( &
+            bodies%dilatation%absolute)), maxval(bodies%dilatation%absolute)*thermal_load*shift)
+         terms(1) = max(terms(1), stored/stage%duration)
+      end if
+      terms(2) = max(bodies%mechanical%largest_entry*shift, thermal_load*max(warmth, &
+         maxval(abs(model%initial_temperature)), maxval(abs(model%materials%no_strain))))
+      if (allocated(bodies%initial_force)) terms(2) = max(terms(2), &
+         maxval(abs(bodies%initial_force)))
+   end function largest_terms
 
 end module operator_corrections

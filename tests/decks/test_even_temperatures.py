@@ -22,7 +22,7 @@ SPECIFIC_HEAT = [(1.0, 0.0), (2.0, 200.0)]
 CAPACITY = tables.product(DENSITY, SPECIFIC_HEAT, 400)
 # Energy and length in other units, W and mW, m and mm; and the origin of temperatures.
 UNITS = {"SI": (1.0, 1.0, 0.0), "mW": (1e3, 1.0, 0.0), "mm": (1.0, 1e3, 0.0),
-         "kelvin": (1.0, 1.0, 273.15), "far": (1e-6, 1e-2, -1e4)}
+         "kelvin": (1.0, 1.0, 273.15), "far": (1e-6, 1e-2, -1e4), "zero": (1.0, 1.0, -START)}
 ANALYSES = {"heat": "*HEAT TRANSFER", "coupled": "*COUPLED TEMPERATURE-DISPLACEMENT",
             "dilatation": "*COUPLED TEMPERATURE-DISPLACEMENT, DILATATION=YES"}
 
@@ -94,7 +94,8 @@ CASES = [pytest.param(unit, kind, joint, analysis, id=f"{unit}-{kind}-{joint}-{a
     ("SI", "CPE4", "TIE", "heat"), ("SI", "CAX8", "TIE", "coupled"),
     ("SI", "CPE4", "TIE", "dilatation"), ("mW", "CPS8", "SURFACES", "coupled"),
     ("mm", "CPE8", "NODES", "coupled"), ("kelvin", "CAX4", "TIE", "dilatation"),
-    ("kelvin", "CPE3", "SURFACES", "heat"), ("far", "CPE6", "TIE", "coupled"))]
+    ("kelvin", "CPE3", "SURFACES", "heat"), ("far", "CPE6", "TIE", "coupled"),
+    ("zero", "CPE4", "TIE", "heat"), ("zero", "CPE8", "SURFACES", "coupled"))]
 HOW = pytest.mark.parametrize("how", ["", ", DIRECT"])
 
 
