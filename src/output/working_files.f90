@@ -5,6 +5,7 @@ module working_files
    use errors, only: error_type, set_error, status_internal
    use file_calls, only: cannot_write, copy_file, create_working_file, remove_file, &
       remove_working_files, rename_file, sync_file, try_file, try_growth
+   use file_seals, only: check_seal, seal_file
    use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp
    implicit none
@@ -90,7 +91,8 @@ contains
       if (self%in_place .and. .not. allocated(error)) then
          call copy_file(self%path, self%working_path, error)
       else if (allocated(self%source) .and. .not. allocated(error)) then
-         call copy_file(self%source, self%working_path, error)
+         call check_seal(self%source, error)
+         if (.not. allocated(error)) call copy_file(self%source, self%working_path, error)
       end if
       if (allocated(error)) then
          call self%content%fail(error)
@@ -110,13 +112,14 @@ contains
       call explain(self, error)
    end subroutine check
 
-   !> Closes the working copy.
+   !> Closes and seals the working copy.
    !> Error: the first one since it was opened; status_internal, when the rest cannot be written.
    subroutine close_working(self, error)
       class(working_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call self%content%close(error)
+      if (.not. allocated(error)) call seal_file(self%working_path, error)
       call explain(self, error)
    end subroutine close_working
 

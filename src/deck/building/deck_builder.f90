@@ -147,7 +147,7 @@ contains
          if (model%steps(s)%is_transient) exit
          if (model%steps(s)%analysis /= analysis_coupled) cycle
          model%steps(s)%analysis = analysis_static
-         call report%suspect(context%step_place(s), 'step '//to_text(s)//' solves no heat: '// &
+         call report%warning(context%step_place(s), 'step '//to_text(s)//' solves no heat: '// &
             'nothing prescribes a temperature and nothing heats the bodies; give *BOUNDARY '// &
             'with degree of freedom 11, or take *STATIC', heatless)
       end do

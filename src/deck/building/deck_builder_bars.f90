@@ -97,6 +97,7 @@ contains
       end associate
       do i = 1, size(members)
          associate (bar => of_line(members(i)), nodes => context%line_nodes(:2, members(i)))
+            if (any(nodes(:merge(1, 2, context%line_kind(members(i)) == ground_spring)) == 0)) cycle
             bar%stiffness = stiffness
             bar%follows_axes = has_dofs
             select case (context%line_kind(members(i)))

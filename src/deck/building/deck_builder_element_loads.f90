@@ -244,7 +244,7 @@ contains
       sink%kind = load_film_sink
       film%kind = load_film_coefficient
       call need_field(data, 3, 'sink temperature', report, sink%value, valid)
-      if (report%has_lost(name=field_text(data, 4))) return   ! a refused *FILM PROPERTY
+      if (report%has_lost('film property', field_text(data, 4))) return   ! a refused *FILM PROPERTY
       call need_field(data, 4, 'film coefficient', report, film%value, valid)
       call check_extra(data, 4, 'element or set, face, sink temperature, film coefficient', report)
       if (.not. valid) return

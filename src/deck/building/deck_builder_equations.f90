@@ -224,7 +224,7 @@ contains
             call need_faces(model%mesh, parameter_place(cards%keywords(k), 'SURFACE'), &
                'it follows the reference node of its *RIGID BODY', report, &
                model%couplings(n)%surface)
-            if (is_keyword(cards, k + 1, 'KINEMATIC') .or. is_keyword(cards, k + 1, '')) cycle
+            if (is_keyword(cards, k + 1, 'KINEMATIC')) cycle
             call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
                'directly follow *COUPLING and name the degrees of freedom')
          else if (cards%keywords(k)%name == 'KINEMATIC') then

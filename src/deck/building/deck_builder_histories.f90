@@ -39,13 +39,11 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: n
-      logical :: repeated
 
       places = cards_of(cards, 'AMPLITUDE')
       allocate(model%amplitudes(size(places)))
       do n = 1, size(places)
-         call name_last(cards, places(n), 'amplitude', model%amplitudes(:n), report, repeated)
-         if (repeated) call report%lose('amplitude')
+         call name_last(cards, places(n), 'amplitude', model%amplitudes(:n), report)
          call build_amplitude(cards, cards%keywords(places(n)), report, model%amplitudes(n))
       end do
    end subroutine build_amplitudes
@@ -58,13 +56,13 @@ contains
       integer, allocatable :: places(:)
       character(:), allocatable :: kind
       integer :: i, j, n
-      logical :: repeated, valid
+      logical :: valid
       real(dp) :: values(3)
 
       places = cards_of(cards, 'TIME POINTS')
       allocate (context%time_points(size(places)))
       do n = 1, size(places)
-         call name_last(cards, places(n), 'time points', context%time_points(:n), report, repeated)
+         call name_last(cards, places(n), 'time points', context%time_points(:n), report)
          associate (card => cards%keywords(places(n)), points => context%time_points(n))
             kind = 'STEP TIME'
             call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)

@@ -42,7 +42,6 @@ contains
       type(interaction_type) :: interaction
       type(place_type) :: law_place
       integer :: k, n, errors
-      logical :: repeated
 
       allocate(model%interactions(card_count(cards, 'SURFACE INTERACTION')))
       n = 0
@@ -53,9 +52,7 @@ contains
             case ('SURFACE INTERACTION')
                errors = report%error_count()
                n = n + 1
-               call name_last(cards, k, 'surface interaction', model%interactions(:n), report, &
-                  repeated)
-               if (repeated) call report%lose('surface interaction')
+               call name_last(cards, k, 'surface interaction', model%interactions(:n), report)
                law_place = card%place
                call ignore_thickness(cards, card, context, report)
                interaction = model%interactions(n)

@@ -106,8 +106,8 @@ contains
       call need_field(data, q + 1, 'node '//to_text(q), report, number, valid)
       if (.not. valid) return
       node = context%node_index%find(number)
-      if (node == 0 .and. .not. context%node_index%is_empty()) call report%missing( &
-         field_place(data, q + 1), 'there is no node '//to_text(number), 'node', to_text(number))
+      if (node == 0) call report%missing(field_place(data, q + 1), 'there is no node '// &
+         to_text(number), 'node', to_text(number))
    end subroutine read_node
 
    !> Parts sets of elements and lines: sets of elements stay, those that have lines as well are

@@ -47,7 +47,6 @@ contains
       type(model_type), intent(inout) :: model             !! receives the materials
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k, n
-      logical :: repeated
 
       n = card_count(cards, 'MATERIAL')
       allocate(model%materials(n), context%material_place(n))
@@ -58,10 +57,9 @@ contains
             case ('MATERIAL')
                n = n + 1
                context%material_place(n) = card%place
-               call name_last(cards, k, 'material', model%materials(:n), report, repeated)
-               if (.not. repeated) cycle
-               call report%lose('material')   ! another name may have been meant
-               call report%lose('*ELASTIC')   ! the other one may have these
+               call name_last(cards, k, 'material', model%materials(:n), report)
+               if (.not. report%has_lost('material')) cycle
+               call report%lose('*ELASTIC')   ! another material may have these
                call report%lose('*CONDUCTIVITY')
                call report%lose('*DENSITY')
             case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT')
@@ -377,14 +375,12 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: n
-      logical :: repeated
 
       places = cards_of(cards, 'ORIENTATION')
       allocate(model%orientations(size(places)))
       do n = 1, size(places)
          associate (card => cards%keywords(places(n)))
-            call name_last(cards, places(n), 'orientation', model%orientations(:n), report, &
-               repeated)
+            call name_last(cards, places(n), 'orientation', model%orientations(:n), report)
             if (card%last_data >= card%first_data) call build_axes(cards, card, &
                model%orientations(n), report)
          end associate

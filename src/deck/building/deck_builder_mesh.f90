@@ -48,6 +48,7 @@ contains
       call move_alloc(heights, context%node_height)
       call warn_of_decimals(cards, card, report)
       call drop_repeated(mesh, context, report)
+      if (n == 0) call report%lose('node')
       context%node_index%noun = 'node'
       call context%node_index%build(mesh%node_number)
       call add_rotations(cards, context, mesh)
@@ -265,6 +266,7 @@ contains
          end do
       end do
       call check_heights(cards, context, mesh, report)
+      if (n == 0) call report%lose('element')
       context%element_index%noun = 'element'
       call context%element_index%build(mesh%element_number)
       ! Elements and lines have different numbers.

@@ -261,13 +261,11 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: n
-      logical :: repeated
 
       places = cards_of(cards, 'SURFACE')
       allocate(mesh%surfaces(size(places)), context%face_places(size(places)))
       do n = 1, size(places)
-         call name_last(cards, places(n), 'surface', mesh%surfaces(:n), report, repeated)
-         if (repeated) call report%lose('surface')
+         call name_last(cards, places(n), 'surface', mesh%surfaces(:n), report)
          call build_surface(cards, cards%keywords(places(n)), context, mesh, report, &
             mesh%surfaces(n), context%face_places(n))
       end do

@@ -217,7 +217,7 @@ contains
             self%include_place = card%parameters(1)%value_place
          else
             if (.not. card%flawed) call report%error(card%place, '*INCLUDE needs INPUT=')
-            call report%lose_file()
+            call report%lose()
          end if
          return
       end if

@@ -281,13 +281,19 @@ contains
       character(*), intent(in) :: what                    !! what the field is, with its article
       type(deck_report_type), intent(inout) :: report     !! receives the warning
       character(*), intent(in), optional :: group         !! by which it is convicted
+      character(:), allocatable :: message
 
       if (.not. may_be_decimals(data, i)) return
       associate (whole => data%fields(i - 1)%text, decimals => data%fields(i)%text)
-         call report%suspect(field_place(data, i - 1), 'decimal comma? '//whole//','//decimals// &
-            ' is two fields: '//whole//', and '//what//', which is ignored; write '//whole// &
-            '.'//decimals//', or '//whole//'. if that is meant', group)
+         message = 'decimal comma? '//whole//','//decimals//' is two fields: '//whole//', and '// &
+            what//', which is ignored; write '//whole//'.'//decimals//', or '//whole// &
+            '. if that is meant'
       end associate
+      if (present(group)) then
+         call report%warning(field_place(data, i - 1), message, group)
+      else
+         call report%suspect(field_place(data, i - 1), message)
+      end if
    end subroutine check_unneeded
 
    !> As check_unneeded for the temperature behind a property: a plausible one is no decimals,

@@ -14,7 +14,7 @@ module deck_context
    use named_items, only: find_named, named_type
    use quantity_types, only: quantity_type
    use sorting, only: number_index_type
-   use spelling, only: is_slip, nearest_known
+   use spelling, only: nearest_known
    use text, only: read_integer, string_type, to_upper
    use time_points, only: time_points_type
    implicit none
@@ -90,20 +90,22 @@ contains
       call add_note(self%notes, line)
    end subroutine note
 
-   !> Names the last of some items by NAME= of its card; the name of an earlier one is an error.
-   subroutine name_last(cards, k, noun, items, report, repeated)
+   !> Names the last of some items by NAME= of its card. That it has none, or that of an earlier
+   !> one, is an error; another name may have been meant.
+   subroutine name_last(cards, k, noun, items, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k                          !! index of the card
       character(*), intent(in) :: noun                  !! such as material
       class(named_type), intent(inout) :: items(:)      !! those of the cards up to this one
       type(deck_report_type), intent(inout) :: report   !! receives errors
-      logical, intent(out) :: repeated                  !! whether an earlier one has the name
       integer :: n
+      logical :: repeated
 
       n = size(items)
       call need_parameter(cards%keywords(k), 'NAME', report, items(n)%name)
       repeated = len(items(n)%name) > 0 .and. find_named(items(:n - 1), items(n)%name) > 0
       if (repeated) call report_twice(cards, k, noun//' '//items(n)%name, report)
+      if (repeated .or. len(items(n)%name) == 0) call report%lose(noun)
    end subroutine name_last
 
    !> Index of the item that a parameter names, which the card must have; 0 after an error.
@@ -165,8 +167,7 @@ contains
       if (index == 0) call report_unknown(noun, name, items, place, report)
    end subroutine look_up
 
-   !> Reports a name that nothing has. Where a card gives no name, which is reported there, it may
-   !> be the one that is missing, unless it looks like a slip of the pen.
+   !> Reports a name that nothing has.
    subroutine report_unknown(noun, name, items, place, report)
       character(*), intent(in) :: noun                  !! what is named, such as material
       character(*), intent(in) :: name                  !! the name that is not known
@@ -174,17 +175,11 @@ contains
       type(place_type), intent(in) :: place             !! where it is
       type(deck_report_type), intent(inout) :: report   !! receives the error
       type(string_type) :: names(size(items))
-      logical :: nameless, slip
       integer :: i
 
-      nameless = .false.
-      slip = .false.
       do i = 1, size(items)
          names(i)%value = items(i)%name
-         nameless = nameless .or. len(names(i)%value) == 0
-         slip = slip .or. is_slip(name, names(i)%value)
       end do
-      if (nameless .and. .not. slip) return
       call report%missing(place, 'unknown '//noun//' '//name//nearest_known(name, names), noun, &
          name)
    end subroutine report_unknown
@@ -246,7 +241,7 @@ contains
       if (.not. (is_number .or. verify(name, '0123456789') == 0)) then
          call report_unknown(numbers%noun//' set', to_upper(name), sets, &
             field_place(data, position), report)
-      else if (.not. numbers%is_empty()) then
+      else
          call report%missing(field_place(data, position), 'there is no '//numbers%noun//' '// &
             name, numbers%noun, name)
       end if

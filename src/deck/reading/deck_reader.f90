@@ -143,19 +143,19 @@ contains
          else if (size(open_files) == deepest_include) then
             call report%error(place, 'more than '//to_text(deepest_include)// &
                ' files include each other', too_many)
-            call report%lose_file()
+            call report%lose()
             cycle
          else if (size(report%source%paths) == most_files) then
             call report%error(place, 'the deck has more than '//to_text(most_files)//' files', &
                too_many)
-            call report%lose_file()
+            call report%lose()
             cycle
          end if
          call read_file(included, beside(found, included), open_files, open_lines, cards, report, &
             include_fault)
          if (len(include_fault) == 0) cycle
          call report%error(place, included//' cannot be read: '//include_fault)
-         call report%lose_file()
+         call report%lose()
       end do
    end subroutine read_file
 

@@ -4,7 +4,7 @@ module deck_report
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: print_line
-   use text, only: append, counted, string_type, to_text, to_upper
+   use text, only: counted, string_type, to_text, to_upper
    implicit none
    private
    public :: deck_report_type
@@ -24,6 +24,12 @@ module deck_report
       logical :: explains = .false.          !! whether it explains what else is wrong on its card
    end type diagnostic_type
 
+   !> Something whose definition a reported error may hide.
+   type :: lost_type
+      character(:), allocatable :: noun   !! its kind, such as node set; empty for any
+      character(:), allocatable :: name   !! in upper case; empty for any
+   end type lost_type
+
    !> A message in the order of the deck. Where it is one mistake on many lines of a card, the first
    !> of them tells it for all.
    type :: told_type
@@ -39,10 +45,7 @@ module deck_report
       integer, private :: count = 0                                 !! number of diagnostics
       integer, private :: errors = 0                                !! number of errors among them
       type(diagnostic_type), allocatable, private :: diagnostics(:) !! (capacity)
-      !> Kinds of things, such as node set, and names in upper case that may be defined where an
-      !> error is reported already
-      type(string_type), allocatable, private :: lost(:)
-      logical, private :: lost_file = .false.      !! whether a file of the deck could not be read
+      type(lost_type), allocatable, private :: lost(:)   !! what reported errors may hide
    contains
       procedure :: error
       procedure :: explain
@@ -52,7 +55,6 @@ module deck_report
       procedure :: missing
       procedure :: warning
       procedure :: lose
-      procedure :: lose_file
       procedure :: has_lost
       procedure :: has_errors
       procedure :: error_count
@@ -74,9 +76,9 @@ contains
       i = explanation_of(self, place)
       if (i > 0) then
          call make_error(self, i)
-         return
+      else
+         call add(self, severity_error, place, message, group)
       end if
-      call add(self, severity_error, place, message, group)
    end subroutine error
 
    !> Reports what is defined a second time, and says where first.
@@ -95,16 +97,23 @@ contains
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
+
+      call self%suspect(place, message)
+      call self%error(place, message)
+   end subroutine explain
+
+   !> Warns of what is hardly meant. An error on its card image follows from it and is replaced by
+   !> this message.
+   subroutine suspect(self, place, message)
+      class(deck_report_type), intent(inout) :: self
+      type(place_type), intent(in) :: place           !! where
+      character(*), intent(in) :: message             !! what, in plain words
       integer :: i
 
-      i = explanation_of(self, place)
-      if (i > 0) then
-         call make_error(self, i)
-         return
-      end if
+      if (explanation_of(self, place) > 0) return
       i = first_error_of(self, place)
       if (i == 0) then
-         call add(self, severity_error, place, message)
+         call add(self, severity_warning, place, message)
          i = self%count
       end if
       self%diagnostics(i)%place = place
@@ -112,26 +121,9 @@ contains
       self%diagnostics(i)%group = ''
       self%diagnostics(i)%places = 1
       self%diagnostics(i)%explains = .true.
-   end subroutine explain
-
-   !> Warns of what is hardly meant. An error that follows from it is replaced by this message: that
-   !> of its card image or, where it has a group, the one for which `convict` is called.
-   subroutine suspect(self, place, message, group)
-      class(deck_report_type), intent(inout) :: self
-      type(place_type), intent(in) :: place           !! where
-      character(*), intent(in) :: message             !! what, in plain words
-      character(*), intent(in), optional :: group     !! by which it is convicted
-
-      if (explanation_of(self, place) > 0) return
-      if (first_error_of(self, place) > 0 .and. .not. present(group)) then
-         call self%explain(place, message)
-      else
-         call add(self, severity_warning, place, message, group)
-         if (.not. present(group)) self%diagnostics(self%count)%explains = .true.
-      end if
    end subroutine suspect
 
-   !> Makes the suspects of a group errors, in place of the one that follows from them.
+   !> Makes the warnings of a group errors, in place of the one that follows from them.
    subroutine convict(self, group, found)
       class(deck_report_type), intent(inout) :: self
       character(*), intent(in) :: group               !! the group, such as friction
@@ -181,8 +173,8 @@ contains
       end do
    end function first_error_of
 
-   !> Reports that something is not there, unless an error that is reported already explains it;
-   !> one name is told once.
+   !> Reports that something is not there, unless a reported error may hide its definition; one name
+   !> is told once.
    subroutine missing(self, place, message, noun, name)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
@@ -196,34 +188,49 @@ contains
       call self%error(place, message, group)
    end subroutine missing
 
-   !> Remembers that a reported error may hide the definition of things of a kind, or of a name.
-   subroutine lose(self, word)
+   !> Remembers what an error that is reported may hide the definition of; without kind and name:
+   !> of anything, as a file that cannot be read.
+   subroutine lose(self, noun, name)
       class(deck_report_type), intent(inout) :: self
-      character(*), intent(in) :: word                !! the kind in lower case, the name in upper
+      character(*), intent(in), optional :: noun      !! the kind, such as node set
+      character(*), intent(in), optional :: name      !! the name, in any case
+      type(lost_type) :: lost
+      integer :: i
 
-      call append(self%lost, word)
+      lost = lost_type('', '')
+      if (present(noun)) lost%noun = noun
+      if (present(name)) lost%name = to_upper(name)
+      if (.not. allocated(self%lost)) allocate (self%lost(0))
+      do i = 1, size(self%lost)
+         if (self%lost(i)%noun == lost%noun .and. self%lost(i)%name == lost%name) return
+      end do
+      self%lost = [self%lost, lost]
    end subroutine lose
 
-   !> Remembers that a file of the deck could not be read, which may define anything.
-   subroutine lose_file(self)
-      class(deck_report_type), intent(inout) :: self
-
-      self%lost_file = .true.
-   end subroutine lose_file
-
-   !> Whether a reported error may hide the definition of things of a kind or of a name; without
-   !> both: of anything at all.
+   !> Whether a reported error may hide the definition of a name; without a name: of something of
+   !> the kind; without both: of anything at all. Without an error nothing is hidden, so that
+   !> whatever is dropped leaves one behind.
    pure logical function has_lost(self, noun, name)
       class(deck_report_type), intent(in) :: self
       character(*), intent(in), optional :: noun      !! the kind, such as node set
       character(*), intent(in), optional :: name      !! the name, in any case
       integer :: i
 
-      has_lost = self%lost_file
-      if (has_lost .or. .not. allocated(self%lost)) return
+      has_lost = .false.
+      if (self%errors == 0 .or. .not. allocated(self%lost)) return
       do i = 1, size(self%lost)
-         if (present(noun)) has_lost = has_lost .or. self%lost(i)%value == noun
-         if (present(name)) has_lost = has_lost .or. self%lost(i)%value == to_upper(name)
+         associate (lost => self%lost(i))
+            if (lost%noun == '' .and. lost%name == '') then
+               has_lost = .true.
+            else if (present(name)) then
+               has_lost = any(lost%name == [character(len(name)) :: '', to_upper(name)])
+               if (present(noun)) has_lost = has_lost .and. any(lost%noun == [character(len(noun)) &
+                  :: '', noun])
+            else if (present(noun)) then
+               has_lost = lost%noun == noun
+            end if
+         end associate
+         if (has_lost) return
       end do
    end function has_lost
 
@@ -409,6 +416,7 @@ contains
       if (present(group)) then
          do i = 1, min(self%count, most_errors)
             if (self%diagnostics(i)%group /= group) cycle
+            if (self%diagnostics(i)%severity /= severity) cycle
             self%diagnostics(i)%places = self%diagnostics(i)%places + 1
             return
          end do

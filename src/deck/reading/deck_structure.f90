@@ -145,24 +145,24 @@ contains
       select case (card%name)
       case ('NODE', 'NSET')
          if (card%data_lost) call report%lose('node')
-         call report%lose('node set')
+         call report%lose('node set', parameter_text(card, 'NSET'))
       case ('ELEMENT', 'ELSET')
          if (card%data_lost) call report%lose('element')
-         call report%lose('element set')
+         call report%lose('element set', parameter_text(card, 'ELSET'))
       case ('SURFACE')
-         call report%lose('surface')
+         call report%lose('surface', parameter_text(card, 'NAME'))
       case ('MATERIAL')
-         call report%lose('material')
+         call report%lose('material', parameter_text(card, 'NAME'))
       case ('ELASTIC', 'CONDUCTIVITY', 'DENSITY')
          call report%lose('*'//card%name)
       case ('ORIENTATION')
-         call report%lose('orientation')
+         call report%lose('orientation', parameter_text(card, 'NAME'))
       case ('AMPLITUDE')
-         call report%lose('amplitude')
+         call report%lose('amplitude', parameter_text(card, 'NAME'))
       case ('SURFACE INTERACTION')
-         call report%lose('surface interaction')
+         call report%lose('surface interaction', parameter_text(card, 'NAME'))
       case ('CONTACT PAIR')
-         call report%lose('contact pair')
+         call report%lose('contact pair', parameter_text(card, 'NAME'))
       case ('EQUATION', 'COUPLING', 'KINEMATIC', 'RIGID BODY', 'PRE-TENSION SECTION')
          call report%lose('equation')
       case default
@@ -275,8 +275,8 @@ contains
             if (card_count(cards, 'STEP') > 0 .or. has_stand_in(cards, 'STEP')) return
             if (card%known == 0 .or. len(card%meant) > 0) cycle
             if (known_keywords(card%known)%section /= in_step) cycle
-            call report%lose('*STEP')
             call report%error(card%place, 'the deck has no *STEP before this card')
+            call report%lose('*STEP')
             return
          end associate
       end do
@@ -291,8 +291,8 @@ contains
       type(deck_report_type), intent(inout) :: report
 
       if (card_count(cards, name) > 0 .or. has_stand_in(cards, name)) return
-      call report%lose('*'//name)
       if (size(cards%keywords) > 0) call report%error(place, 'the deck has no *'//name)
+      call report%lose('*'//name)
    end subroutine need_card
 
 end module deck_structure

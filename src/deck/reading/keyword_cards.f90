@@ -24,28 +24,15 @@ contains
       type(deck_report_type), intent(inout) :: report   !! receives errors
       type(cards_type), intent(inout) :: cards          !! receives notes on what is not needed
       type(keyword_card_type), intent(out) :: card      !! the card, without data
-      character(:), allocatable :: name
-      integer :: equals, i
-
-      name = trim(adjustl(fields(1)%text(2:)))
       card%name = ''
       card%meant = ''
       card%place = fields(1)%place
-      card%known = find_keyword(name)
+      card%known = find_keyword(fields(1)%text(2:))
       allocate(card%parameters(0))
-      if (card%known == 0) call take_foreign_keyword(name, index(fields(1)%text, '* ') == 1, &
-         report, cards, card)
-      if (card%known > 0) then
-         card%name = trim(known_keywords(card%known)%name)
-         call take_parameters(fields(2:), report, cards, card)
-         return
-      end if
-      ! A name that a card without effect defines may be missing elsewhere.
-      do i = 2, size(fields)
-         equals = index(fields(i)%text, '=')
-         if (equals > 0) call report%lose(to_upper(without_quotes(trim(adjustl( &
-            fields(i)%text(equals + 1:))))))
-      end do
+      if (card%known == 0) call take_foreign_keyword(fields, report, cards, card)
+      if (card%known == 0) return
+      card%name = trim(known_keywords(card%known)%name)
+      call take_parameters(fields(2:), report, cards, card)
    end subroutine make_keyword_card
 
    !> Whether the first field of a line behind a keyword card that ends in a comma is a parameter of
@@ -67,15 +54,15 @@ contains
    end function is_parameter
 
    !> A keyword of CalculiX or Abaqus that is passed over or refused, or one that nobody knows.
-   subroutine take_foreign_keyword(name, is_text, report, cards, card)
-      character(*), intent(in) :: name
-      logical, intent(in) :: is_text   ! whether a blank follows the star
+   subroutine take_foreign_keyword(fields, report, cards, card)
+      type(field_type), intent(in) :: fields(:)
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: cards
       type(keyword_card_type), intent(inout) :: card
       type(advice_type) :: advice
-      character(:), allocatable :: message
+      character(:), allocatable :: message, name
 
+      name = trim(adjustl(fields(1)%text(2:)))
       advice = find_advice(name)
       message = '*'//trim(advice%names)//' is refused: '//trim(advice%words)
       select case (advice%kind)
@@ -86,15 +73,39 @@ contains
             trim(advice%words))
       case (refused)
          card%meant = trim(advice%keyword)
-         if (len(card%meant) > 0) call report%lose('*'//card%meant)
          call report%error(card%place, message)
+         if (len(card%meant) > 0) call report%lose('*'//card%meant)
+         call lose_names(fields(2:), report)
       case (refused_with_data)
          card%refusal_of_data = message
          call add_note(cards%notes, '*'//trim(advice%names)//' without data is ignored')
       case default
-         call report_unknown_keyword(name, is_text, report, card)
+         call report_unknown_keyword(name, index(fields(1)%text, '* ') == 1, report, card)
+         if (card%known == 0) call lose_names(fields(2:), report)
       end select
    end subroutine take_foreign_keyword
+
+   !> The names that a refused card or one that nobody knows may define are missing elsewhere.
+   subroutine lose_names(fields, report)
+      type(field_type), intent(in) :: fields(:)    ! its parameters
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: value
+      integer :: equals, i
+
+      do i = 1, size(fields)
+         equals = index(fields(i)%text, '=')
+         value = without_quotes(trim(adjustl(fields(i)%text(equals + 1:))))
+         if (equals == 0 .or. len(value) == 0) cycle
+         select case (to_upper(trim(adjustl(fields(i)%text(:equals - 1)))))
+         case ('NAME')
+            call report%lose(name=value)
+         case ('NSET')
+            call report%lose('node set', value)
+         case ('ELSET')
+            call report%lose('element set', value)
+         end select
+      end do
+   end subroutine lose_names
 
    !> Reports a keyword that nobody knows, with the known one that it likely is by its spelling, or
    !> with what to write in its place by its meaning. All its cards are one mistake.
