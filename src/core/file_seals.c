@@ -18,6 +18,7 @@ struct seal {
 };
 
 static const char seal_letters[8] = {'t', 'h', 'e', 'r', 'c', 'o', 'n', '\n'};
+static const char hdf5_signature[8] = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
 
 /* Reads bytes at a position; 0, or the error number. */
 static int read_at(int descriptor, off_t position, void *bytes, size_t count)
@@ -81,26 +82,26 @@ int file_seal(const char *path)
 }
 
 /* A file without a seal is one of an earlier version or written to by another program, and ends
-   where its superblock says. */
+   where its superblock says. What has no superblock is left to HDF5, which refuses it. */
 int file_is_damaged(const char *path)
 {
    struct seal seal;
    struct stat status;
    uint64_t digest, end;
-   unsigned char version;
+   unsigned char superblock[end_at + sizeof end];
    off_t sealed;
    int descriptor = open(path, O_RDONLY | O_CLOEXEC), damaged = 0;
 
-   if (descriptor >= 0 && fstat(descriptor, &status) == 0) {
+   if (descriptor >= 0 && fstat(descriptor, &status) == 0
+      && read_at(descriptor, 0, superblock, sizeof superblock) == 0) {
       sealed = status.st_size - (off_t)sizeof seal;
-      if (sealed < 0 || read_at(descriptor, sealed, &seal, sizeof seal) != 0)
-         damaged = 1;
-      else if (memcmp(seal.letters, seal_letters, sizeof seal.letters) == 0)
+      memcpy(&end, superblock + end_at, sizeof end);
+      if (read_at(descriptor, sealed, &seal, sizeof seal) == 0
+         && memcmp(seal.letters, seal_letters, sizeof seal.letters) == 0)
          damaged = digest_of(descriptor, sealed, &digest) != 0 || digest != seal.digest;
       else
-         damaged = read_at(descriptor, version_at, &version, 1) != 0
-            || read_at(descriptor, end_at, &end, sizeof end) != 0
-            || (version >= 2 && end != (uint64_t)status.st_size);
+         damaged = memcmp(superblock, hdf5_signature, sizeof hdf5_signature) == 0
+            && superblock[version_at] >= 2 && end != (uint64_t)status.st_size;
    }
    if (descriptor >= 0)
       close(descriptor);

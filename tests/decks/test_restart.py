@@ -423,3 +423,45 @@ def test_states_survive_the_file_that_is_read(cycling, tmp_path):
     assert_same(result, folder / result.name)
     assert not list(folder.glob("*.tmp"))
     assert os.path.islink(Path(tmp_path / "link.vtkhdf"))
+
+
+def damage(path, seed):
+    """Change bytes of a file, anywhere or in its first ones, set a range to zero, or cut it off."""
+    random = np.random.default_rng(seed)
+    content = bytearray(path.read_bytes())
+    way = random.integers(4)
+    last = len(content) if way else 8192
+    places = np.sort(random.integers(last, size=int(random.integers(2, 60))))
+    if way < 2:
+        for place in places:
+            content[place] ^= int(random.integers(1, 256))
+    elif way == 2:
+        content[places[0]:places[1] + 1] = bytes(places[1] + 1 - places[0])
+    else:
+        del content[places[0]:]
+    changed = content != path.read_bytes()
+    path.write_bytes(content)
+    return changed
+
+
+def test_a_damaged_result_is_refused(cycling, tmp_path):
+    """HDF5 itself crashes on some of these, or reads other numbers. THERCON_FUZZ=N tries N of them."""
+    deck, result = cycling
+    contact = result.with_suffix(".contact.vtkhdf")
+    for seed in range(int(os.environ.get("THERCON_FUZZ", "60"))):
+        for path in (result, contact):
+            shutil.copy(path, tmp_path)
+        if damage(tmp_path / (contact if seed % 5 == 4 else result).name, seed):
+            said = refused(deck, "--restart", tmp_path / result.name, "--out", tmp_path / "new")
+            assert re.search(r'\.vtkhdf" (is damaged|cannot be read): ', said), (seed, said)
+
+
+def test_a_result_without_a_seal_is_one_of_an_earlier_version(cycling, tmp_path):
+    deck, result = cycling
+    for path in (result, result.with_suffix(".contact.vtkhdf")):
+        content = path.read_bytes()
+        assert content[-16:-8] == b"thercon\n"
+        (tmp_path / path.name).write_bytes(content[:-16])
+    for end in (".sta", ".cvg"):
+        shutil.copy(result.with_suffix(end), tmp_path)
+    assert_same(result, go_on(deck, tmp_path / result.name, tmp_path / "new"))
