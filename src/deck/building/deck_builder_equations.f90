@@ -142,6 +142,7 @@ contains
       lengths = 1
       do i = 1, size(lengths)
          lengths(i) = size(terms(i)%members(model%mesh%node_sets))
+         if (lengths(i) == 0) valid = .false.   ! its card has an error
          if (lengths(i) == 1 .or. maxval(lengths(:i - 1)) <= 1) cycle
          if (lengths(i) == maxval(lengths(:i - 1))) cycle
          call report%error(terms(i)%place, 'the node sets of an equation must have the same '// &
