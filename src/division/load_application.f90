@@ -32,12 +32,15 @@ contains
    pure subroutine apply_requests(model)
       type(model_type), intent(inout) :: model
       type(parts_type) :: parts
+      type(equation_type), allocatable :: own(:)
       integer :: s
 
       call apply_temperatures(model)
       model%equations = model%equations(:model%deck_equations)
       do s = 1, size(model%couplings)
-         model%equations = [model%equations, coupling_equations(model%couplings(s), model%mesh)]
+         ! gfortran does not free a function result within an array constructor.
+         own = coupling_equations(model%couplings(s), model%mesh)
+         model%equations = [model%equations, own]
       end do
       parts = parts_of(model%mesh)
       do s = 1, size(model%steps)
