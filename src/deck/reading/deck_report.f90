@@ -214,20 +214,20 @@ contains
       class(deck_report_type), intent(in) :: self
       character(*), intent(in), optional :: noun      !! the kind, such as node set
       character(*), intent(in), optional :: name      !! the name, in any case
+      character(:), allocatable :: kind
       integer :: i
 
+      kind = ''
+      if (present(noun)) kind = noun
       has_lost = .false.
       if (self%errors == 0 .or. .not. allocated(self%lost)) return
       do i = 1, size(self%lost)
          associate (lost => self%lost(i))
-            if (lost%noun == '' .and. lost%name == '') then
-               has_lost = .true.
-            else if (present(name)) then
-               has_lost = any(lost%name == [character(len(name)) :: '', to_upper(name)])
-               if (present(noun)) has_lost = has_lost .and. any(lost%noun == [character(len(noun)) &
-                  :: '', noun])
-            else if (present(noun)) then
-               has_lost = lost%noun == noun
+            has_lost = lost%noun == '' .or. lost%noun == kind
+            if (present(name)) then
+               has_lost = has_lost .and. (lost%name == '' .or. lost%name == to_upper(name))
+            else
+               has_lost = has_lost .and. (lost%name == '' .or. lost%noun /= '')
             end if
          end associate
          if (has_lost) return

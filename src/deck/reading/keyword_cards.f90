@@ -103,6 +103,8 @@ contains
             call report%lose('node set', value)
          case ('ELSET')
             call report%lose('element set', value)
+         case default
+            continue
          end select
       end do
    end subroutine lose_names
