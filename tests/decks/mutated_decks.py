@@ -8,7 +8,7 @@ from functools import cache
 
 import h5py
 import numpy as np
-from deck_runs import DECKS, INPUT, datasets, run
+from deck_runs import DECKS, INPUT, PATIENCE, datasets, run
 from test_broken_names import ASSEMBLY, CARDS, MESH, MODEL, STEP, ignored, plain, table
 
 INCLUDED = {".mesh", ".gmsh", ".inc", ".step"}
@@ -115,7 +115,7 @@ def mutated(folder, seed):
     return deck
 
 
-def outcome(deck, command="run", seconds=60, words=CRASHES):
+def outcome(deck, command="run", seconds=PATIENCE, words=CRASHES):
     """Run or check a deck; return its exit status, -1 where it hangs, and what must not be in its
     ending."""
     arguments = ["--out", deck.parent] if command == "run" else []
