@@ -15,7 +15,7 @@ module heat_reduction
    use unconstrained_bodies, only: undetermined_beside
    implicit none
    private
-   public :: heat_reduction_type, loads_of_temperatures
+   public :: heat_reduction_type, loads_of_temperatures, temperatures_in_loads
 
    integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
 
@@ -221,6 +221,24 @@ contains
          load(:, k) = balanced_jump(load(:, k), bodies)
       end do
    end function loads_of_temperatures
+
+   !> The transposed of loads_of_temperatures: how sums of the condensed loads follow temperatures.
+   function temperatures_in_loads(bodies, factors) result(by_temperature)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: factors(:, :)               !! (mechanical tail, n) of the loads
+      real(dp) :: by_temperature(bodies%thermal_load%column_count, size(factors, 2))   !! (nodes, n)
+      real(dp) :: balanced(size(factors, 1), size(factors, 2))
+      real(dp), allocatable :: motions(:, :)
+      integer :: k
+
+      do k = 1, size(factors, 2)
+         balanced(:, k) = balanced_jump(factors(:, k), bodies)
+      end do
+      motions = bodies%equilibrium%extended(bodies%mechanical, balanced)
+      do k = 1, size(factors, 2)
+         by_temperature(:, k) = bodies%thermal_load%multiply_transposed(motions(:, k))
+      end do
+   end function temperatures_in_loads
 
    !> The condensed load of jumps balanced: it has no resultant.
    function balanced_jump(load, bodies) result(balanced)

@@ -138,27 +138,16 @@ contains
       real(dp) :: temperature(size(vector))                  ! (nodes)
       real(dp), allocatable :: changes(:, :), columns(:, :)
 
-      associate (bodies => simulation%bodies, state => simulation%state)
+      associate (bodies => simulation%bodies)
          columns = reshape(bodies%capacity%multiply(vector), [size(vector), 1])
          columns = response%conduction%solve(bodies, columns)
-         changes = motion%answers(bodies, state, columns, response%sigma)
-         if (motion%takes_rates) changes = changes - by_rate(simulation, motion, vector)
+         changes = motion%answers(columns, response%sigma)
+         if (motion%takes_rates) changes = changes - product_of(transpose(motion%reads_rate), &
+            reshape(vector, [size(vector), 1]))
          call coupling%solve(changes)
          columns = columns + product_of(response%temperature, changes)
       end associate
       temperature = columns(:, 1)
    end function inverse_product
-
-   !> N' T.
-   function by_rate(simulation, motion, vector) result(changes)
-      type(simulation_type), intent(in) :: simulation
-      type(small_motion_type), intent(in) :: motion
-      real(dp), intent(in) :: vector(:)
-      real(dp), allocatable :: changes(:, :), columns(:, :)
-
-      columns = reshape(vector, [size(vector), 1])
-      changes = motion%answers(simulation%bodies, simulation%state, columns, 1.0_dp) - &
-         motion%answers(simulation%bodies, simulation%state, columns, 0.0_dp)
-   end function by_rate
 
 end module fastest_motion

@@ -2,11 +2,11 @@
 !> fastest one.
 !>
 !> The number is that of the bodies projected on their responses at rates from a tenth of the
-!> slowest conduction on, up to where the gain of the coupling is small, and, where some grow or
-!> swing with little decay, once more above the fastest of these. That is found on the bodies
-!> themselves (fastest_motion), where the growing ones are counted again: the one checks the other.
+!> slowest conduction on, up to one beyond which the bound of the gain says that nothing grows, and,
+!> where some grow or swing with little decay, once more above the fastest of these. That is found
+!> on the bodies themselves (fastest_motion), where the growing ones are counted again: the one
+!> checks the other.
 module growing_modes
-   use dense, only: eigenvalues
    use due_output, only: stability_is_due
    use errors, only: error_type
    use fastest_motion, only: find_fastest
@@ -24,11 +24,12 @@ module growing_modes
 
    real(dp), parameter :: slower = 0.1_dp      !! than the slowest conduction: the first rate
    real(dp), parameter :: ratio = 10.0_dp      !! of one rate to the next
-   integer, parameter :: least_rates = 3, most_rates = 8
+   integer, parameter :: least_rates = 3
+   integer, parameter :: most_rates = 24
+   real(dp), parameter :: instant = 1.0e9_dp   !! times a rate: no node passes on its heat
    real(dp), parameter :: above = 1.5_dp       !! the fastest rate: where it is sought
    real(dp), parameter :: light = 0.5_dp       !! decay in a modulus, below which it may be growth
    real(dp), parameter :: neutral = 1.0e-8_dp  !! part of the slowest conduction that is no growth
-   real(dp), parameter :: small_gain = 0.3_dp  !! largest modulus, beyond which nothing grows
 
 contains
 
@@ -70,7 +71,7 @@ contains
       type(motion_response_type) :: response
       type(projected_motions_type) :: projection
       complex(dp), allocatable :: rates(:)
-      real(dp) :: slowest, fastest
+      real(dp) :: bound, fastest, slowest
       logical :: is_known
 
       call motion%begin(simulation%bodies, simulation%state, simulation%heats( &
@@ -81,8 +82,9 @@ contains
       if (allocated(error)) return
       rates = [complex(dp) ::]
       is_known = .true.
+      bound = 0.0_dp
       if (size(motion%active) + motion%heated > 0) then
-         call project(model, simulation, motion, response, projection, error)
+         call project(model, simulation, motion, response, projection, bound, error)
          if (allocated(error)) return
          call projection%rates(rates, is_known)
       end if
@@ -91,76 +93,79 @@ contains
          call response%make(model, simulation, motion, above*max(fastest, slower*slowest), &
             error)
          if (allocated(error)) return
-         call sample(simulation, motion, response, projection)
+         call sample(simulation, response, projection)
          call projection%rates(rates, is_known)
       end if
       record%stability%unstable_modes = count(real(rates) > neutral*slowest)
       call find_fastest(simulation, motion, response, rates, neutral*slowest, record)
       if (.not. is_known) call record%stability%add_doubt( &
          'the projected bodies have no sound eigenvalues')
+      if (.not. bound < 1.0_dp) call record%stability%add_doubt('faster motions may grow, as '// &
+         'where what expands, or is heated by its slip, has no heat capacity')
    end subroutine find_motions
 
-   !> Projects the bodies on their responses, from the first one on.
+   !> Projects the bodies on their responses, from the first one on, up to a rate beyond which no
+   !> motion grows by the bound of the gain. The part of it that takes rates grows with them: it is
+   !> that of heat that no node passes on.
    !> Errors: as motion_response_type's make.
-   subroutine project(model, simulation, motion, first, projection, error)
+   subroutine project(model, simulation, motion, first, projection, bound, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(small_motion_type), intent(in) :: motion
       type(motion_response_type), intent(in) :: first
       type(projected_motions_type), intent(inout) :: projection
+      real(dp), intent(out) :: bound                         ! of the gain beyond all rates
       type(error_type), allocatable, intent(out) :: error
       type(motion_response_type) :: response
       integer :: i
 
-      call sample(simulation, motion, first, projection)
+      call sample(simulation, first, projection)
       do i = 2, most_rates
          call response%make(model, simulation, motion, ratio**(i - 1)*first%sigma, error)
          if (allocated(error)) return
-         call sample(simulation, motion, response, projection)
-         if (i >= least_rates .and. largest_modulus(response%gain()) <= small_gain) exit
+         call sample(simulation, response, projection)
+         bound = response%gain_bound(simulation%bodies, motion)
+         if (i >= least_rates .and. bound < 1.0_dp) exit
       end do
+      call projection%choose()
+      if (.not. motion%takes_rates) return
+      call response%make(model, simulation, motion, instant*response%sigma, error)
+      if (.not. allocated(error)) bound = hypot(bound, response%gain_bound(simulation%bodies, &
+         motion))
    end subroutine project
 
    !> Adds a response to the projection.
-   subroutine sample(simulation, motion, response, projection)
+   subroutine sample(simulation, response, projection)
       type(simulation_type), intent(in) :: simulation
-      type(small_motion_type), intent(in) :: motion
       type(motion_response_type), intent(in) :: response
       type(projected_motions_type), intent(inout) :: projection
 
-      call projection%add(response%sigma, motion%heats(simulation%bodies, response%temperature), &
-         response%stored(simulation), response%answer, response%by_rate)
+      call projection%add(response%sigma, response%exchange, response%stored(simulation), &
+         response%answer, response%by_rate)
    end subroutine sample
-
-   !> The largest modulus of the eigenvalues of a matrix.
-   real(dp) function largest_modulus(matrix)
-      real(dp), intent(in) :: matrix(:, :)
-      real(dp), allocatable :: real_part(:), imaginary_part(:)
-      logical :: found
-
-      call eigenvalues(matrix, real_part, imaginary_part, found)
-      largest_modulus = maxval(hypot(real_part, imaginary_part))
-   end function largest_modulus
 
    !> Rate at which temperatures even out over the largest body that conducts worst, k/(rho c L^2).
    pure real(dp) function slowest_conduction(model) result(rate)
       type(model_type), intent(in) :: model
-      real(dp) :: extent(2)
-      logical :: is_of(size(model%mesh%node_number))
+      real(dp) :: diffusivity(size(model%sections)), extent(2)
       integer :: body, e
 
-      rate = huge(rate)
-      do body = 1, model%mesh%body_count
-         is_of = model%mesh%node_body == body
-         extent = [(maxval(model%mesh%coordinates(e, :), mask=is_of) - &
-            minval(model%mesh%coordinates(e, :), mask=is_of), e=1, 2)]
-         e = findloc(model%mesh%element_body, body, dim=1)
-         associate (material => model%materials(model%sections(model%mesh%element_section(e))% &
-            material))
-            if (heat_capacity(material) > 0.0_dp) rate = min(rate, maxval(material% &
-               conductivity)/(heat_capacity(material)*maxval(extent)**2))
+      diffusivity = huge(rate)
+      do e = 1, size(diffusivity)
+         associate (material => model%materials(model%sections(e)%material))
+            if (heat_capacity(material) > 0.0_dp) diffusivity(e) = &
+               maxval(material%conductivity)/heat_capacity(material)
          end associate
       end do
+      rate = huge(rate)
+      associate (mesh => model%mesh)
+         do body = 1, mesh%body_count
+            extent = [(maxval(mesh%coordinates(e, :), mask=mesh%node_body == body) - &
+               minval(mesh%coordinates(e, :), mask=mesh%node_body == body), e=1, 2)]
+            rate = min(rate, minval(diffusivity(mesh%element_section), mask=mesh%element_body == &
+               body)/maxval(extent)**2)
+         end do
+      end associate
    end function slowest_conduction
 
 end module growing_modes

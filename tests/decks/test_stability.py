@@ -12,6 +12,7 @@ from physics import mesh, material
 
 import rod_modes
 import rods
+from frictional_heat import burton
 
 WIDTH = 1e-3   # so that temperatures even out across the rods
 RODS = 500
@@ -168,6 +169,65 @@ def test_transient_that_leaves_the_state_has_the_rate(tmp_path):
         growth = np.polyfit(time[late][1:], np.log(abs(np.diff(heat[late]))), 1)[0]
         assert growth == pytest.approx(rate, rel=0.01)
         assert way * (heat[-1] - heat[0]) > 0
+
+
+def half_plane(ratio, depth, slow=None):
+    """Return half a wave of a half-plane on an insulator that slides out of the plane, with
+    E alpha = k = rho c = 1 and V/Vcr = ratio, and beside it a body of a length and a conductivity
+    that touches nothing."""
+    xs, ys = np.linspace(0.0, np.pi, 13), [0.0]
+    while ys[-1] < depth:
+        ys.append(min(1.3 * ys[-1] + 0.13, depth))
+    cards = [*mesh("HALF", xs, ys), *material("HALF", (1000.0, 0.3), 1e-3, 1.0, 1.0, 1.0),
+             *mesh("WALL", xs, [-0.2, 0.0], first=100001),
+             *material("WALL", (1000.0, 0.3), conductivity=1.0)]
+    held = []
+    if slow:
+        cards += [*mesh("SLOW", [0.0, slow[0]], [-2.0, -1.0], first=200001),
+                  *material("SLOW", (1000.0, 0.3), conductivity=slow[1], density=1.0,
+                            specific_heat=1.0)]
+        held = ["SLOW, 1, 2, 0.", "SLOW.LEFT, 11, 11, 0."]
+    return [*cards, "*SURFACE INTERACTION, NAME=FACE", "*FRICTION", "0.5", "*GAP HEAT GENERATION",
+            f"1., 1., {2.8 * ratio!r}", "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE",
+            "HALF.BOTTOM, WALL.TOP", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "HALF, 0.",
+            "WALL, 0.", "*OPTIONS, ERRORS=NO", "*STEP",
+            "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*STABILITY",
+            "*BOUNDARY", "WALL, 1, 2, 0.", "WALL.BOTTOM, 11, 11, 0.", "HALF.LEFT, 1, 1, 0.",
+            "HALF.RIGHT, 1, 1, 0.", "HALF.TOP, 11, 11, 0.", *held, "*DSLOAD", "HALF.TOP, P, 1.",
+            "*END STEP"]
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.5, 2.5, 4.5])
+@pytest.mark.parametrize(("depth", "slow"), [
+    (14.0, None), (300.0, None), (3e4, None), (14.0, (30.0, 1e-4)), (14.0, (3e3, 1e-6)),
+    (300.0, (30.0, 1e-8))])
+def test_motions_grow_alike_however_slow_a_body_is(ratio, depth, slow, tmp_path):
+    """Each wave m, 2 m ... of the half-plane grows as in Burton's closed form."""
+    rates = [m**2 * burton(ratio / m)[0] for m in range(1, 9)]
+    result, printed = solved(tmp_path, half_plane(ratio, depth, slow))
+    found = stability_of(result)
+    assert found["certain"] == 1, printed
+    assert found["unstable_modes"] == sum(rate > 0.0 for rate in rates)
+    if ratio > 1.0:
+        assert found["growth_rate"] == pytest.approx(max(rates), rel=2e-3)
+
+
+def test_an_expansion_without_heat_capacity_leaves_doubt(tmp_path):
+    """The bar answers at once, whatever the rate: nothing bounds the rates of motions that grow."""
+    cards = [*mesh("BAR", np.linspace(0.0, 1.0, 9), [0.0, 0.125], first=1),
+             *material("BAR", (1000.0, 0.0), expansion=(1e-3, 0.0, 0.0), conductivity=1.0,
+                       expansion_type="ORTHO"),
+             *mesh("WALL", [-0.25, 0.0], [0.0, 0.125], first=5001),
+             *material("WALL", (1000.0, 0.0), conductivity=1.0, density=1.0, specific_heat=1.0),
+             "*SURFACE INTERACTION, NAME=FACE", "*FRICTION", "0.5", "*GAP HEAT GENERATION",
+             "1., 1., 3.", "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE", "BAR.LEFT, WALL.RIGHT",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BAR, 0.", "WALL, 0.", "*STEP",
+             "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*STABILITY",
+             "*BOUNDARY", "WALL, 1, 2, 0.", "WALL.LEFT, 11, 11, 0.", "BAR.BOTTOM, 2, 2, 0.",
+             "BAR.RIGHT, 1, 1, -1e-3", "BAR.RIGHT, 11, 11, 0.", "*END STEP"]
+    result, printed = solved(tmp_path, cards)
+    assert stability_of(result)["certain"] == 0
+    assert "faster motions may grow, as where what expands" in " ".join(printed.split())
 
 
 @pytest.mark.changes("STABILITY, FREQUENCY")
