@@ -8,7 +8,7 @@ from .result import words_of
 from .style import plt
 from .tables import stack_tables
 
-SMALLEST = 1e-3  # of a target: bounds below it are marked at the foot, uncertain ones at the top
+SMALLEST = 1e-3  # of a target: bounds below it are marked at the foot, missing ones at the top
 
 
 def draw(result, options):
@@ -29,10 +29,10 @@ def draw(result, options):
         value, bound, allowed = rows[:, 1], rows[:, 2], rows[:, 3]
         is_there = rows[:, 0] > 0
         ratio = np.divide(bound, allowed, out=np.full(len(cost), np.nan), where=is_there)
-        is_uncertain = is_there & np.isnan(bound)
+        is_missing = is_there & np.isnan(bound)
         label = f"{name}, target {target_words(allowed[is_there][-1], unit)}"
-        label += uncertain_words(is_uncertain)
-        marks |= draw_target(axes, cost, ratio, is_uncertain, number, label)
+        label += missing_words(is_missing)
+        marks |= draw_target(axes, cost, ratio, is_missing, number, label)
         table = {"target": np.full(len(cost), name, dtype=object), "cpu_seconds": cost}
         table |= {"unknowns": rounds["unknowns"], "value": value, "bound": bound}
         tables.append(table | {"allowed": allowed})
@@ -51,7 +51,7 @@ def draw(result, options):
     return style.write(figure, stack_tables(tables), options, name)
 
 
-def draw_target(axes, cost, ratio, is_uncertain, number, label):
+def draw_target(axes, cost, ratio, is_missing, number, label):
     """Draw the rounds of one target; its entry in the legend shows a curve, lone points or the marks
     of a border, as the picture does. Return what these marks mean."""
     colour = style.SERIES[number % len(style.SERIES)]
@@ -63,7 +63,7 @@ def draw_target(axes, cost, ratio, is_uncertain, number, label):
     label, marks = None if count else label, {}
     for words, mark, rounds, height, transform in (
             ("below the scale", "v", is_below, SMALLEST, axes.transData),
-            ("uncertain", "^", is_uncertain, 1.0, axes.get_xaxis_transform())):
+            ("no estimate", "^", is_missing, 1.0, axes.get_xaxis_transform())):
         if rounds.any():
             axes.plot(cost[rounds], np.full(rounds.sum(), height), mark, color=colour, clip_on=False,
                       ms=4 + 2 * number, mfc="none", transform=transform, label=label)
@@ -71,13 +71,13 @@ def draw_target(axes, cost, ratio, is_uncertain, number, label):
     return marks
 
 
-def uncertain_words(is_uncertain):
+def missing_words(is_missing):
     """Return in which rounds there is no bound, in words."""
-    if not is_uncertain.any():
+    if not is_missing.any():
         return ""
-    if is_uncertain.all():
-        return " (uncertain)"
-    return f" (uncertain in round {', '.join(map(str, np.flatnonzero(is_uncertain) + 1))})"
+    if is_missing.all():
+        return " (no estimate)"
+    return f" (no estimate in round {', '.join(map(str, np.flatnonzero(is_missing) + 1))})"
 
 
 def target_words(allowed, unit):

@@ -240,31 +240,33 @@ class Result:
         count = len(numbers(group, "time", like=(None,), finite=True))
         return {key: numbers(group, key, like=(count,)) for key in ANALYSIS}
 
-    def error_bounds(self, contact, key):
-        """Return value, bound and its parts of a quantity of a contact at the last increment; None
-        where there are none."""
-        group = self.file.get(f"errors/{contact.name}")
-        if group is None or key not in group:
-            return None
-        times = numbers(self.file["errors"], "time", like=(None,))
-        rows = numbers(group, key, like=(len(times), 5))
-        return rows[-1] if len(rows) and times[-1] == self.history["time"][-1] else None
+    def errors_of(self, name):
+        """Return of every quantity of a contact or body with a bound, by its key: unit, value and
+        bound with its parts at the last increment, and in words why there is none. NaN and a reason
+        where the increment ends no step; nothing where the file has none."""
+        group = self.file.get(f"errors/{name}")
+        if group is None:
+            return {}
+        steps = self.file["errors"]
+        times = numbers(steps, "time", like=(None,))
+        rows = {key: numbers(group, key, like=(len(times), 5)) for key in group
+                if key != "no_estimate"}
+        units = {key: text(group[key].attrs.get("unit", "")) for key in rows}
+        if not len(times) or times[-1] != self.history["time"][-1]:
+            why = text(steps.attrs.get("inside_step", ""))
+            return {key: (units[key], np.full(5, np.nan), why) for key in rows}
+        why = {}
+        if "no_estimate" in group:  # not in files of earlier versions
+            names = text(group["no_estimate"].attrs["components"]).split()
+            reasons = numbers(group, "no_estimate", like=(len(times), len(names)))[-1]
+            why = {key: text(steps["reasons"][k]) for key, k in zip(names, reasons)}
+        return {key: (units[key], each[-1], why.get(key, "")) for key, each in rows.items()}
 
     @property
     def maxima(self):
-        """Return unit, value, bound and its parts of the largest values of each body at the last
-        increment, by their names; nothing where there are none."""
-        group, found = self.file.get("errors", {}), {}
-        if not group:
-            return found
-        times = numbers(group, "time", like=(None,))
-        if not len(times) or times[-1] != self.history["time"][-1]:
-            return found
-        for name in (name for name in group if name.startswith("body ")):
-            found[name] = {key: (text(group[name][key].attrs["unit"]),
-                                 numbers(group[name], key, like=(len(times), 5))[-1])
-                           for key in group[name]}
-        return found
+        """Return what `errors_of` says of each body, by their names."""
+        return {name: self.errors_of(name) for name in self.file.get("errors", {})
+                if name.startswith("body ")}
 
     @cached_property
     def deck(self):

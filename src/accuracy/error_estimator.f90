@@ -13,22 +13,24 @@ module error_estimator
    use element_kinds, only: element_corner_count
    use errors, only: error_type
    use increment_quantities, only: history_value
-   use interface_quantities, only: quantities_of, quantities_of_state, regime_of, turns_at_peak
+   use interface_quantities, only: quantities_of, quantities_of_state, regime_of
    use kinds, only: dp
    use local_refinement, only: elements_at_surfaces
    use mesh, only: mesh_type
    use mesh_bounds, only: bounds_of_mesh, locked_in
    use model, only: model_type
+   use no_estimates, only: no_reason, reason_of_run
    use other_states, only: find_other_states
    use quantity_histories, only: quantity_histories_type
    use quantity_types, only: find_quantity
-   use records, only: increment_record_type, interface_errors_type
+   use records, only: increment_record_type
    use field_recovery, only: error_record_type
    use heat_equation, only: heat_equation_type
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use state_tables, only: integers, reals, state_table_type
    use steps, only: solves_heat
+   use summed_bounds, only: sum_up_body, sum_up_interface
    use temperature_laws, only: relative_jump
    use text, only: append, to_text
    implicit none
@@ -100,7 +102,8 @@ contains
       if (self%is_on) self%before = simulation%state
    end subroutine begin_increment
 
-   !> Follows an accepted increment; at the end of a step its record receives the bounds.
+   !> Follows an accepted increment; at the end of a step its record receives the bounds, or why
+   !> there are none.
    subroutine end_increment(self, model, simulation, record, histories)
       class(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -111,10 +114,13 @@ contains
       real(dp) :: values(size(estimated), size(record%contacts))
       type(contact_points_type) :: points
       character(:), allocatable :: no_mesh
-      logical :: turns
-      integer :: i, q
+      logical :: slides
+      integer :: i
 
-      if (.not. self%is_on) return
+      if (.not. self%is_on) then
+         if (record%last_of_step) call go_without(model, simulation, record)
+         return
+      end if
       if (record%step /= self%step) then
          self%step = record%step
          call self%histories%begin_step(size(estimated), size(record%contacts), &
@@ -149,31 +155,40 @@ contains
       call bound_increments(self, simulation, record)
       call bound_iteration(record)
       do i = 1, size(record%errors)
-         turns = self%is_mixed(i) .and. turns_at_peak(record%contacts(i))
-         associate (errors => record%errors(i))
-            if (turns) errors%mesh(find_quantity(estimated, 'peak_pressure')) = &
-               ieee_value(1.0_dp, ieee_quiet_nan)
-            errors%bound = errors%mesh + errors%increment + errors%iteration
-            allocate (errors%why_not(size(estimated)))
-            do q = 1, size(estimated)
-               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q, turns)
-            end do
-         end associate
+         call simulation%bodies%view(i, points)
+         call sum_up_interface(self%doubled, no_mesh == '', self%is_mixed(i), points, &
+            record%contacts(i), record%errors(i))
       end do
+      slides = any(record%contacts%slides_far)
       do i = 1, size(record%body_errors)
-         associate (errors => record%body_errors(i))
-            errors%bound = errors%mesh + errors%increment + errors%iteration
-            allocate (errors%why_not(size(errors%value)))
-            do q = 1, size(errors%value)
-               errors%why_not(q)%value = reason(self%doubled, no_mesh, errors, q, .false.)
-               if (errors%why_not(q)%value == '' .or. is_steady(model, record)) cycle
-               errors%why_not(q)%value = 'heat is not in equilibrium at the end of the step'
-            end do
+         call sum_up_body(self%doubled, no_mesh == '', is_steady(model, record), slides, &
+            record%body_errors(i))
+      end do
+      if (no_mesh == '' .and. is_steady(model, record) .and. .not. slides) call &
+         self%bodies%bound_checks(model, simulation, self%divided, self%energies, record)
+   end subroutine end_increment
+
+   !> The quantities at the end of a step in a run that bounds nothing, and why.
+   subroutine go_without(model, simulation, record)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(increment_record_type), intent(inout) :: record
+      type(contact_points_type) :: points
+      integer :: i
+
+      allocate (record%errors(size(record%contacts)), record%body_errors(0))
+      do i = 1, size(record%errors)
+         call simulation%bodies%view(i, points)
+         associate (errors => record%errors(i))
+            errors%value = quantities_of(points, record%contacts(i))
+            errors%bound = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(estimated))
+            errors%mesh = errors%bound
+            errors%increment = errors%bound
+            errors%iteration = errors%bound
+            errors%no_estimate = merge(no_reason, reason_of_run(model), ieee_is_nan(errors%value))
          end associate
       end do
-      if (no_mesh == '' .and. is_steady(model, record)) call self%bodies%bound_checks(model, &
-         simulation, self%divided, self%energies, record)
-   end subroutine end_increment
+   end subroutine go_without
 
    !> All that the bounds take of earlier increments, in either direction.
    subroutine exchange(self, table)
@@ -201,33 +216,6 @@ contains
       call self%divided%release()
       call self%doubled%release()
    end subroutine release
-
-   !> Why a quantity has no bound; nothing where it has one.
-   pure function reason(doubled, no_mesh, errors, q, turns) result(why_not)
-      type(doubled_increments_type), intent(in) :: doubled
-      character(*), intent(in) :: no_mesh      ! why no quantity has one of the mesh, or nothing
-      class(interface_errors_type), intent(in) :: errors
-      integer, intent(in) :: q
-      logical, intent(in) :: turns             ! whether friction turns round at the peak
-      character(:), allocatable :: why_not
-
-      why_not = ''
-      if (ieee_is_nan(errors%value(q)) .or. .not. ieee_is_nan(errors%bound(q))) return
-      if (ieee_is_nan(errors%increment(q))) then
-         why_not = 'increments of twice the size give no such edge'
-         if (doubled%is_lost) why_not = 'increments of twice the size have no solution'
-         if (.not. doubled%has_doubled) why_not = 'a single increment does not tell its error'
-      else if (no_mesh /= '') then
-         why_not = no_mesh
-      else
-         why_not = 'a finer mesh has no such edge'
-         if (q == find_quantity(estimated, 'peak_pressure')) then
-            why_not = 'the peak is at a corner, where one face ends'
-            if (turns) why_not = 'friction turns round at the peak, where what sticks is '// &
-               'narrower than the elements'
-         end if
-      end if
-   end function reason
 
    !> Whether the elements at some surfaces differ in stiffness, or one has none and is rigid.
    pure logical function differ_in_stiffness(model, surfaces) result(differ)

@@ -10,9 +10,9 @@ module accuracy_rounds
    use accuracy_targets, only: accuracy_request_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
-   use interface_quantities, only: closed_length, is_end_of_face, peak_is_at_end, &
-      peaks_at_corner, turns_at_peak
+   use interface_quantities, only: closed_length, is_end_of_face, peak_is_at_end
    use kinds, only: dp
+   use no_estimates, only: at_corner, grows, no_reason, remains
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use text, only: to_text
@@ -46,10 +46,7 @@ module accuracy_rounds
       real(dp) :: increment = 0.0_dp       !! of increments and iteration; NaN: uncertain
       real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: uncertain
       real(dp) :: allowed = 0.0_dp         !! what the target allows
-      logical :: is_at_corner = .false.    !! whether there one face ends: it has no limit
-      logical :: is_turning = .false.      !! whether friction turns round there
-      logical :: has_limit = .true.        !! whether it tends to one as the mesh is refined
-      character(:), allocatable :: why_not !! why the run has no bound; empty where it has
+      integer :: no_estimate = no_reason   !! why there is no bound, of no_estimates
       character(:), allocatable :: instead !! what there is where it has no value or no edge
    contains
       procedure :: is_met
@@ -153,10 +150,8 @@ contains
                finding%instead = instead_of(quantity, contact)
                if (quantity%name == 'peak_pressure') then
                   finding%is_at_end = any(peak_is_at_end(contact))
-                  finding%is_at_corner = peaks_at_corner(points, contact)
-                  finding%is_turning = ieee_is_nan(finding%mesh) .and. turns_at_peak(contact)
-                  finding%has_limit = .not. (finding%is_at_corner .or. &
-                     grows(self%rounds, d, record%step))
+                  if (has_grown(self%rounds, d, record%step) .and. .not. &
+                     remains(finding%no_estimate)) finding%no_estimate = grows
                end if
             end associate
             call add_change(self%rounds, d, record%step)
@@ -176,13 +171,7 @@ contains
             if (.not. finding%is_there) cycle
             errors%mesh(q) = finding%mesh
             errors%bound(q) = finding%bound
-            associate (why_not => errors%why_not(q))
-               if (.not. ieee_is_nan(finding%bound)) then
-                  why_not%value = ''
-               else if (why_not%value == '' .and. .not. finding%has_limit) then
-                  why_not%value = 'no limit: it grows from mesh to mesh'
-               end if
-            end associate
+            errors%no_estimate(q) = finding%no_estimate
          end associate
       end do
    end subroutine settle
@@ -205,7 +194,7 @@ contains
          finding%mesh = errors%mesh(q)
          finding%increment = errors%increment(q) + errors%iteration(q)
          finding%bound = errors%bound(q)
-         finding%why_not = errors%why_not(q)%value
+         finding%no_estimate = errors%no_estimate(q)
       end associate
    end function found
 
@@ -232,30 +221,28 @@ contains
       associate (now => rounds(n)%findings(d, step), before => rounds(n - 1)%findings(d, step))
          if (.not. (now%is_there .and. before%is_there)) return
          now%change = abs(now%value - before%value)
-         if (now%is_turning .or. .not. now%has_limit) then
-            now%mesh = ieee_value(1.0_dp, ieee_quiet_nan)
-         else if (ieee_is_nan(now%mesh) .and. n > 2) then
-            now%mesh = max(now%change, before%change)
-         end if
+         if (remains(now%no_estimate)) return
+         if (ieee_is_nan(now%mesh) .and. n > 2) now%mesh = max(now%change, before%change)
          now%bound = now%mesh + now%increment
+         if (.not. ieee_is_nan(now%bound)) now%no_estimate = no_reason
       end associate
    end subroutine add_change
 
    !> Whether a quantity whose changes are all that is known of the mesh grew in the last two
    !> rounds, in the last one by no less than before.
-   pure logical function grows(rounds, d, step)
+   pure logical function has_grown(rounds, d, step)
       type(accuracy_round_type), intent(in) :: rounds(:)
       integer, intent(in) :: d, step
       real(dp) :: growth(2)
       integer :: i, n
 
       n = size(rounds)
-      grows = n > 2 .and. ieee_is_nan(rounds(n)%findings(d, step)%mesh)
-      if (.not. grows) return
+      has_grown = n > 2 .and. ieee_is_nan(rounds(n)%findings(d, step)%mesh)
+      if (.not. has_grown) return
       growth = [(rounds(n - 2 + i)%findings(d, step)%value - &
          rounds(n - 3 + i)%findings(d, step)%value, i=1, 2)]
-      grows = growth(1) > 0.0_dp .and. growth(2) >= growth(1)
-   end function grows
+      has_grown = growth(1) > 0.0_dp .and. growth(2) >= growth(1)
+   end function has_grown
 
    !> Whether a bound is inside its target; an uncertain one is not.
    elemental logical function is_met(self)
@@ -327,7 +314,7 @@ contains
       if (self%is_reached()) return
       associate (findings => self%rounds(size(self%rounds))%findings)
          ! No mesh brings a pressure at a corner to its target.
-         only_corners_are_missed = all(findings%is_met() .or. findings%is_at_corner)
+         only_corners_are_missed = all(findings%is_met() .or. findings%no_estimate == at_corner)
       end associate
       if (only_corners_are_missed) then
          self%reason = 'a pressure without a limit meets no target, and *ACCURACY can '// &

@@ -25,6 +25,7 @@ module adaptive_rounds
    use local_refinement, only: elements_at_surfaces, largest_part
    use mesh, only: mesh_type
    use model, only: model_type
+   use no_estimates, only: at_corner, turns_round
    use quantity_types, only: quantity_type
    use records, only: contact_record_type, increment_record_type
    use restarts, only: keep_restart
@@ -209,7 +210,7 @@ contains
 
       do d = 1, size(rounds%demands)
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
-         if (finding%is_met() .or. finding%is_at_corner) cycle
+         if (finding%is_met() .or. finding%no_estimate == at_corner) cycle
          ! Increments are halved where their part of the bound is the larger one, or leaves the
          ! mesh less than half of the target.
          if (ieee_is_nan(finding%increment)) then
@@ -228,7 +229,7 @@ contains
             of_elements => self%division%levels)
             ! Where no error of the mesh is known, the change by sides of half the size tells it,
             ! but not where friction turns round.
-            if (ieee_is_nan(record%errors(i)%mesh(q)) .and. .not. finding%is_turning) where ( &
+            if (ieee_is_nan(record%errors(i)%mesh(q)) .and. finding%no_estimate /= turns_round) where ( &
                elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
                model%contacts(i)%master])) of_elements = max(of_elements, 1)
             call mark_edges(self, interfaces(i), edges_for(q, interfaces(i), record%contacts(i)), &

@@ -19,7 +19,7 @@ module model
    implicit none
    private
    public :: model_type, physical_constants_type, verify_type, unit_labels_type
-   public :: follows_temperatures, unbounded
+   public :: follows_temperatures
 
    !> Labels of the deck's units (*OPTIONS, UNITS=); empty when not given.
    type :: unit_labels_type
@@ -109,18 +109,5 @@ contains
       follows_temperatures = any(follows_temperature(model%materials(pack( &
          model%sections%material, model%sections%material > 0))))
    end function follows_temperatures
-
-   !> What a model has that bounds of errors do not know, in words; empty for nothing.
-   pure function unbounded(model) result(words)
-      type(model_type), intent(in) :: model
-      character(:), allocatable :: words   !! such as steps that store heat
-
-      words = ''
-      if (follows_temperatures(model)) words = 'properties over temperature'
-      if (any(model%steps%is_transient)) words = 'steps that store heat'
-      if (any(model%steps%continuation%is_on)) words = 'branches'
-      if (.not. allocated(model%couplings)) return
-      if (any(model%couplings%is_section())) words = 'pre-tension sections'
-   end function unbounded
 
 end module model

@@ -64,7 +64,7 @@ module quantity_types
       real(dp) :: resolution = 0.0_dp
       ! In the result file, as attributes of its dataset.
       character(120) :: description = ''       !! what it is, with its sign and codes
-      character(40) :: components = ''         !! their names, where `values` have such
+      character(80) :: components = ''         !! their names, where `values` have such
    end type quantity_type
 
 contains

@@ -8,6 +8,7 @@ module accuracy_lines
    use hdf5_writer, only: as_integer, hdf5_writer_type
    use kinds, only: dp
    use model, only: unit_labels_type
+   use no_estimates, only: at_corner, grows, no_reason, words_of_reason
    use quantity_types, only: quantity_type
    use run_summaries, only: accuracy_words_type
    use summary, only: words_of
@@ -146,7 +147,7 @@ contains
          finding = last%findings(d, step)
          words = trim(merge('met:    ', 'not met:', finding%is_met()))
          if (ieee_is_nan(finding%bound)) then
-            words = words//' uncertain'
+            words = words//' no estimate'
          else
             words = words//' bound '//amount(finding%bound)
             if (demand%is_relative) words = words//' of '// &
@@ -165,7 +166,8 @@ contains
          end if
          if (finding%is_met()) return
          words = words//reason(finding)
-         if (finding%is_at_end .and. finding%has_limit .and. accuracy%stands_still()) then
+         if (finding%is_at_end .and. all(finding%no_estimate /= [at_corner, grows]) .and. &
+            accuracy%stands_still()) then
             words = words//'; the peak is at an end of the face, where the pressure may grow '// &
                'without limit'
          end if
@@ -211,12 +213,8 @@ contains
       character(:), allocatable :: reason
 
       reason = ' (mostly of the mesh)'
-      if (finding%is_at_corner) then
-         reason = ' (no limit: it is at a corner, where one face ends)'
-      else if (.not. (finding%has_limit .or. finding%is_turning)) then
-         reason = ' (no limit: it grows from mesh to mesh)'
-      else if (ieee_is_nan(finding%bound)) then
-         reason = ': '//finding%why_not
+      if (finding%no_estimate /= no_reason) then
+         reason = ': '//words_of_reason(finding%no_estimate)
       else if (finding%increment > finding%mesh) then
          reason = ' (mostly of the increments)'
       end if
@@ -228,19 +226,19 @@ contains
       character(:), allocatable :: words
       character(80) :: line
       real(dp) :: excess(size(round%findings, 1)), largest
-      integer :: d, uncertain
+      integer :: d, missing
 
       write (line, '(i8, f14.2, 3i12)') number, round%cpu_seconds, round%unknowns, &
          round%elements, round%increments
       words = trim(line)//'  '
       excess = [(round%excess(d), d=1, size(excess))]
-      uncertain = count(excess >= huge(1.0_dp))
-      if (uncertain < size(excess)) then
+      missing = count(excess >= huge(1.0_dp))
+      if (missing < size(excess)) then
          largest = maxval(excess, mask=excess < huge(1.0_dp))
          words = words//few_digits(largest, digits_above(largest, 1.0_dp))
       end if
-      if (uncertain > 0 .and. uncertain < size(excess)) words = words//', '
-      if (uncertain > 0) words = words//to_text(uncertain)//' uncertain'
+      if (missing > 0 .and. missing < size(excess)) words = words//', '
+      if (missing > 0) words = words//to_text(missing)//' without estimate'
    end function round_words
 
    !> Writes the rounds, where an accuracy is requested and the first one came to its end.

@@ -148,7 +148,7 @@ contains
       call print_balances(self%text%unit, record, model%steps(record%step)%analysis)
       call print_body_errors(self%text%unit, record)
       call print_warnings(self, record)
-      if (allocated(record%errors)) then
+      if (allocated(record%errors) .and. model%estimates_errors) then
          do i = 1, size(interfaces)
             call print_interface_errors(self%text%unit, interfaces(i), record%errors(i))
          end do

@@ -12,6 +12,7 @@ module listing_increments
    use kinds, only: dp
    use listing_text, only: column, page_width, print_wrapped
    use mesh, only: mesh_type
+   use no_estimates, only: no_reason, words_of_reason
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_heat, needs_mechanics, &
       needs_branch, needs_nothing, needs_storage, &
@@ -278,7 +279,7 @@ contains
             part = ieee_value(part, ieee_quiet_nan)
             if (abs(value) > 0.0_dp) part = 100.0_dp*bound/abs(value)
             write (line, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
-               name, column(value, 14, 6), cell(bound, 13, 'uncertain'), &
+               name, column(value, 14, 6), cell(bound, 13, 'no estimate'), &
                cell(part, 11, '-'), cell(errors%mesh(q), 12, '-'), &
                cell(errors%increment(q), 14, '-'), cell(errors%iteration(q), 14, '-'), &
                largest_part(errors, q)
@@ -286,11 +287,10 @@ contains
          end associate
       end do
       do q = 1, size(names)
-         associate (why_not => errors%why_not(q)%value)
-            if (why_not == '' .or. names(q)%value == '') cycle
-            if (any([(names(k)%value /= '' .and. errors%why_not(k)%value == why_not, &
-               k=1, q - 1)])) cycle
-            call print_wrapped(unit, '    ', 'uncertain: '//why_not)
+         associate (why => errors%no_estimate(q))
+            if (why == no_reason .or. names(q)%value == '') cycle
+            if (any([(names(k)%value /= '' .and. errors%no_estimate(k) == why, k=1, q - 1)])) cycle
+            call print_wrapped(unit, '    ', 'no estimate: '//words_of_reason(why))
          end associate
       end do
    end subroutine print_bounds

@@ -127,8 +127,8 @@ contains
          merge(' PASS', ' FAIL', outcome%passed)
       if (or_blank(check%source) /= '') write (unit, '(8x, 2a)') 'source: ', check%source
       if (outcome%reason /= '') write (unit, '(8x, 2a)') 'failed: ', outcome%reason
-      if (allocated(outcome%bound)) write (unit, '(8x, 3a)') 'found:  ', to_text(outcome%found), &
-         bound_words(outcome)
+      if (bound_words(outcome) /= '') write (unit, '(8x, 3a)') 'found:  ', &
+         to_text(outcome%found), bound_words(outcome)
    end subroutine print_verdict
 
    !> Prints the tables that are due at an increment.

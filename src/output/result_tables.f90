@@ -126,20 +126,22 @@ contains
       class(interface_errors_type), intent(in) :: errors
       integer :: i
 
-      do i = 1, size(self%sets)
+      do i = 1, size(errors%value)
          call self%sets(i)%append([errors%value(i), errors%bound(i), errors%mesh(i), &
             errors%increment(i), errors%iteration(i)])
       end do
+      call self%sets(size(self%sets))%append(real(errors%no_estimate, dp))
    end subroutine append_errors
 
-   !> Quantities with estimated errors, as they are in `/errors/<name>`.
+   !> Quantities with estimated errors, as they are in `/errors/<name>`, and why there are none.
    pure function bounded(estimated) result(quantities)
       type(quantity_type), intent(in) :: estimated(:)
-      type(quantity_type) :: quantities(size(estimated))
+      type(quantity_type) :: quantities(size(estimated) + 1)
       integer :: i
 
-      quantities = estimated
       ! Every table has one row a step, whatever it is of.
+      quantities = [estimated, quantity_type('no_estimate', of_history, '-', is_integer=.true., &
+         description='reason for which each quantity has no bound, a row of /errors/reasons from 0')]
       quantities%kind = of_history
       quantities%values = 5
       quantities%components = 'value bound mesh increments iteration'
@@ -147,6 +149,14 @@ contains
          quantities(i)%description = 'value and the bound of its error, with its parts: '// &
             trim(estimated(i)%description)
       end do
+      associate (reason => quantities(size(quantities)))
+         reason%values = size(estimated)
+         reason%components = ''
+         do i = 1, size(estimated)
+            reason%components = trim(reason%components)//' '//estimated(i)%name
+         end do
+         reason%components = adjustl(reason%components)
+      end associate
    end function bounded
 
    !> Writes the geometry of contact points, those of some interfaces one behind the other.
@@ -225,7 +235,7 @@ contains
       dataset%components = quantity%components
    end function quantity_dataset
 
-   !> Adds rows; NaN for those of one append where there are no values.
+   !> Adds rows; NaN, of integers 0, for those of one append where there are no values.
    pure subroutine append(self, values)
       class(growing_dataset_type), intent(inout) :: self
       real(dp), intent(in) :: values(:)                   !! rows, one after the other
@@ -240,7 +250,8 @@ contains
          call move_alloc(larger, self%buffer)
       end if
       if (size(values) == 0) then
-         self%buffer(self%used + 1:last) = ieee_value(1.0_dp, ieee_quiet_nan)
+         self%buffer(self%used + 1:last) = merge(ieee_value(1.0_dp, ieee_quiet_nan), 0.0_dp, &
+            self%storage == as_real)
       else
          self%buffer(self%used + 1:last) = values
       end if

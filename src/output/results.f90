@@ -17,9 +17,10 @@ module results
    use result_tables, only: bounded, bytes_in, flush_sets, result_table_type, &
       write_geometry
    use equations, only: section_nodes
-   use hdf5_writer, only: end_hdf5, start_hdf5
+   use hdf5_writer, only: end_hdf5, hdf5_writer_type, start_hdf5
    use kinds, only: dp, long
    use model, only: model_type
+   use no_estimates, only: no_reason, reason_count, reason_inside_step, words_of_reason
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
@@ -153,7 +154,7 @@ contains
       if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
          [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected, &
          model%units)
-      allocate (self%tables(merge(4 + 2*n + model%mesh%body_count, 3 + n, model%estimates_errors)))
+      allocate (self%tables(4 + 2*n + merge(model%mesh%body_count, 0, model%estimates_errors)))
       associate (tables => self%tables, units => model%units, steps => size(model%steps))
          of_stability = datasets(of_history, has)
          of_history_alone = pack(of_stability, of_stability%needs /= needs_stability)
@@ -171,13 +172,12 @@ contains
                [datasets(of_contact_points, has), datasets(of_interface, has)], &
                size(interfaces(i)%slave), expected, units)
          end do
-         if (.not. model%estimates_errors) return
          call tables(4 + n)%start('/errors', [step_time], 0, steps, units)
          do i = 1, n
             call tables(4 + n + i)%start('/errors/'//interfaces(i)%name, bounded(estimated), 0, &
                steps, units)
          end do
-         do i = 1, model%mesh%body_count
+         do i = 1, size(tables) - (4 + 2*n)
             call tables(4 + 2*n + i)%start('/errors/body '//to_text(i), bounded(maxima), 0, steps, &
                units)
          end do
@@ -218,6 +218,8 @@ contains
          end do
          call self%fields%go_on(file, rows(3))
          call self%restarts%go_on(file, restart, counts, model%units)
+         call file%remove('/errors/reasons')
+         call write_reasons(file, model)
          call file%remove('/deck')
          call file%write('/deck', self%cards, 'card images as read')
       end associate
@@ -500,9 +502,26 @@ contains
                   model%units)
             end associate
          end do
+         call write_reasons(file, model)
          call file%create_group('/run')
          call file%write('/deck', self%cards, 'card images as read')
       end associate
    end subroutine write_heads
+
+   !> Writes the words of the reasons for which there are no bounds, and the one that holds at
+   !> increments that end no step.
+   subroutine write_reasons(file, model)
+      type(hdf5_writer_type), intent(inout) :: file
+      type(model_type), intent(in) :: model
+      type(string_type) :: reasons(0:reason_count)
+      integer :: i
+
+      do i = no_reason, reason_count
+         reasons(i)%value = words_of_reason(i)
+      end do
+      call file%write('/errors/reasons', reasons, &
+         'why there is no bound, in the order of the numbers in `no_estimate`, from 0 on')
+      call file%set('/errors', 'inside_step', words_of_reason(reason_inside_step(model)))
+   end subroutine write_reasons
 
 end module results

@@ -11,6 +11,7 @@ module summary
    use field_quantities, only: maxima
    use kinds, only: dp
    use model, only: model_type
+   use no_estimates, only: mark_of, no_reason, reason_inside_step
    use quantity_types, only: needs_heat, quantity_type
    use records, only: body_errors_type, contact_record_type, increment_record_type, &
       interface_errors_type
@@ -142,7 +143,6 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(string_type), allocatable, intent(inout) :: lines(:)
-      character(:), allocatable :: line
       integer :: i
 
       if (self%increment == 0) return
@@ -150,11 +150,7 @@ contains
       do i = 1, size(self%steps)
          call append(lines, self%steps(i)%value)
       end do
-      line = 'at '//when(self, or_blank(model%load_label))
-      if (model%estimates_errors .and. size(interfaces) > 0 .and. .not. allocated(self%errors)) then
-         line = line//', inside a step (errors are bounded at the end of steps)'
-      end if
-      call append(lines, line//':')
+      call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
       if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'// &
          trim(merge('s', ' ', size(self%folds) > 1))//' '//listed(self%folds))
       do i = 1, size(interfaces)
@@ -187,10 +183,9 @@ contains
          if (ieee_is_nan(errors%value(q))) cycle
          name = maxima(q)%label(:name_width)
          value = to_text(errors%value(q))
-         words = trim('  '//name//adjustr(value)//bound_words(errors%bound(q), errors%value(q))// &
-            ' '//unit_label(maxima(q)%unit, model%units))//', '// &
+         words = trim('  '//name//adjustr(value)//bound_words(errors, q)//' '// &
+            unit_label(maxima(q)%unit, model%units))//', '// &
             place_words(model%mesh, errors%node(q))
-         if (errors%why_not(q)%value /= '') words = words//': '//errors%why_not(q)%value
          call append(lines, words)
       end do
       if (size(errors%corners) > 0) call append(lines, '  '//corner_words(model%mesh, errors))
@@ -260,7 +255,6 @@ contains
       character(value_width) :: value
       real(dp) :: values(1)
       integer :: q
-      logical :: is_bounded
 
       do q = 1, size(estimated)
          if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
@@ -273,25 +267,19 @@ contains
          end if
          value = to_text(values(1))
          words = '  '//name//adjustr(value)
-         is_bounded = allocated(self%errors) .and. &
-            .not. is_end_of_face(estimated(q), points, values(1))
-         if (is_bounded) then
-            words = words//bound_words(self%errors(i)%bound(q), values(1))
-         else if (allocated(self%errors)) then
+         if (is_end_of_face(estimated(q), points, values(1))) then
             words = words//repeat(' ', bound_width)
             zone = end_words(estimated(q)%name, self%contacts(i))
+         else if (allocated(self%errors)) then
+            words = words//bound_words(self%errors(i), q)
+         else
+            words = words//mark_of(reason_inside_step(model))
          end if
          words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
          if (zone /= '') words = words//', '//zone
-         if (is_bounded) then
-            associate (why_not => self%errors(i)%why_not(q)%value)
-               if (why_not /= '') words = words//': '//why_not
-            end associate
-            if (estimated(q)%name == 'peak_pressure' .and. &
-               .not. ieee_is_nan(self%errors(i)%bound(q))) then
-               if (rises_to_end(points, self%contacts(i))) words = words// &
-                  ', at an end, where it may have no limit'
-            end if
+         if (allocated(self%errors) .and. estimated(q)%name == 'peak_pressure') then
+            if (self%errors(i)%no_estimate(q) == no_reason .and. rises_to_end(points, &
+               self%contacts(i))) words = words//', at an end, where it may have no limit'
          end if
          zone = zones(estimated(q)%name, points, self%contacts(i))
          if (zone /= '' .and. zone_words(estimated(q)%name, self%contacts(i)) == '') words = &
@@ -364,17 +352,24 @@ contains
       end do
    end function words_of
 
-   !> The bound of an error with two digits, and in per cent.
-   pure function bound_words(bound, value) result(words)
-      real(dp), intent(in) :: bound, value
-      character(bound_width) :: words
+   !> The bound of an error with two digits, and in per cent, or why there is none.
+   pure function bound_words(errors, q) result(words)
+      class(interface_errors_type), intent(in) :: errors
+      integer, intent(in) :: q                       ! the quantity
+      character(:), allocatable :: words
+      character(bound_width) :: column
       character(9) :: number
 
-      words = ' (uncertain)'
-      if (ieee_is_nan(bound)) return
-      number = few_digits(bound)
-      words = ' +- '//number
-      if (abs(value) > 0.0_dp) words = ' +- '//number//'('//percent(bound/abs(value))//')'
+      associate (bound => errors%bound(q), value => errors%value(q), why => errors%no_estimate(q))
+         if (why /= no_reason) then
+            words = mark_of(why)
+            return
+         end if
+         number = few_digits(bound)
+         column = ' +- '//number
+         if (abs(value) > 0.0_dp) column = ' +- '//number//'('//percent(bound/abs(value))//')'
+      end associate
+      words = column
    end function bound_words
 
 end module summary

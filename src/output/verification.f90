@@ -10,8 +10,9 @@ module verification
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type, verify_type
+   use no_estimates, only: mark_of, no_reason, reason_inside_step, reason_of_run
    use quantity_types, only: find_quantity, of_history, of_nodes, of_sections, quantity_type
-   use records, only: contact_record_type, increment_record_type
+   use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: verifiable
    use state_tables, only: logicals, reals, state_table_type, words
    use text, only: few_digits, percent, read_integer, read_real, to_text, to_upper
@@ -26,8 +27,8 @@ module verification
       real(dp) :: time = 0.0_dp                 !! total time at which it was judged [time]
       real(dp) :: found = 0.0_dp                !! value found, the worst of a set
       real(dp) :: deviation = 0.0_dp            !! magnitude of its deviation, relative for REL
-      !> Bound of the error of the value, NaN where it is uncertain; unallocated where it has none
-      real(dp), allocatable :: bound
+      real(dp), allocatable :: bound            !! of the error of the value; unallocated for none
+      integer :: no_estimate = no_reason        !! why a value of this kind has none
       character(:), allocatable :: reason       !! why there is no value; else empty
    end type outcome_type
 
@@ -73,11 +74,7 @@ contains
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
          if (len(self%outcomes(i)%reason) > 0) cycle
-         if (allocated(record%errors)) call take_bound(model%verifications(i), record, interfaces, &
-            self%outcomes(i))
-         if (.not. allocated(record%check_bounds)) cycle
-         if (.not. ieee_is_nan(record%check_bounds(i))) self%outcomes(i)%bound = &
-            record%check_bounds(i)
+         call take_bound(model, i, record, interfaces, self%outcomes(i))
       end do
    end subroutine judge
 
@@ -99,6 +96,7 @@ contains
          associate (outcome => self%outcomes(i))
             if (outcome%judged) reasons = reasons//outcome%reason//new_line('a')
             flags(2*n + i) = allocated(outcome%bound)
+            values(3*n + i) = outcome%no_estimate
             if (allocated(outcome%bound)) values(3*n + i) = outcome%bound
          end associate
       end do
@@ -116,39 +114,64 @@ contains
          if (.not. flags(i)) cycle
          self%outcomes(i)%reason = reasons(first:first - 2 + index(reasons(first:), new_line('a')))
          first = first + len(self%outcomes(i)%reason) + 1
-         if (flags(2*n + i)) self%outcomes(i)%bound = values(3*n + i)
+         if (flags(2*n + i)) then
+            self%outcomes(i)%bound = values(3*n + i)
+         else
+            self%outcomes(i)%no_estimate = nint(values(3*n + i))
+         end if
       end do
    end subroutine exchange
 
-   !> Takes the bound of what a check is about: of a quantity of an interface, of the largest
-   !> pressure of the only one, or of the largest stress or temperature, where that is the maximum
-   !> of a body.
-   subroutine take_bound(check, record, interfaces, outcome)
-      type(verify_type), intent(in) :: check
+   !> Takes the bound of what a check is about, or why it has none: of a quantity of an interface, of
+   !> the largest pressure of the only one, of stress or temperature at a node, or of the largest one
+   !> of von Mises stress or temperature, where that is the maximum of a body.
+   subroutine take_bound(model, c, record, interfaces, outcome)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: c                              ! the check
       type(increment_record_type), intent(in) :: record
       type(contact_points_type), intent(in) :: interfaces(:)
       type(outcome_type), intent(inout) :: outcome
-      integer :: i, q
+      character(:), allocatable :: quantity, where
+      integer :: i, number, q, why
+      logical :: is_node
 
-      if (to_upper(check%where) == 'MAX') then
-         q = 0
-         if (to_upper(check%quantity) == 'MISES') q = find_quantity(maxima, 'von_mises')
-         if (to_upper(check%quantity) == 'NT') q = find_quantity(maxima, 'temperature')
-         do i = 1, merge(size(record%body_errors), 0, q > 0)
-            if (ieee_is_nan(record%body_errors(i)%value(q))) cycle
-            if (record%body_errors(i)%value(q) >= outcome%found) outcome%bound = &
-               record%body_errors(i)%bound(q)
+      quantity = to_upper(model%verifications(c)%quantity)
+      where = to_upper(model%verifications(c)%where)
+      call read_integer(where, number, is_node)
+      why = reason_of_run(model)
+      if (.not. record%last_of_step) why = reason_inside_step(model)
+      q = 0
+      if (quantity == 'NT') q = find_quantity(maxima, 'temperature')
+      if (quantity == 'MISES' .or. is_node .and. any(quantity == ['S11', 'S22', 'S33', 'S12'])) &
+         q = find_quantity(maxima, 'von_mises')
+      if (q > 0 .and. (is_node .or. where == 'MAX')) then
+         outcome%no_estimate = why
+         do i = 1, merge(size(record%body_errors), 0, why == no_reason)
+            associate (errors => record%body_errors(i))
+               if (is_node) outcome%no_estimate = max(outcome%no_estimate, errors%no_estimate(q))
+               if (.not. is_node .and. errors%value(q) >= outcome%found) call take(errors, q)
+            end associate
          end do
-      end if
-      q = find_quantity(estimated, check%quantity)
-      if (to_upper(check%quantity) == 'PRESSURE' .and. to_upper(check%where) == 'MAX' .and. &
-         size(interfaces) == 1) q = find_quantity(estimated, 'peak_pressure')
-      if (q == 0) return
-      do i = 1, size(interfaces)
-         if (to_upper(interfaces(i)%name) == to_upper(check%where) .or. size(interfaces) == 1) then
-            outcome%bound = record%errors(i)%bound(q)
+         if (is_node .and. allocated(record%check_bounds)) then
+            if (.not. ieee_is_nan(record%check_bounds(c))) outcome%bound = record%check_bounds(c)
          end if
+      end if
+      q = find_quantity(estimated, quantity)
+      if (quantity == 'PRESSURE' .and. where == 'MAX' .and. size(interfaces) == 1) q = &
+         find_quantity(estimated, 'peak_pressure')
+      do i = 1, merge(size(interfaces), 0, q > 0)
+         if (to_upper(interfaces(i)%name) /= where .and. size(interfaces) > 1) cycle
+         outcome%no_estimate = why
+         if (why == no_reason) call take(record%errors(i), q)
       end do
+   contains
+      subroutine take(errors, q)
+         class(interface_errors_type), intent(in) :: errors
+         integer, intent(in) :: q
+
+         outcome%no_estimate = errors%no_estimate(q)
+         if (outcome%no_estimate == no_reason) outcome%bound = errors%bound(q)
+      end subroutine take
    end subroutine take_bound
 
    !> Numbers of the checks that passed, that failed, and that could not be judged, because the run
@@ -185,15 +208,15 @@ contains
       end if
    end function failure_words
 
-   !> How far the value may be from the exact one; nothing where that is not bounded.
+   !> How far the value may be from the exact one, or why that is not known; nothing for values that
+   !> are never bounded.
    pure function bound_words(outcome) result(words)
       type(outcome_type), intent(in) :: outcome
       character(:), allocatable :: words            !! with a blank before them
 
       words = ''
-      if (.not. allocated(outcome%bound)) return
-      words = ' (uncertain)'
-      if (.not. ieee_is_nan(outcome%bound)) words = ' +- '//few_digits(outcome%bound)
+      if (outcome%no_estimate /= no_reason) words = mark_of(outcome%no_estimate)
+      if (allocated(outcome%bound)) words = ' +- '//few_digits(outcome%bound)
    end function bound_words
 
    pure function outcome_of(check, values, reason) result(outcome)

@@ -5,7 +5,6 @@ module records
    use field_recovery, only: error_record_type
    use solution_report, only: solution_report_type, work_record_type
    use state_tables, only: state_table_type
-   use text, only: string_type
    use zone_edges, only: edges_kept
    implicit none
    private
@@ -25,7 +24,7 @@ module records
       real(dp), allocatable :: mesh(:)         !! of the error of the mesh
       real(dp), allocatable :: increment(:)    !! of the error of the size of the increments
       real(dp), allocatable :: iteration(:)    !! of the error of the fixed point
-      type(string_type), allocatable :: why_not(:)   !! why there is no bound; empty where there is
+      integer, allocatable :: no_estimate(:)   !! why there is no bound, a reason of no_estimates
    end type interface_errors_type
 
    !> Bounds of the errors of the maxima of a body; arrays over `maxima` of field_quantities.
@@ -58,6 +57,7 @@ module records
       real(dp) :: edge_stick = 0.0_dp                  !! outer edge, widest stick zone; or NaN
       real(dp) :: edges_contact(edges_kept) = 0.0_dp   !! all edges as s, ascending, padded with NaN
       real(dp) :: edges_stick(edges_kept) = 0.0_dp     !! alike
+      logical :: slides_far = .false.  !! beyond its contact points: no number of it has a bound
    end type contact_record_type
 
    !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the

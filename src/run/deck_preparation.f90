@@ -18,7 +18,8 @@ module deck_preparation
    use load_histories, only: load_history_type
    use loads, only: loads_type
    use messages, only: print_error, print_line
-   use model, only: model_type, unbounded
+   use model, only: model_type
+   use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use held_points, only: first_redundant, normal_supports, over_constrained
    use progress, only: progress_type
@@ -133,9 +134,9 @@ contains
       if (.not. allocated(command%targets)) return
       deck%model%steps%restart_frequency = 0
       ! Targets of --accuracy replace those of the deck.
-      if (unbounded(deck%model) /= '') call deck%report%error(deck%cards%last, &
+      if (reason_of_deck(deck%model) /= no_reason) call deck%report%error(deck%cards%last, &
          'a requested accuracy needs bounds of errors, which do not know '// &
-         unbounded(deck%model)//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
+         words_of_reason(reason_of_deck(deck%model))//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
       deck%model%estimates_errors = .true.
       deck%model%accuracy%targets = command%targets
       if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &

@@ -8,7 +8,8 @@ module trade_study
       l_stable_scheme, method_names, solver_mumps, solver_skyline, thermal_scheme_type
    use element_kinds, only: kind_count, linear_kind
    use kinds, only: dp
-   use model, only: model_type, unbounded
+   use model, only: model_type
+   use no_estimates, only: no_reason, reason_of_deck
    use reported_quantities, only: traded
    use steps, only: analysis_coupled, solves_heat
    use text, only: percent, rounded, string_type, to_text
@@ -249,7 +250,7 @@ contains
       varied = written
       varied%solver = merge(solver_mumps, solver_skyline, model%solver == solver_skyline)
       call add(merge('MUMPS  ', 'SKYLINE', model%solver == solver_skyline))
-      if (size(model%contacts) == 0 .or. unbounded(model) /= '') return
+      if (size(model%contacts) == 0 .or. reason_of_deck(model) /= no_reason) return
       do i = 1, target_count
          call add('--accuracy '//percent(targets(i)), targets(i))
       end do

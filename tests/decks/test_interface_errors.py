@@ -58,10 +58,10 @@ def test_error_of_hertz_peak_pressure(tmp_path):
     assert abs(edge - value) <= bound
 
 
-def test_a_peak_where_friction_turns_round_is_uncertain_until_the_mesh_has_what_sticks(tmp_path):
+def test_a_peak_where_friction_turns_round_has_no_bound_until_the_mesh_has_what_sticks(tmp_path):
     """With little friction the whole face slips away from the axis: between both sides the shear jumps. Bodies of
     one stiffness have a bound."""
-    words = "friction turns round at the peak, where what sticks is narrower than the elements"
+    words = "friction turns round at the peak"
     for friction, level, is_known in (("0.03", 0, False), ("0.03", 1, False), ("0.04", 0, False), ("0.04", 1, True)):
         deck = bare(CYLINDER, tmp_path, f"{friction}_{level}.inp", [f"*REFINE, LEVELS={level}"],
                     {"0.155, 1.E5": f"{friction}, 1.E5"})
@@ -74,7 +74,7 @@ def test_a_peak_where_friction_turns_round_is_uncertain_until_the_mesh_has_what_
     # What changes from round to round is no bound either.
     changes = {"0.155, 1.E5": "0.01, 1.E5"}
     request = run("run", bare(CYLINDER, tmp_path, "asked.inp", (), changes), "--accuracy", "1%", "--out", tmp_path)
-    assert request.returncode == 4 and f"not met: uncertain, target 1 %: {words}" in request.stdout
+    assert request.returncode == 4 and f"not met: no estimate, target 1 %: {words}" in request.stdout
 
 
 def bent_on_a_block(path, friction, cards=(), held="B.BOTTOM"):
@@ -144,7 +144,7 @@ def test_mesh_of_a_model_with_equations(tmp_path, friction):
 
 
 @pytest.mark.parametrize("steps", [1, 2])
-def test_bounds_are_uncertain_at_the_end_of_every_step_where_the_finer_mesh_does_not_match(tmp_path, steps):
+def test_no_step_has_bounds_where_the_finer_mesh_does_not_match(tmp_path, steps):
     """A midside node of the base is moved along it: what the finer mesh adds is not opposite each
     other any more."""
     deck = bare(CYLINDER, tmp_path, "moved.inp", ["*REFINE, LEVELS=1, SURFACE=CURVED"],
@@ -336,7 +336,7 @@ def test_errors_are_left_out_where_the_deck_says_so(tmp_path):
     results = [solve(deck) for deck in decks]
     with h5py.File(results[0]) as one, h5py.File(results[1]) as other:
         assert {len(data) for data in (one["errors/time"], *one["errors/FACE"].values())} == {1}
-        assert "errors" not in other
+        assert np.isnan(other["errors/FACE/normal_force"][:, 1:]).all()
         for name, data in one["contact/FACE"].items():
             np.testing.assert_array_equal(data[()], other[f"contact/FACE/{name}"][()])
     assert "BOUNDS OF THE ERRORS" in results[0].with_suffix(".lst").read_text()

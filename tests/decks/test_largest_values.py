@@ -99,4 +99,4 @@ def test_without_bounds_nothing_is_told(tmp_path):
     process = run("run", deck, "--out", tmp_path)
     assert process.returncode == 0 and "largest in body" not in process.stdout
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
-        assert "errors" not in file
+        assert set(file["errors"]) == {"reasons", "time"}

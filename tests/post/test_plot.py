@@ -1252,8 +1252,8 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
         top.get_transform().transform([[0.1, top.get_ydata()[0]]]))[0, 1]
     assert height == pytest.approx(1.0)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        "CYLINDER normal force, target 0.1 (uncertain in round 1)", "target", "below the scale",
-        "uncertain"]
+        "CYLINDER normal force, target 0.1 (no estimate in round 1)", "target", "below the scale",
+        "no estimate"]
     with h5py.File(asked, "a") as file:
         file["accuracy/bounds/CYLINDER/normal_force"][...] = [[1, 5.0, 0.4, 0.1], [0, 0.0, 0.0, 0.0]]
     (figure,) = kept("accuracy", asked)

@@ -430,7 +430,7 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
     rows = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in bounds.split("</tr>")[1:-1]]
     assert [row[0] for row in rows] == ["heat rate", "normal force", "peak pressure"]
     assert rows[0][1:3] == ["–", "–"] and rows[0][-1].startswith("nothing to judge")
-    assert rows[1][1:4] == ["uncertain", "0.25", "0.1"] and ">not met<" in rows[1][-1]
+    assert rows[1][1:4] == ["no estimate", "0.25", "0.1"] and ">not met<" in rows[1][-1]
     assert rows[2][1:4] == ["1300", "0.1", "0.1"] and ">met<" in rows[2][-1]
     assert "<dd>12.50 s in round 2; all rounds took 0.42 CPU seconds</dd>" in text
     assert "Rounds of the" not in synthetic().read_text()
@@ -496,13 +496,12 @@ def test_a_target_that_is_missed_by_little_shows_it():
 
 
 @pytest.mark.parametrize(("said", "shown"), [
-    ("uncertain, target 5 %, step 1 with 6.5 MPa (no limit: it grows from mesh to mesh)",
-     ", step 1 with 6.5 MPa (no limit: it grows from mesh to mesh)"),
+    ("no estimate, target 5 %, step 1 with 6.5 MPa: peak grows with the mesh",
+     ", step 1 with 6.5 MPa: peak grows with the mesh"),
     ("bound 7 % of 5 MPa cm^2, target 5 %, step 2 (mostly of the mesh); the peak is at an end of the face",
      ", step 2 (mostly of the mesh); the peak is at an end of the face"),
     ("bound 0.2 MPa cm^2, target 0.1 MPa cm^2 (mostly of the increments)", " (mostly of the increments)"),
-    ("uncertain, target 5 %: a single increment does not tell its error",
-     ": a single increment does not tell its error")])
+    ("no estimate, target 5 %: single increment", ": single increment")])
 def test_step_and_reason_stand_beside_a_target_that_is_missed(said, shown):
     lines = ["requested accuracy not reached after 4 rounds", "A heat rate                    met: bound 2 %",
              "AA peak pressure               not met: bound 9 %, target 5 % (another)",
@@ -531,7 +530,7 @@ def test_an_edge_at_the_end_of_the_face_has_no_bound(tmp_path):
 def test_the_page_takes_step_and_reason_from_the_listing(tmp_path):
     text = page_of_example(tmp_path, "brake_pad", "--accuracy", "5%", status=4)
     assert '<span class="fail">not met</span>, step 1 with ' in text
-    assert "MPa (no limit: it is at a corner, where one face ends)</td>" in text
+    assert "MPa: peak at a corner</td>" in text
 
 
 def test_the_page_says_what_there_is_where_nothing_is_judged(tmp_path):

@@ -92,8 +92,8 @@ def bounds(result):
         caption = f"Interface {contact.name} at the last increment"
         found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
     for name, values in result.maxima.items():
-        rows = [[LARGEST[key], number(errors[0]), *bound_cells(errors, unit)]
-                for key, (unit, errors) in values.items() if np.isfinite(errors[0])]
+        rows = [[LARGEST[key], number(errors[0]), *bound_cells(errors, why, unit)]
+                for key, (unit, errors, why) in values.items() if np.isfinite(errors[0])]
         if rows:
             caption = f"{name.capitalize()} at the last increment, stress away from singular corners"
             found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
@@ -102,21 +102,16 @@ def bounds(result):
 
 def bound_row(result, contact, key, value):
     """Return value, bound and its parts; words where nothing is known of them, or to be known."""
-    errors = result.error_bounds(contact, key)
-    row = ["", number(value), "not estimated", "", "–", "–", "–"]
-    if errors is None:
-        return row
     if key.startswith("edge_") and value >= contact["s"][-1]:
-        row[2] = "none: end of the face"
-        return row
-    row[2:] = bound_cells(errors, "")
-    return row
+        return ["", number(value), "none: end of the face", "", "–", "–", "–"]
+    _, errors, why = result.errors_of(contact.name).get(key, ("", np.full(5, np.nan), ""))
+    return ["", number(value), *bound_cells(errors, why, "")]
 
 
-def bound_cells(errors, unit):
-    """Return bound, unit and the parts of the bound."""
+def bound_cells(errors, why, unit):
+    """Return bound or why there is none, unit and the parts of the bound."""
     value, bound, *parts = errors
-    words = "uncertain"
+    words = f"no estimate: {why}" if why else "no estimate"
     if np.isfinite(bound):
         share = f" ({number(100.0 * bound / abs(value), 2)} %)" if value else ""
         words = f"± {number(bound, 2)}{share}"
@@ -191,7 +186,7 @@ def target_cells(rows, unit, remark):
     digits = 2  # or as many as show that the bound is above the target
     while bound > allowed and digits < 6 and number(bound, digits) == number(allowed, digits):
         digits += 1
-    cells = ["–" if each[0] == 0 else "uncertain" if np.isnan(each[2]) else number(each[2], digits)
+    cells = ["–" if each[0] == 0 else "no estimate" if np.isnan(each[2]) else number(each[2], digits)
              for each in rows]
     if step == 0:
         return [*cells, "–", unit, f"nothing to judge{remark}"]

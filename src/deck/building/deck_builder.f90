@@ -31,7 +31,8 @@ module deck_builder
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
    use mesh, only: mesh_type, set_type
-   use model, only: model_type, unbounded
+   use model, only: model_type
+   use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use quantity_types, only: quantity_type
    use order_reduction, only: side_corners
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
@@ -82,10 +83,11 @@ contains
       call build_pre_tensions(cards, context, model, report)
       call build_transforms(cards, model, report)
       call build_steps(cards, context, model, report)
-      if (unbounded(model) /= '' .and. model%estimates_errors) then
-         call context%note('no bounds of errors: they do not know '//unbounded(model))
+      if (reason_of_deck(model) /= no_reason .and. model%estimates_errors) then
+         call context%note('no bounds of errors: they do not know '// &
+            words_of_reason(reason_of_deck(model)))
+         model%estimates_errors = .false.
       end if
-      model%estimates_errors = model%estimates_errors .and. unbounded(model) == ''
       call build_verifications(cards, context, model, report)
       call build_accuracy(cards, estimated, model, report)
       if (allocated(model%accuracy%targets) .and. any(model%steps%restart_frequency > 0)) then

@@ -13,7 +13,8 @@ module deck_builder_verify
    use deck_structure, only: cards_of, data_cards_of
    use kinds, only: dp
    use load_requests, only: target_type
-   use model, only: model_type, verify_type, unbounded
+   use model, only: model_type, verify_type
+   use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use named_items, only: find_named
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_contact_points, &
       of_history, of_interface, of_nodes, of_sections, quantity_type
@@ -325,9 +326,9 @@ contains
 
       if (size(model%contacts) == 0) call report%missing(card%place, 'the deck has no *CONTACT '// &
          'PAIR: there is no quantity that *ACCURACY could name')
-      if (unbounded(model) /= '') then
+      if (reason_of_deck(model) /= no_reason) then
          call report%error(card%place, '*ACCURACY needs bounds of errors, which do not know '// &
-            unbounded(model)//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
+            words_of_reason(reason_of_deck(model))//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
          return
       end if
       if (.not. model%estimates_errors) call report%error(card%place, '*ACCURACY needs '// &
