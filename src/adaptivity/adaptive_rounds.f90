@@ -229,9 +229,10 @@ contains
             of_elements => self%division%levels)
             ! Where no error of the mesh is known, the change by sides of half the size tells it,
             ! but not where friction turns round.
-            if (ieee_is_nan(record%errors(i)%mesh(q)) .and. finding%no_estimate /= turns_round) where ( &
-               elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
-               model%contacts(i)%master])) of_elements = max(of_elements, 1)
+            if (ieee_is_nan(record%errors(i)%mesh(q)) .and. finding%no_estimate /= turns_round) then
+               where (elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
+                  model%contacts(i)%master])) of_elements = max(of_elements, 1)
+            end if
             call mark_edges(self, interfaces(i), edges_for(q, interfaces(i), record%contacts(i)), &
                max(levels, levels_of_edges(interfaces(i), record, i, q, finding%allowed)))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))

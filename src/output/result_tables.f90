@@ -141,7 +141,7 @@ contains
 
       ! Every table has one row a step, whatever it is of.
       quantities = [estimated, quantity_type('no_estimate', of_history, '-', is_integer=.true., &
-         description='reason for which each quantity has no bound, a row of /errors/reasons from 0')]
+         description='reason for which a quantity has no bound, a row of /errors/reasons from 0')]
       quantities%kind = of_history
       quantities%values = 5
       quantities%components = 'value bound mesh increments iteration'

@@ -122,9 +122,9 @@ contains
       end do
    end subroutine exchange
 
-   !> Takes the bound of what a check is about, or why it has none: of a quantity of an interface, of
-   !> the largest pressure of the only one, of stress or temperature at a node, or of the largest one
-   !> of von Mises stress or temperature, where that is the maximum of a body.
+   !> Takes the bound of what a check is about, or why it has none: of a quantity of an interface,
+   !> of the largest pressure of the only one, of stress or temperature at a node, or of the largest
+   !> von Mises stress or temperature, where that is the maximum of a body.
    subroutine take_bound(model, c, record, interfaces, outcome)
       type(model_type), intent(in) :: model
       integer, intent(in) :: c                              ! the check
@@ -142,8 +142,9 @@ contains
       if (.not. record%last_of_step) why = reason_inside_step(model)
       q = 0
       if (quantity == 'NT') q = find_quantity(maxima, 'temperature')
-      if (quantity == 'MISES' .or. is_node .and. any(quantity == ['S11', 'S22', 'S33', 'S12'])) &
+      if (quantity == 'MISES' .or. is_node .and. any(quantity == ['S11', 'S22', 'S33', 'S12'])) then
          q = find_quantity(maxima, 'von_mises')
+      end if
       if (q > 0 .and. (is_node .or. where == 'MAX')) then
          outcome%no_estimate = why
          do i = 1, merge(size(record%body_errors), 0, why == no_reason)
@@ -208,8 +209,8 @@ contains
       end if
    end function failure_words
 
-   !> How far the value may be from the exact one, or why that is not known; nothing for values that
-   !> are never bounded.
+   !> How far the value may be from the exact one, or why that is not known; nothing for values
+   !> that are never bounded.
    pure function bound_words(outcome) result(words)
       type(outcome_type), intent(in) :: outcome
       character(:), allocatable :: words            !! with a blank before them

@@ -136,7 +136,8 @@ contains
       ! Targets of --accuracy replace those of the deck.
       if (reason_of_deck(deck%model) /= no_reason) call deck%report%error(deck%cards%last, &
          'a requested accuracy needs bounds of errors, which do not know '// &
-         words_of_reason(reason_of_deck(deck%model))//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
+         words_of_reason(reason_of_deck(deck%model))// &
+         '; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
       deck%model%estimates_errors = .true.
       deck%model%accuracy%targets = command%targets
       if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &

@@ -33,7 +33,7 @@ requests for an accuracy all use it. It is the sum of three parts.
 | increments | Where friction or the scheme of (3.4) makes the path matter, a companion run with increments of twice the size is solved in parallel on the contact points alone. The bound is the difference, for the peak pressure between mortar points with friction 2.4 times that, because its error falls with the square root of the increments. |
 | iteration | Residual of the fixed point over the distance of the coupling gain from 1. |
 
-A bound is *uncertain* (NaN in the result file) in a step of a single increment with friction; for an edge
+There is no bound (`no estimate` and the reason in its place, NaN in the result file) in a step of a single increment with friction; for an edge
 that the finer mesh or the companion run does not have; for a peak pressure at a corner, where one face
 ends and the other goes on; for one where friction turns round between bodies of different stiffness and what
 sticks there is narrower than the elements; and where contact points of the finer mesh do not match. The pressure
@@ -55,7 +55,7 @@ times at the faces and twice elsewhere with increments a quarter as long, correc
 sixteenth as long change. Decks with a number have materials, friction, geometry and loads drawn at random
 (`tests/accuracy/bound_decks.py`). The constants were chosen on one part of the decks, the others judge
 them; those from 52 on, *drawn last*, were run when all constants and forms were final, but that peaks where
-friction turns round became *uncertain* when these had been seen: before, 140 of the 150 peaks of the decks drawn
+friction turns round lost their bound when these had been seen: before, 140 of the 150 peaks of the decks drawn
 last held. Errors below 1e-7 of the value, of edges below 0.01 of the spacing, and edges at the end of a face are
 not judged. The factor 2.1 was 2 until a deck kept aside, the cracked plate, was seen:
 its errors fall with h, so that bounds equalled them within 1 %, as they do for four such plates of other
@@ -159,7 +159,7 @@ def shares(cases, name, groups):
             some = [case for case in found if not case.is_uncertain]
             count, uncertain = sum(case.is_held for case in some), len(found) - len(some)
             held.append(f"{count}/{len(some)}, {100 * count / len(some):.0f} %" if some else "-")
-            held[-1] += f", {uncertain} uncertain" if uncertain else ""
+            held[-1] += f", {uncertain} without" if uncertain else ""
             median = np.median([case.bound / abs(case.error) for case in some]) if some else np.nan
             ratios.append(f"{median:.1f}" if some else "-")
         table.rows.append([title, *held, *ratios])

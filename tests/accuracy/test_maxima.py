@@ -33,7 +33,7 @@ Where straight sides turn by more than 30 degrees from one to the next, as two l
 
 The bounds do not know the shape of faces that linear elements make straight. Forces on nodes along a
 side act as single forces on the divided mesh, so that bounds there are far too large: use \\*DSLOAD.
-A bound is *uncertain* where the scheme of (3.4) takes the past.
+There is no bound where the scheme of (3.4) takes the past.
 
 **How they are judged.** Problems with closed forms, drawn at random (`tests/accuracy/maxima_decks.py`),
 of elements of eight, eight reduced, four, four with incompatible modes, six and three nodes, with 2, 4, 8 and 16 elements along

@@ -20,7 +20,7 @@ error at eight neighbouring loads on the same mesh. Drawn decks, as they are and
 eight increments; the values that they should have are those of the mesh refined twice, and the faces once
 more, with the same increments, so that the bounds are taken without their part of the increments. Wavy faces
 with heat through a perfect contact, whose heat rate is known, have eight widths of contact within one element, 24 and 40 elements a
-wave, and one or ten increments; without heat their peak pressure is known. Errors below 1e-7 of the value and peaks whose bound is uncertain are not judged. Decks
+wave, and one or ten increments; without heat their peak pressure is known. Errors below 1e-7 of the value and peaks without a bound are not judged. Decks
 whose shear force changes its sign are left out of shear forces.
 
 What friction has locked in makes the bound of the shear force too large where contact slides over several nodes

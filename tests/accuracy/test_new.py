@@ -91,7 +91,7 @@ def shares(cases):
     known = np.isfinite(bound)
     held = int((error[known] <= bound[known]).sum())
     text = f"{held}/{known.sum()}, {100 * held / known.sum():.0f} %"
-    text += f", {int((~known).sum())} uncertain" if not known.all() else ""
+    text += f", {int((~known).sum())} without" if not known.all() else ""
     return (text, f"{(error / bound)[known].max():.2f}", f"{np.median((bound / error)[known]):.1f}")
 
 

@@ -116,7 +116,7 @@ def shares(cases):
     held = int((error[known] <= bound[known]).sum())
     text = f"{held}/{known.sum()}, {100 * held / known.sum():.0f} %"
     uncertain = int((is_solved & ~known).sum())
-    text += f", {uncertain} uncertain" if uncertain else ""
+    text += f", {uncertain} without" if uncertain else ""
     return (text, int((~is_solved).sum()), f"{(error / bound)[known].max():.2f}",
             f"{np.median((bound / error)[known]):.1f}")
 

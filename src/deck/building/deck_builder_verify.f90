@@ -328,7 +328,8 @@ contains
          'PAIR: there is no quantity that *ACCURACY could name')
       if (reason_of_deck(model) /= no_reason) then
          call report%error(card%place, '*ACCURACY needs bounds of errors, which do not know '// &
-            words_of_reason(reason_of_deck(model))//'; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
+            words_of_reason(reason_of_deck(model))// &
+            '; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
          return
       end if
       if (.not. model%estimates_errors) call report%error(card%place, '*ACCURACY needs '// &
