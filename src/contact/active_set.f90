@@ -278,12 +278,10 @@ contains
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: work   ! of the state
       type(contact_state_type), intent(in) :: state
-      integer :: i
 
       ! Rounding is left of what the load is made of, too, and of coordinates.
       force_rounding = max(1.0e-12_dp*maxval(abs(state%force)), 1.0e-13_dp*work%largest_term, &
-         1.0e-12_dp*work%load_scale + system%least_length* &
-         maxval([0.0_dp, (system%schur(i, i), i=1, size(system%schur, 1))])) + tiny(1.0_dp)
+         1.0e-12_dp*work%load_scale + system%least_force()) + tiny(1.0_dp)
    end function force_rounding
 
    !> Of the contact points given, keeps those that hinder a motion which no load drives once they

@@ -76,6 +76,7 @@ module contact_system
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
    contains
       procedure :: on_tail
+      procedure :: least_force
    end type contact_system_type
 
    !> Rows of an active set.
@@ -205,6 +206,14 @@ contains
          if (self%tangent(k) > 0) on_tail(self%tangent(k)) = values(2, k)
       end do
    end function on_tail
+
+   !> Force on a contact point that rounding of the coordinates makes, and that counts as none.
+   pure real(dp) function least_force(self)
+      class(contact_system_type), intent(in) :: self  !! [force]
+      integer :: i
+
+      least_force = self%least_length*maxval([0.0_dp, (self%schur(i, i), i=1, size(self%schur, 1))])
+   end function least_force
 
    !> Forces, or columns of S, as they enter the rows.
    pure function combine(self, columns) result(rows)

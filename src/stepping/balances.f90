@@ -213,7 +213,7 @@ contains
       real(dp), allocatable :: internal(:), residual(:)
       type(friction_law_type) :: friction(size(bodies%points%slave))
       type(scales_type) :: scales
-      real(dp) :: least, positions(2, size(bodies%points%slave)), stiffness
+      real(dp) :: dropped, least, positions(2, size(bodies%points%slave)), stiffness
       logical :: along_x
 
       least = least_displacement(model, next%temperature)
@@ -226,12 +226,15 @@ contains
          unstrained_forces(bodies, next%temperature - model%initial_temperature, &
          next%force_excess)
       stiffness = bodies%mechanical%largest_entry
+      associate (contact => bodies%equilibrium%contact)
+         dropped = size(next%contact%force)*contact%least_force()
+      end associate
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
       associate (held => loads%displacement%active)
          scales%force = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*stiffness*scales%length, &
-            least*stiffness, tiny(1.0_dp))
+            least*stiffness, dropped/noise, tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal - bar_forces(bodies, next%displacement, &
             next%temperature - model%initial_temperature), residual, held, model%mesh%node_body, &
