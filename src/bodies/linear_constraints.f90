@@ -175,7 +175,8 @@ contains
       end do
    end function link_stiffness
 
-   !> Stiffness of the bodies at some nodes: the smallest one's largest diagonal entry.
+   !> Stiffness of the bodies at some nodes: the smallest one's largest diagonal entry. Nodes without
+   !> elements, as on a drawing, have none to compare.
    pure function node_stiffness(matrix, nodes, components) result(stiffness)
       type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) of the bodies
       integer, intent(in) :: nodes(:)                     !! the nodes
@@ -192,7 +193,8 @@ contains
             end do
          end do
       end do
-      stiffness = minval(at_node)
+      stiffness = 0.0_dp
+      if (any(at_node > 0.0_dp)) stiffness = minval(at_node, mask=at_node > 0.0_dp)
    end function node_stiffness
 
    !> Lower triangle of the matrix on the unknowns: T^T K T, with the links.

@@ -207,12 +207,14 @@ contains
       end do
    end function on_tail
 
-   !> Force on a contact point that rounding of the coordinates makes, and that counts as none.
+   !> Force on a contact point that rounding of the coordinates makes, and that counts as none. Where
+   !> contact points move a body without strain, their S is rounding of what they have alone.
    pure real(dp) function least_force(self)
       class(contact_system_type), intent(in) :: self  !! [force]
       integer :: i
 
-      least_force = self%least_length*maxval([0.0_dp, (self%schur(i, i), i=1, size(self%schur, 1))])
+      least_force = self%least_length*maxval([0.0_dp, self%alone, (self%schur(i, i), &
+         i=1, size(self%schur, 1))])
    end function least_force
 
    !> Forces, or columns of S, as they enter the rows.

@@ -226,9 +226,8 @@ contains
          unstrained_forces(bodies, next%temperature - model%initial_temperature, &
          next%force_excess)
       stiffness = bodies%mechanical%largest_entry
-      associate (contact => bodies%equilibrium%contact)
-         dropped = size(next%contact%force)*contact%least_force()
-      end associate
+      ! What contact points drop as rounding is no imbalance, not even if a body sums all of it.
+      dropped = size(next%contact%force)*bodies%equilibrium%contact%least_force()
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
       associate (held => loads%displacement%active)
