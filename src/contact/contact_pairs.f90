@@ -24,6 +24,9 @@ module contact_pairs
    public :: make_contact_points, make_tie_points
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
+   !> Part of the largest coordinate within which faces touch. Coordinates written with 15 digits,
+   !> the most that every double keeps, err by 5e-15 of it on either face.
+   real(dp), parameter :: touching = 64*epsilon(1.0_dp)
    real(dp), parameter :: weightless = 0.01_dp   !! part of its neighbour's weight below which the
    !! corner on the axis has none
    !> Angle of a body from which on its outline goes on at a node: it turns away by 45 degrees.
@@ -190,6 +193,8 @@ contains
          end if
          if (allocated(error)) return
       end associate
+      where (abs(points%initial_gap) <= touching*maxval(abs(mesh%coordinates))) &
+         points%initial_gap = 0.0_dp
       if (definition%adjusts .and. definition%adjusted_set == 0) then
          where (points%initial_gap <= definition%adjusted) points%initial_gap = 0.0_dp
       else if (definition%adjusts) then

@@ -76,8 +76,7 @@ contains
       points%mortar%segments = edge_segments_of(side, master_line, [slave%nodes, master%nodes], &
          merge(0.0_dp, thickness, points%about_axis), point_of)
       points%mortar%hats = hats_of(points%mortar%segments, size(kept))
-      points%initial_gap = -sum(points%normal*points%relative(reshape(mesh%coordinates, &
-         [size(mesh%coordinates)])), dim=1)
+      points%initial_gap = [(mean_gap(mesh%coordinates, points, c), c=1, size(kept))]
       if (size(kept) > 0) call set_ends(mesh%coordinates, slave, master, points)
       allocate (points%master, mold=points%slave)
       do c = 1, size(kept)
@@ -93,6 +92,21 @@ contains
             merge(-1.0_dp, 1.0_dp, chain%turned))
       end function line_of
    end subroutine set_mortar_points
+
+   !> Mean distance of the master along the normal. From the contact point on, because the rounding
+   !> of coefficients is that of what they are multiplied by.
+   pure real(dp) function mean_gap(x, points, k)
+      real(dp), intent(in) :: x(:, :)                  ! (2, nodes) [length]
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: k
+      integer, allocatable :: nodes(:)
+      real(dp), allocatable :: across(:), along(:), from(:, :)
+
+      call points%means_of(k, nodes, along, across)
+      from = x(:, nodes) - spread(points%position(:, k), 2, size(nodes))
+      mean_gap = -dot_product(points%normal(:, k), matmul(from, along) + &
+         [dot_product(across, from(2, :)), -dot_product(across, from(1, :))])
+   end function mean_gap
 
    !> How far the first and the last contact point lie from the ends of the master, along the
    !> slave, 0 where they lie beyond it; and whether the faces end at different places, as a punch

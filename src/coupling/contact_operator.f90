@@ -12,7 +12,7 @@ module contact_operator
    use contact_heat, only: changes_by_temperature, jump_derivatives_type, settle_conductance, &
       take_temperatures, temperature_jumps
    use contact_points, only: contact_points_type
-   use contact_system, only: contact_open, contact_slip, contact_state_type
+   use contact_system, only: contact_open, contact_state_type
    use contact_tractions, only: pressures
    use contact_workspace, only: contact_workspace_type
    use dense, only: product_of
@@ -27,7 +27,7 @@ module contact_operator
    use text, only: to_text
    implicit none
    private
-   public :: contact_operator_pass, law_conductance, law_pressure, kept_contact, residual_floor, &
+   public :: contact_operator_pass, law_conductance, law_pressure, residual_floor, touches, &
       unstrained_forces, bar_forces, make_graph, openings, opening_derivative, opening_changes, &
       load_derivative
 
@@ -68,8 +68,8 @@ contains
       if (allocated(error)) return
       if (bodies%points%vary_with_temperature() .and. .not. settles) call take_temperatures( &
          bodies, heat, data, jump, workspace)
-      workspace%pass%image = conductance(workspace%pass%graph%law, state%contact_state /= &
-         contact_open, state%gap, law_pressure(bodies, state))
+      workspace%pass%image = conductance(workspace%pass%graph%law, touches(state%contact_state, &
+         state%gap), state%gap, law_pressure(bodies, state))
       call check_finite(workspace%pass%image, 'conductances', status_no_convergence, error)
    end subroutine contact_operator_pass
 
@@ -193,7 +193,7 @@ contains
 
       ! gfortran frees the components of an empty function's result within an elemental call.
       law = bodies%laws%conductance_at(bodies%points%means(temperature), jump)
-      omega = conductance(law, state%contact_state /= contact_open, state%gap, &
+      omega = conductance(law, touches(state%contact_state, state%gap), state%gap, &
          law_pressure(bodies, state))
    end function law_conductance
 
@@ -214,17 +214,14 @@ contains
       end do
    end function law_pressure
 
-   !> Contact state that a step without mechanics finds. Before any mechanics contact points without
-   !> a gap touch: they are closed and carry no pressure.
-   pure function kept_contact(state, has_mechanics) result(kept)
-      type(contact_state_type), intent(in) :: state  !! contact state of the last increment
-      logical, intent(in) :: has_mechanics           !! whether mechanics was solved before
-      type(contact_state_type) :: kept
+   !> Contact points that conduct by the closed law. Those without a gap touch and carry no
+   !> pressure: before any mechanics, and where nothing presses them.
+   elemental logical function touches(contact_state, gap)
+      integer, intent(in) :: contact_state
+      real(dp), intent(in) :: gap                    !! [length]
 
-      kept = state
-      if (has_mechanics) return
-      where (kept%gap <= 0.0_dp) kept%contact_state = contact_slip
-   end function kept_contact
+      touches = contact_state /= contact_open .or. gap <= 0.0_dp
+   end function touches
 
    !> Nodal forces of the stresses that the bodies have without strains: of temperatures, and the
    !> initial ones; and what the stiffness has beyond the bodies.

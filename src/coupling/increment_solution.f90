@@ -4,7 +4,7 @@ module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
    use contact_heat, only: settle_conductance, temperature_jumps
-   use contact_operator, only: contact_operator_pass, kept_contact, law_conductance, law_pressure, &
+   use contact_operator, only: contact_operator_pass, law_conductance, law_pressure, touches, &
       unstrained_forces
    use contact_system, only: balanced_load, contact_open, contact_slip, contact_state_type, &
       contact_system_type, least_drive
@@ -186,7 +186,7 @@ contains
       data%previous = previous%contact
       call adapt_contact(bodies, data%previous)
       omega = law_conductance(bodies, previous%temperature, previous%jump, &
-         kept_contact(data%previous, previous%has_mechanics))
+         data%previous)
       is_new = bodies%laws%removed .or. previous%omega <= 0.0_dp
       data%equation = heat_equation_type(step%scheme, previous%sources, next%sources, &
          previous%temperature, bodies%points%weight, merge(omega, previous%omega, is_new), &
@@ -256,7 +256,7 @@ contains
 
       associate (before => data%before)
          next%omega = law_conductance(bodies, before%temperature, before%jump, &
-            kept_contact(data%previous, before%has_mechanics))
+            data%previous)
       end associate
       where (data%resting) next%omega = data%equation%omega_old
       data%equation%omega_old = next%omega
@@ -280,16 +280,16 @@ contains
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: omega(:)
       type(pass_type), intent(out) :: pass
-      type(contact_state_type) :: contact
 
-      contact = kept_contact(data%previous, data%before%has_mechanics)
       pass%omega = omega
       allocate (pass%graph(size(omega)))
       pass%graph%law = bodies%laws%conductance_at(bodies%points%means(data%before%temperature), &
          data%before%jump)
       where (law_jumps(bodies%laws%conductance)) pass%graph%width = 1.0_dp
-      pass%coordinate = -pass%graph%width - law_pressure(bodies, contact)
-      where (contact%contact_state == contact_open) pass%coordinate = max(contact%gap, 0.0_dp)
+      associate (contact => data%previous)
+         pass%coordinate = merge(-pass%graph%width - law_pressure(bodies, contact), contact%gap, &
+            touches(contact%contact_state, contact%gap))
+      end associate
       where (data%resting) pass%coordinate = pass%graph%coordinate_of_omega(omega, 0.0_dp)
    end subroutine begin_graphs
 

@@ -3,7 +3,7 @@ module increment_records
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use balances, only: balance_forces, balance_heat
    use conductance_laws, only: conductance, conductance_law_type
-   use contact_operator, only: kept_contact
+   use contact_operator, only: touches
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick
    use contact_tractions, only: in_contact, pressures, shears
@@ -122,12 +122,14 @@ contains
       type(contact_state_type) :: contact
       type(conductance_law_type) :: law
       type(contact_points_type) :: points
-      logical, allocatable :: closed(:), touches(:)
+      logical, allocatable :: closed(:), rests(:)
       integer :: first, k, last
 
       first = bodies%points%interface_start(i)
       last = bodies%points%interface_start(i + 1) - 1
-      contact = kept_contact(next%contact, next%has_mechanics)
+      contact = next%contact
+      where (touches(contact%contact_state, contact%gap) .and. .not. bodies%laws%removed) &
+         contact%contact_state = max(contact%contact_state, contact_slip)
       call bodies%view(i, points)
       record%contact_state = contact%contact_state(first:last)
       where (next%idle(first:last)) record%contact_state = merge(contact_slip, contact_open, &
@@ -137,8 +139,8 @@ contains
       closed = record%contact_state /= contact_open
       if (next%has_mechanics) closed = in_contact(points, closed, record%gap, &
          contact%force(first:last), bodies%equilibrium%contact%alone(first:last))
-      touches = closed .and. record%contact_state == contact_open
-      where (touches)
+      rests = closed .and. record%contact_state == contact_open
+      where (rests)
          record%contact_state = merge(contact_stick, contact_slip, &
             bodies%laws%friction(first:last)%coefficient > 0.0_dp)
          record%gap = 0.0_dp
@@ -155,8 +157,8 @@ contains
       end if
       if (.not. with_heat) return
       record%conductance = next%carrying(first:last)
-      do k = 1, size(touches)
-         if (.not. touches(k)) cycle
+      do k = 1, size(rests)
+         if (.not. rests(k)) cycle
          law = law_at(bodies%laws%conductance(first - 1 + k), face_temperatures_type( &
             0.5_dp*(record%slave_temperature(k) + record%master_temperature(k)), &
             next%jump(first - 1 + k)))

@@ -2,7 +2,7 @@
 module simulation
    use branch_steps, only: branch_type
    use clock, only: wall_seconds
-   use contact_operator, only: kept_contact, law_conductance
+   use contact_operator, only: law_conductance
    use contact_system, only: contact_open
    use controls, only: stage_part
    use discretisation_errors, only: recovery_type
@@ -213,7 +213,7 @@ contains
          allocate (state%resting(m), state%idle(m), source=.false.)
          state%jump = bodies%points%jumps(model%initial_temperature)
          state%omega = law_conductance(bodies, model%initial_temperature, state%jump, &
-            kept_contact(contact, has_mechanics=.false.))
+            contact)
          state%omega_before = state%omega
          state%carrying = state%omega
          allocate (state%displacement(2*n), state%sources%load(n), source=0.0_dp)
