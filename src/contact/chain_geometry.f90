@@ -6,7 +6,7 @@ module chain_geometry
    use shape_functions, only: side_shape, side_slope
    implicit none
    private
-   public :: arc_lengths, edge_lengths, tributary_areas, chain_tangents
+   public :: arc_lengths, edge_lengths, tributary_areas, chain_tangents, chord_depth
    public :: at_tips, length_between, side_positions, side_total, turns_back, two_pi
 
    !> Angle of a full turn [rad].
@@ -14,6 +14,8 @@ module chain_geometry
    !> Slope of a side at its end, over the chord, that counts as 0. The side turns away from such a
    !> slope within the square of this part of its length.
    real(dp), parameter :: no_slope = 1.0e-3_dp
+   !> Angle between sides from which on a line has a corner, 60 degrees [rad].
+   real(dp), parameter :: corner = two_pi/6
 
 contains
 
@@ -155,6 +157,40 @@ contains
 
       slope = matmul(x, side_slope(size(x, 2), 2*(node - 1.0_dp)/(size(x, 2) - 1) - 1))
    end function slope_at
+
+   !> How far sides at most lie from the smooth curve through their nodes. Sides without midside
+   !> nodes that turn by the angle a are chords of the curvature a/h, h^2/8 of it deep. A parabola
+   !> whose midside node stands out by s is s^3/h^2 from the circle through its three nodes.
+   pure real(dp) function chord_depth(x, side_nodes, closed) result(depth)
+      real(dp), intent(in) :: x(:, :)     !! (2, nodes) the line [length]
+      integer, intent(in) :: side_nodes   !! nodes of a side, 2 or 3
+      logical, intent(in) :: closed       !! whether it is a closed face
+      real(dp) :: along(2), before(2), turn
+      integer :: position(side_nodes), side
+
+      depth = 0.0_dp
+      before = 0.0_dp
+      if (closed .and. side_nodes == 2) before = x(:, 1) - x(:, size(x, 2))
+      do side = 1, side_total(size(x, 2), side_nodes, closed)
+         position = side_positions(side, side_nodes, size(x, 2))
+         along = x(:, position(side_nodes)) - x(:, position(1))
+         if (side_nodes == 3) then
+            depth = max(depth, abs(across(along, x(:, position(2)) - x(:, position(1))))**3/ &
+               norm2(along)**5)
+            cycle
+         end if
+         turn = abs(atan2(across(before, along), dot_product(before, along)))
+         if (turn < corner .and. norm2(before) > 0.0_dp) depth = max(depth, &
+            turn*max(norm2(before), norm2(along))**2/(4*(norm2(before) + norm2(along))))
+         before = along
+      end do
+   contains
+      pure real(dp) function across(one, other)
+         real(dp), intent(in) :: one(2), other(2)
+
+         across = one(1)*other(2) - one(2)*other(1)
+      end function across
+   end function chord_depth
 
    !> Unit tangents at the nodes along the line; at a shared corner the direction midway.
    pure function chain_tangents(x, side_nodes, closed) result(tangent)

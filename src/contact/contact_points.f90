@@ -66,6 +66,8 @@ module contact_points
       !> Whether one face ends at the first, at the last contact point and the other goes on
       logical :: at_corner(2) = .false.
       type(hat_geometry_type) :: mortar        !! of mortar points; empty for node pairs
+      !> How far chords of the sides leave apart faces that are one curve; 0 for node pairs [length]
+      real(dp) :: chord_depth = 0.0_dp
       logical :: about_axis = .false.          !! whether the model is axisymmetric
       !> Whether the master is a rigid surface: the master nodes are its reference node
       logical :: is_rigid = .false.

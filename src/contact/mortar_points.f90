@@ -2,7 +2,7 @@
 !> master lies opposite to. Gap, relative displacement and jump of temperature of a point are the
 !> means of slave less master with its hat function (mortar_segments).
 module mortar_points
-   use chain_geometry, only: arc_lengths, edge_lengths, side_positions
+   use chain_geometry, only: arc_lengths, chord_depth, edge_lengths, side_positions
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type, small_offset
    use mortar_segments, only: edge_segments_of, hats_of, integrate_segments, mortar_integrals_type
@@ -56,6 +56,7 @@ contains
       points%pairing = pairing_surfaces
       points%side_nodes = 2
       points%node_spacings = slave%side_nodes - 1
+      points%chord_depth = max(depth_of(slave), depth_of(master))
       points%corners = size(corner)
       points%open_corners = count(owner == 0)
       points%slave = corner(kept)
@@ -84,6 +85,12 @@ contains
             spread(points%position(:, c), 2, size(master%nodes)), dim=1), dim=1))
       end do
    contains
+      real(dp) function depth_of(chain)
+         type(surface_chain_type), intent(in) :: chain
+
+         depth_of = chord_depth(mesh%coordinates(:, chain%nodes), chain%side_nodes, chain%closed)
+      end function depth_of
+
       function line_of(chain) result(line)
          type(surface_chain_type), intent(in) :: chain
          type(face_line_type) :: line

@@ -5,13 +5,15 @@ module interface_reports
    use contact_points, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use contact_definitions, only: contact_definition_type
+   use contact_definitions, only: contact_definition_type, is_removed
    use element_kinds, only: axisymmetric, plane_stress
    use errors, only: error_type
    use interface_warnings, only: clearance_warning, distance_warning, offset_warning, &
-      overlap_warning, tie_words
+      overlap_warning, tie_words, unresolved_warning
    use kinds, only: dp
    use model, only: model_type
+   use steps, only: solves_heat, solves_mechanics
+   use temperature_laws, only: largest_jump, law_at
    use text, only: append, read_real, string_type, to_text, to_upper
    use verification, only: is_on_interface
    implicit none
@@ -128,10 +130,24 @@ contains
          call warn(clearance_warning(model%mesh, points))
       else
          call warn(overlap_warning(model%mesh, points))
+         if (begins_with_heat()) then
+            associate (law => model%interactions(model%contacts(i)%interaction)%law)
+               call warn(unresolved_warning(model%mesh, points, law_at(law, largest_jump(law))))
+            end associate
+         end if
       end if
       call warn(thickness_warning(model, i))
       call warn(plane_warning(model, model%contacts(i)))
    contains
+      !> Whether heat crosses the initial gaps of the interface before any mechanics.
+      pure logical function begins_with_heat()
+         begins_with_heat = .false.
+         if (size(model%steps) == 0) return
+         begins_with_heat = solves_heat(model%steps(1)%analysis) .and. &
+            .not. solves_mechanics(model%steps(1)%analysis) .and. &
+            .not. is_removed(model%steps(:1)%changes, i)
+      end function begins_with_heat
+
       subroutine warn(message)
          character(*), intent(in) :: message
 
