@@ -325,8 +325,8 @@ contains
       end associate
    end subroutine solve_end
 
-   !> Keeps temperature and stress of a state. Smooth stress takes long, so it is formed only in
-   !> the parts of some elements.
+   !> Keeps temperature and stress of a state, the latter where the step solves mechanics. Smooth
+   !> stress takes long, so it is formed only in the parts of some elements.
    subroutine keep_fields(self, state, also)
       type(divided_mesh_type), intent(inout) :: self
       type(solution_state_type), intent(in) :: state
@@ -337,7 +337,7 @@ contains
       allocate (self%fields)
       self%fields%temperature = state%temperature
       call self%run%recovery%prepare(self%model, parts_of(self, also))
-      if (state%has_mechanics) call self%run%recovery%recover_stress(self%model, &
+      if (allocated(state%stress_temperature)) call self%run%recovery%recover_stress(self%model, &
          reshape(state%displacement, [2, size(state%temperature)]), state%stress_temperature - &
          self%model%initial_temperature, self%fields%stress, estimate)
    end subroutine keep_fields

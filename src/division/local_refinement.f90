@@ -284,11 +284,11 @@ contains
       type(element_sides_type), intent(in) :: sides
       logical, intent(inout) :: chosen(:)
       logical, intent(inout) :: is_new          ! .true. if any was chosen
-      integer :: h
+      integer :: h, large
 
       do h = 1, hanging_count(mesh)
-         associate (large => sides%elements(1, sides%index_of(coarse_side(mesh, h))), &
-            small => fine_sides(mesh, h))
+         large = sides%elements(1, sides%index_of(coarse_side(mesh, h)))
+         associate (small => fine_sides(mesh, h))
             if (chosen(large)) cycle
             if (.not. (chosen(sides%elements(1, sides%index_of(small(:, 1)))) .or. &
                chosen(sides%elements(1, sides%index_of(small(:, 2)))))) cycle
@@ -421,7 +421,7 @@ contains
       integer :: k
 
       least = 0.0_dp
-      high = maxval(values)
+      high = max(0.0_dp, maxval(values))          ! -huge of none
       do k = 1, halvings
          middle = 0.5_dp*(least + high)
          if (sum(values, mask=values >= middle) >= part*sum(values)) then

@@ -24,7 +24,7 @@ contains
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
       real(dp) :: b(2, element_node_count(kind)), flux(2, element_node_count(kind))
       real(dp) :: jacobian, radius, factor
-      integer :: g, q
+      integer :: g, i, q
 
       call integration_rule(kind, points, weights)
       k = 0.0_dp
@@ -34,7 +34,8 @@ contains
          if (plane == axisymmetric) radius = dot_product(element_shape(kind, points(:, g)), &
             coordinates(1, :))
          factor = weights(g)*jacobian*area_factor(radius, thickness, plane == axisymmetric)
-         flux = factor*matmul(conductivity(:, :, min(g, size(conductivity, 3))), b)
+         i = min(g, size(conductivity, 3))
+         flux = factor*matmul(conductivity(:, :, i), b)
          do q = 1, size(k, 2)
             k(:, q) = k(:, q) + b(1, :)*flux(1, q) + b(2, :)*flux(2, q)
          end do

@@ -73,7 +73,7 @@ contains
       real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
       real(dp) :: psi(element_node_count(kind)), force(2*element_node_count(kind))
-      integer :: g, q
+      integer :: g, i, q
 
       call integration_rule(kind, points, weights)
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
@@ -81,7 +81,8 @@ contains
       load = 0.0_dp
       do g = 1, size(volumes)
          psi = element_shape(kind, points(:, g))
-         force = volumes(g)*matmul(beta(:, min(g, size(beta, 2))), b(:, g, :))
+         i = min(g, size(beta, 2))
+         force = volumes(g)*matmul(beta(:, i), b(:, g, :))
          do q = 1, size(psi)
             load(:, q) = load(:, q) + force*psi(q)
          end do

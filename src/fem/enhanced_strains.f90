@@ -58,7 +58,7 @@ contains
       real(dp), intent(in) :: volumes(:)          !! (4) that the points stand for [length^3]
       real(dp), intent(inout) :: stress(:, :)     !! (4, points) [stress]
       real(dp) :: modes(4, 4, most_modes), forces(4, 4, most_modes), a(most_modes, 1)
-      integer :: g, k, n
+      integer :: g, i, k, n
 
       call find_modes(coordinates, points, is_axisymmetric, modes, n)
       call stress_modes(modes, e, volumes, forces)
@@ -70,8 +70,8 @@ contains
       end do
       call find_amplitudes(modes, forces, n, a)
       do g = 1, 4
-         stress(:, g) = stress(:, g) - matmul(e(:, :, min(g, size(e, 3))), &
-            matmul(modes(:, g, :n), a(:n, 1)))
+         i = min(g, size(e, 3))
+         stress(:, g) = stress(:, g) - matmul(e(:, :, i), matmul(modes(:, g, :n), a(:n, 1)))
       end do
    end subroutine release_stresses
 
@@ -119,10 +119,11 @@ contains
    pure subroutine stress_modes(modes, e, volumes, forces)
       real(dp), intent(in) :: modes(:, :, :), e(:, :, :), volumes(:)
       real(dp), intent(out) :: forces(:, :, :)
-      integer :: g
+      integer :: g, i
 
       do g = 1, 4
-         forces(:, g, :) = volumes(g)*matmul(e(:, :, min(g, size(e, 3))), modes(:, g, :))
+         i = min(g, size(e, 3))
+         forces(:, g, :) = volumes(g)*matmul(e(:, :, i), modes(:, g, :))
       end do
    end subroutine stress_modes
 

@@ -50,7 +50,7 @@ contains
       type(sparse_matrix_type) :: load                       !! (2 nodes, nodes)
       type(element_assembly_type) :: assembly
       real(dp) :: beta(4, most_points), e(4, 4, most_points)
-      integer :: element, g, n
+      integer :: element, g, i, n
 
       call assembly%begin(mesh, 2, 1)
       do element = 1, size(mesh%element_number)
@@ -59,10 +59,9 @@ contains
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
             n = merge(1, point_count(kind), points%one_material(element))
             do g = 1, n
-               associate (there => points%materials(points%at_point(element, g)))
-                  e(:, :, g) = there%elasticity
-                  beta(:, g) = there%thermal_modulus
-               end associate
+               i = points%at_point(element, g)
+               e(:, :, g) = points%materials(i)%elasticity
+               beta(:, g) = points%materials(i)%thermal_modulus
             end do
             call assembly%add(nodes, element_thermal_load(kind, plane, &
                mesh%coordinates(:, nodes), e(:, :, :n), beta(:, :n), section%thickness))

@@ -67,3 +67,48 @@ def late_selectors(text):
     return [(number, name) for number, statement in listed if ASSOCIATE.match(statement)
             for name in re.findall(r"(?<![%\w])(\w+)\s*\(", statement.lower())
             if defined.get(name, 0) > number]
+
+
+def bound_procedures(texts):
+    """Names of the procedures bound to each type, those of its parents included."""
+    own, parents = {}, {}
+    for text in texts:
+        name = ""
+        for _, statement in statements(text.lower()):
+            if match := re.match(r"\s*type\b(?!\s*\()(.*)::\s*(\w+)", statement):
+                name = match[2]
+                own[name] = set()
+                parents[name] = next(iter(re.findall(r"extends\s*\((\w+)\)", match[1])), None)
+            elif name and (match := re.match(r"\s*procedure\b.*::(.*)", statement)):
+                own[name] |= set(re.findall(r"(?:^|,)\s*(\w+)", match[1]))
+            elif re.match(r"\s*end\s*type\b", statement):
+                name = ""
+
+    def of(name):
+        return own[name] | of(parents[name]) if name in own else set()
+
+    return {name: of(name) for name in own}
+
+
+def eager_selectors(text, bound):
+    """Find calls in subscripts of selectors of ASSOCIATE that gfortran 14 resolves too early: of a
+    procedure bound to a CLASS variable, or of a function of the file for an argument of another:
+    (line, name)."""
+    found, classes, functions = [], {}, set()
+    for number, statement in statements(text.lower()):
+        if match := FUNCTION.match(statement):
+            functions.add(match[1])
+        if re.match(r"[\w\s(),=*]*\b(?:function|subroutine)\s+\w+", statement):
+            classes = {}
+        if match := re.match(r"\s*class\s*\((\w+)\).*?::(.*)", statement):
+            classes |= dict.fromkeys(re.findall(r"\w+", match[2]), match[1])
+        if not ASSOCIATE.match(statement):
+            continue
+        for match in re.finditer(r"(?<![%\w])(\w+)(?:%(\w+))?\s*\(", statement):
+            before = statement[:match.start()]
+            depth = before.count("(") - before.count(")")
+            if match[2] in bound.get(classes.get(match[1]), ()) and depth > 1:
+                found.append((number, match[2]))
+            if not match[2] and match[1] in functions and depth > 2:
+                found.append((number, match[1]))
+    return found

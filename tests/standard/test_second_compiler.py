@@ -14,8 +14,10 @@ from pathlib import Path
 import pytest
 from sources import (
     ROOT,
+    bound_procedures,
     constant_selectors,
     constant_tables,
+    eager_selectors,
     in_order,
     late_selectors,
     program_sources,
@@ -116,6 +118,15 @@ def test_no_associate_statement_calls_a_function_defined_further_down():
     assert not found
 
 
+def test_no_subscript_of_an_associate_statement_calls_what_gfortran_14_resolves_too_early():
+    bound = bound_procedures(file.read_text() for file in program_sources())
+    assert "at_point" in bound["point_materials_type"]
+    found = {str(file): early for folder in ("src", "tests/unit")
+             for file in (ROOT / folder).rglob("*.*") if file.suffix in (".f90", ".pf")
+             if (early := eager_selectors(file.read_text(), bound))}
+    assert not found
+
+
 def test_no_associate_statement_takes_an_element_of_a_constant_table():
     # gfortran 12 compares components of the first element in place of those of the one asked for.
     tables = constant_tables(file.read_text() for file in program_sources())
@@ -146,3 +157,31 @@ contains
    end function late
 """
     assert late_selectors("function early(i)\nend function early\n" + text) == [(4, "late")]
+
+
+def test_calls_that_gfortran_14_resolves_too_early_are_found_in_subscripts_alone():
+    """gfortran 14 rejects the selectors of lines 18 and 19 and accepts those of line 20."""
+    text = """
+   type, extends(parent) :: points_type
+      integer :: first(2)
+   contains
+      procedure :: place
+   end type points_type
+   type :: parent
+   contains
+      procedure, private :: one, at => other
+   end type parent
+contains
+   pure function ends(i) result(k)
+   end function ends
+   subroutine show(points, sides, table)
+      class(points_type), intent(in) :: points
+      type(points_type), intent(in) :: sides
+      integer, intent(in) :: table(:)
+      associate (a => table(points%place(1)), b => table(points%at(1)))
+      associate (c => table(1, sides%place(ends(1))))
+      associate (d => points%at(1), e => table(sides%place(1)), f => table(points%first(1)), &
+         g => sides%place(ends(1)), h => table(ends(1)))
+"""
+    assert eager_selectors(text, bound_procedures([text])) == [
+        (18, "place"), (18, "at"), (19, "ends")]
