@@ -3,7 +3,7 @@
 
 option(THERCON_WARNINGS "Compiler warnings; each stops the build" OFF)
 option(THERCON_CHECKS "Run-time checks; floating-point exceptions stop the program" OFF)
-option(THERCON_SANITIZERS "Address, leak and undefined-behaviour sanitizers" OFF)
+set(THERCON_SANITIZERS "" CACHE STRING "Sanitizers, as for -fsanitize; address finds leaks, too")
 option(THERCON_COVERAGE "Executed lines are counted for gcov" OFF)
 
 if(NOT CMAKE_BUILD_TYPE)
@@ -45,9 +45,9 @@ if(THERCON_SANITIZERS)
    # gfortran 12 works out the size of an array that is not allocated when its holder is copied:
    # harmless, but an overflow.
    target_compile_options(thercon_checks INTERFACE
-      -fsanitize=address,undefined -fno-sanitize=signed-integer-overflow -fno-sanitize-recover=all
+      -fsanitize=${THERCON_SANITIZERS} -fno-sanitize=signed-integer-overflow -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
-   target_link_options(thercon_checks INTERFACE -fsanitize=address,undefined)
+   target_link_options(thercon_checks INTERFACE -fsanitize=${THERCON_SANITIZERS})
 endif()
 if(THERCON_COVERAGE)
    # Programs that run side by side count in the same files.

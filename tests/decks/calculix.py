@@ -14,6 +14,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 from blocks import write
 from deck_runs import DECKS, PATIENCE, run
 
@@ -40,7 +41,8 @@ def calculix(deck):
 
     The sum of RF1 over a set is a quantity of its own, RF1@SET, with one row.
     """
-    assert shutil.which("ccx"), "needs CalculiX: apt-get install calculix-ccx"
+    if not shutil.which("ccx"):
+        pytest.skip("needs CalculiX (calculix-ccx)")
     folder = deck.parent / "ccx"   # both programs write .sta and .cvg
     shutil.copytree(deck.parent, folder, dirs_exist_ok=True, ignore=lambda *_: ["ccx"])
     process = subprocess.run(["ccx", deck.stem], cwd=folder, capture_output=True, text=True,

@@ -2,9 +2,12 @@
 
 import base64
 import json
+import shutil
 import subprocess
 import urllib.request
 from contextlib import suppress
+
+import pytest
 
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # fixed by the standard
 ARGUMENTS = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
@@ -16,6 +19,8 @@ class Browser:
     """One page at a time; use it in a `with` statement."""
 
     def __init__(self, size=(1280, 900)):
+        if not shutil.which("chromedriver"):
+            pytest.skip("needs Chromium and chromedriver (chromium-driver)")
         self.process = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE,
                                         stderr=subprocess.STDOUT, text=True)
         line = next(line for line in self.process.stdout if "started successfully on port" in line)

@@ -112,3 +112,19 @@ def eager_selectors(text, bound):
             if not match[2] and match[1] in functions and depth > 2:
                 found.append((number, match[1]))
     return found
+
+
+def checked_subscripts(text):
+    """Lines of statements in which an argument of MATMUL has a subscript that calls MIN or MAX."""
+    found = set()
+    for number, statement in statements(text.lower()):
+        for match in re.finditer(r"\bmatmul\s*\(", statement):
+            depth, name = 1, ""
+            for word in re.findall(r"\w+|\S", statement[match.end():]):
+                depth += (word == "(") - (word == ")")
+                if depth == 0:
+                    break
+                if word == "(" and name in ("min", "max") and depth > 2:
+                    found.add(number)
+                name = word
+    return sorted(found)

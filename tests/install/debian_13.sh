@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# Makes a base system of Debian 13 in a folder, and in it runs `./setup.sh cylinder`, the unit tests and
+# some decks: what a new machine does. The folder is removed at the end.
+#
+# usage: debian_13.sh TREE FOLDER
+#
+# Exit status 77: it cannot run here, or the packages are out of reach.
+# shellcheck disable=SC2016 # strings that apt-get and the inner shell expand
+set -euo pipefail
+
+tree=$1
+base=$2
+
+skip() {
+   printf 'skipped: %s\n' "$*"
+   exit 77
+}
+
+# Mounts are those of this process alone: none is left behind, however it ends.
+if [[ -z ${mounts_are_own-} ]]; then
+   ((EUID == 0)) || skip 'needs root'
+   command -v debootstrap >/dev/null || skip 'needs debootstrap'
+   [[ -e /usr/share/debootstrap/scripts/trixie ]] || skip 'needs a debootstrap that knows Debian 13'
+   unshare --mount mount -t proc proc /proc 2>/dev/null || skip 'file systems cannot be mounted here'
+   exec env mounts_are_own=1 unshare --mount "$BASH" "$0" "$@"
+fi
+
+# Runs a command in the base system, in the copy of the source tree there.
+inside() {
+   env --unset TMPDIR HOME=/root LC_ALL=C.UTF-8 CMAKE_BUILD_PARALLEL_LEVEL=1 \
+      PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+      chroot "$base" /bin/bash -c 'cd /thercon && exec "$@"' bash "$@"
+}
+
+# The mirror and the settings of the network are those of this machine.
+make_base() {
+   local mirror file
+   mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Label: Debian' | head -n 1)
+   debootstrap --variant=minbase trixie "$base" ${mirror:+"$mirror"} >"$base.log" 2>&1 ||
+      skip "debootstrap: $(tail -n 1 "$base.log")"
+   mount -t proc proc "$base/proc"
+   apt-config dump | grep '^Acquire::' >"$base/etc/apt/apt.conf.d/host"
+   printf 'force-unsafe-io\n' >"$base/etc/dpkg/dpkg.cfg.d/host"
+   for file in /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do
+      [[ ! -e $file ]] || install -D --mode 644 "$file" "$base$file"
+   done
+   mkdir "$base/thercon"
+   tar --directory "$tree" --exclude ./build --exclude ./.git --create . |
+      tar --directory "$base/thercon" --extract --no-same-owner
+}
+
+set_up() {
+   local status=0
+   inside ./setup.sh cylinder >"$base.log" 2>&1 || status=$?
+   cat "$base.log"
+   ((status != 0)) || return 0
+   if grep -q 'could not install' "$base.log" &&
+      grep -qE 'Failed to fetch|Retrying|Temporary failure' "$base.log"; then
+      skip 'packages are out of reach'
+   fi
+   return "$status"
+}
+
+TIMEFORMAT='   %R s, of processors %U + %S s'
+rm -rf --one-file-system "$base"
+trap 'umount "$base/proc" 2>/dev/null || true; rm -rf --one-file-system "$base" "$base.log"' EXIT
+printf 'base system of Debian 13\n'
+time make_base
+printf './setup.sh cylinder\n'
+time set_up
+printf 'unit tests\n'
+time inside cmake --build --preset release -- --quiet
+time inside ctest --preset release --label-regex '^unit$' --output-on-failure
+printf 'decks\n'
+time inside bash -c 'build/release/thercon run --quiet --out build/decks \
+   input/examples/*.inp input/rods/*.inp input/hertz/*.inp tests/decks/checked/*.inp'
