@@ -2,6 +2,7 @@
 !> its faces match, mortar points (mortar_points) where they do not, or what the deck asks for. The
 !> points of a *TIE, whose relative displacements and jumps of temperature are zero, are made alike.
 module contact_pairs
+   use, intrinsic :: iso_fortran_env, only: real32
    use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, tributary_areas
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
@@ -27,6 +28,9 @@ module contact_pairs
    !> Part of the largest coordinate within which faces touch. Coordinates written with 15 digits,
    !> the most that every double keeps, err by 5e-15 of it on either face.
    real(dp), parameter :: touching = 64*epsilon(1.0_dp)
+   !> What coordinates in single precision leave between two faces, of the largest coordinate: half
+   !> a unit in the last place along both axes of both.
+   real(dp), parameter :: single = 2*epsilon(1.0_real32)
    real(dp), parameter :: weightless = 0.01_dp   !! part of its neighbour's weight below which the
    !! corner on the axis has none
    !> Angle of a body from which on its outline goes on at a node: it turns away by 45 degrees.
@@ -172,6 +176,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(surface_chain_type) :: slave, master
       logical :: in_set(size(mesh%node_number))
+      integer :: k
 
       associate (slave_surface => mesh%surfaces(definition%slave), &
          master_surface => mesh%surfaces(definition%master))
@@ -190,9 +195,16 @@ contains
             call check_shared(mesh, definition, slave, master, error)
             if (allocated(error)) return
             call find_points(mesh, definition, slave, master, thickness, points, error)
+            if (allocated(error)) return
+            associate (ends => master%nodes([1, size(master%nodes)]))
+               if (.not. master%closed) call measure_ends(mesh%coordinates(:, ends), points)
+               where ([(body_angle(mesh, ends(k)) > going_on, k=1, 2)]) &
+                  points%to_end = huge(1.0_dp)
+            end associate
          end if
          if (allocated(error)) return
       end associate
+      points%finest_gap = max(points%finest_gap, single*maxval(abs(mesh%coordinates)))
       where (abs(points%initial_gap) <= touching*maxval(abs(mesh%coordinates))) &
          points%initial_gap = 0.0_dp
       if (definition%adjusts .and. definition%adjusted_set == 0) then
@@ -219,10 +231,12 @@ contains
       type(contact_definition_type) :: asked
       type(mesh_type) :: drawn
       type(surface_chain_type) :: master
+      real(dp) :: ends(2, 2)
 
       drawn = mesh
       call sampled_line(drawing, slave, drawn, master)
       call aligned_chains(drawn, slave, master)
+      ends = drawn%coordinates(:, master%nodes([1, size(master%nodes)]))
       call check_facing(mesh, definition, drawing, slave, error)
       if (allocated(error)) return
       if (definition%pairing == pairing_nodes) then
@@ -238,9 +252,21 @@ contains
          call find_points(drawn, asked, slave, master, thickness, points, error)
          if (allocated(error)) return
       end if
+      if (.not. drawing%closed) call measure_ends(ends, points)
       if (.not. slave%closed) points%at_corner = ends_alone(mesh, drawing, slave, points)
       call follow_reference(drawing, size(mesh%node_number), drawn%coordinates, points)
    end subroutine set_rigid_points
+
+   !> How far the first and the last contact point lie from the ends of an open master.
+   pure subroutine measure_ends(ends, points)
+      real(dp), intent(in) :: ends(2, 2)                      ! the first, the last one [length]
+      type(contact_points_type), intent(inout) :: points
+
+      associate (last => [1, size(points%slave)])
+         points%to_end = max(0.0_dp, [1, -1]*sum(points%tangent(:, last)* &
+            (points%position(:, last) - ends), dim=1))
+      end associate
+   end subroutine measure_ends
 
    !> Whether one of the slave's body and the drawing ends at the first, at the last node of the
    !> slave, and the other goes on.

@@ -9,7 +9,7 @@ module contact_points
    implicit none
    private
    public :: contact_row_type, contact_points_type, never_approached, no_radius, on_axis, &
-      past_end, small_offset
+      small_offset
 
    real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
    real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
@@ -60,14 +60,15 @@ module contact_points
       integer :: node_spacings = 1             !! of the slave, from a contact point to the next
       integer :: corners = 0                   !! corners of the slave; 0 for node pairs
       integer :: open_corners = 0              !! those without a master opposite
-      !> How far the first contact point lies from the master's first end and the last one from its
-      !> last end, along the slave; at least 0 [length]
+      !> How far the first contact point lies from where the master's body ends, and the last one,
+      !> along the slave, at least 0; large where the body goes on [length]
       real(dp) :: to_end(2) = huge(1.0_dp)
       !> Whether one face ends at the first, at the last contact point and the other goes on
       logical :: at_corner(2) = .false.
       type(hat_geometry_type) :: mortar        !! of mortar points; empty for node pairs
-      !> How far chords of the sides leave apart faces that are one curve; 0 for node pairs [length]
-      real(dp) :: chord_depth = 0.0_dp
+      !> Gap that the mesh cannot tell from none: that of mortar points between chords of one curve,
+      !> or of coordinates of single precision, as those of 7 to 9 digits [length]
+      real(dp) :: finest_gap = 0.0_dp
       logical :: about_axis = .false.          !! whether the model is axisymmetric
       !> Whether the master is a rigid surface: the master nodes are its reference node
       logical :: is_rigid = .false.
@@ -81,18 +82,6 @@ module contact_points
    real(dp), parameter :: small_offset = 0.05_dp
 
 contains
-
-   !> How far a movement along the face takes the first or the last contact point past the end of
-   !> the master, less what is small for the mesh; not positive where it stays.
-   pure real(dp) function past_end(points, last, movement)
-      type(contact_points_type), intent(in) :: points  !! contact points of one interface
-      logical, intent(in) :: last                      !! the last one or the first one
-      real(dp), intent(in) :: movement                 !! of the slave along its tangent [length]
-
-      past_end = -movement - points%to_end(1) - small_offset*points%edge(1)
-      if (last) past_end = movement - points%to_end(2) - &
-         small_offset*points%edge(size(points%edge))
-   end function past_end
 
    !> Whether a contact point neither closed nor came nearer than it was.
    elemental function never_approached(initial_gap, smallest_gap) result(never)

@@ -1,7 +1,6 @@
 !> Contact points that can be solved, but perhaps not as meant: nodes beside each other, bodies
 !> inside each other; and what ties hold.
 module interface_warnings
-   use, intrinsic :: iso_fortran_env, only: real32
    use conductance_laws, only: conductance, conductance_law_type
    use contact_definitions, only: pairing_nodes, tie_definition_type
    use contact_points, only: contact_points_type, small_offset
@@ -20,9 +19,6 @@ module interface_warnings
    !> fits are far smaller, lengths of another unit far larger. A part of an element's side would
    !> depend on how fine the mesh is.
    real(dp), parameter :: far_off = 0.25_dp
-   !> What coordinates in single precision, as of 7 to 9 digits, leave between two faces, of the
-   !> largest coordinate: half a unit in the last place along both axes of both.
-   real(dp), parameter :: single = 2*epsilon(1.0_real32)
    real(dp), parameter :: noticeable = 0.01_dp   !! part of a conductance
 
 contains
@@ -112,28 +108,25 @@ contains
       type(contact_points_type), intent(in) :: points     !! contact points of one interface
       type(conductance_law_type), intent(in) :: law       !! at some temperature
       character(:), allocatable :: warning                !! empty where there is none
-      character(:), allocatable :: source
-      real(dp) :: closed, finest
+      real(dp) :: closed
       logical :: lost(size(points%edge))
       integer :: k
 
       warning = ''
-      finest = max(points%chord_depth, single*maxval(abs(mesh%coordinates)))
-      source = 'chords of the mesh leave up to '//few_digits(finest)//' between faces on one curve'
-      if (points%chord_depth < finest) source = 'coordinates in single precision leave up to '// &
-         few_digits(finest)//' between faces that touch'
       closed = conductance(law, .true., 0.0_dp, 0.0_dp)
       do k = 1, size(lost)
-         lost(k) = points%initial_gap(k) > 0.0_dp .and. points%initial_gap(k) <= finest .and. &
-            conductance(law, .false., points%initial_gap(k), 0.0_dp) < (1 - noticeable)*closed
+         lost(k) = points%initial_gap(k) > 0.0_dp .and. points%initial_gap(k) <= points%finest_gap &
+            .and. conductance(law, .false., points%initial_gap(k), 0.0_dp) < &
+            (1 - noticeable)*closed
       end do
       if (.not. any(lost)) return
       k = maxloc(points%initial_gap, mask=lost, dim=1)
       associate (gap => points%initial_gap(k))
          warning = 'contact pair '//points%name//': '//to_text(count(lost))//' of '// &
             to_text(size(lost))//' contact points are open by up to '//to_text(gap)//', at '// &
-            nodes_of(mesh, points, k)//'; '//source//'. Without mechanics these gaps stay '// &
-            'open and conduct '//percent(conductance(law, .false., gap, 0.0_dp)/closed)// &
+            nodes_of(mesh, points, k)//'. Chords of curved faces or decimals of coordinates '// &
+            'leave up to '//few_digits(points%finest_gap)//' between faces that touch; without '// &
+            'mechanics these gaps stay open and conduct '//percent(conductance(law, .false., gap, 0.0_dp)/closed)// &
             ' of what touching faces conduct. If the faces touch, put ADJUST='// &
             few_digits(1.1_dp*gap)//' on *CONTACT PAIR, or give both the same divisions'
       end associate

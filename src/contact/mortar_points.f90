@@ -56,7 +56,7 @@ contains
       points%pairing = pairing_surfaces
       points%side_nodes = 2
       points%node_spacings = slave%side_nodes - 1
-      points%chord_depth = max(depth_of(slave), depth_of(master))
+      points%finest_gap = max(depth_of(slave), depth_of(master))
       points%corners = size(corner)
       points%open_corners = count(owner == 0)
       points%slave = corner(kept)
@@ -115,9 +115,7 @@ contains
          [dot_product(across, from(2, :)), -dot_product(across, from(1, :))])
    end function mean_gap
 
-   !> How far the first and the last contact point lie from the ends of the master, along the
-   !> slave, 0 where they lie beyond it; and whether the faces end at different places, as a punch
-   !> on a wider body.
+   !> Whether the faces end at different places, as a punch on a wider body.
    subroutine set_ends(coordinates, slave, master, points)
       real(dp), intent(in) :: coordinates(:, :)         ! (2, nodes)
       type(surface_chain_type), intent(in) :: slave, master
@@ -127,8 +125,6 @@ contains
       associate (last => [1, size(points%slave)], s => slave%nodes, m => master%nodes)
          tangent = points%tangent(:, last)
          ends = coordinates(:, m([1, size(m)]))
-         if (.not. master%closed) points%to_end = max(0.0_dp, [1, -1]*sum(tangent* &
-            (points%position(:, last) - ends), dim=1))
          if (.not. slave%closed) points%at_corner = master%closed .or. abs(sum(tangent* &
             (coordinates(:, s([1, size(s)])) - ends), dim=1)) > small_offset*points%edge(last)
       end associate

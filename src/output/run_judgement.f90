@@ -1,7 +1,7 @@
 !> Warnings that only a whole run can give: contact that never closes, no load that acts, large
 !> strains and rotations, and the warnings of its increments by kinds.
 module run_judgement
-   use contact_points, only: contact_points_type, past_end
+   use contact_points, only: contact_points_type
    use contact_system, only: contact_open
    use kinds, only: dp
    use mesh, only: extent_of
@@ -45,8 +45,6 @@ module run_judgement
       logical :: warms = .false.                   !! whether a temperature left its initial value
       logical, allocatable :: closes(:)           !! (interfaces) whether a contact point was closed
       real(dp), allocatable :: smallest_gap(:)     !! (interfaces) of all increments [length]
-      !> (first or last contact point, interfaces) farthest past the master's end so far [length]
-      real(dp), allocatable :: past(:, :)
       real(dp) :: largest(2) = 0.0_dp              !! strain and rotation so far [-], [radian]
       integer :: element(2) = 0                    !! elements that have them
       integer :: increment(2) = 0                  !! increments that have them
@@ -68,11 +66,10 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       real(dp) :: largest(2)
-      integer :: element(2), i, k, last
+      integer :: element(2), i
 
       if (.not. allocated(self%closes)) then
          allocate (self%closes(size(interfaces)), source=.false.)
-         allocate (self%past(2, size(interfaces)), source=0.0_dp)
          ! The initial gap is that of no increment: bodies that touch may part at once.
          allocate (self%smallest_gap(size(interfaces)), source=huge(1.0_dp))
       end if
@@ -87,15 +84,6 @@ contains
             self%closes(i) = self%closes(i) .or. any(record%contacts(i)%contact_state /= &
                contact_open)
             self%smallest_gap(i) = min(self%smallest_gap(i), minval(record%contacts(i)%gap))
-            associate (contact => record%contacts(i))
-               if (.not. allocated(contact%movement)) cycle
-               do last = 1, 2
-                  k = merge(1, size(contact%movement), last == 1)
-                  if (contact%contact_state(k) /= contact_open) self%past(last, i) = &
-                     max(self%past(last, i), past_end(interfaces(i), last == 2, &
-                     contact%movement(k)))
-               end do
-            end associate
          end do
          if (.not. allocated(fields%stress)) return
          call largest_deformation(model%mesh, fields%displacement, largest, element)
@@ -114,21 +102,18 @@ contains
       type(state_table_type), intent(inout) :: table
       integer, allocatable :: places(:)
       logical, allocatable :: seen(:)
-      real(dp), allocatable :: largest(:), past(:)
+      real(dp), allocatable :: largest(:)
 
       seen = [self%moves, self%warms]
       places = [self%element, self%increment]
       largest = self%largest
-      if (allocated(self%past)) past = [self%past]
       call logicals(table, 'seen', seen)
       call logicals(table, 'closes', self%closes)
       call reals(table, 'smallest_gaps', self%smallest_gap)
-      call reals(table, 'past_ends', past)
       call reals(table, 'largest_deformation', largest)
       call integers(table, 'deformed_most', places)
       self%moves = seen(1)
       self%warms = seen(2)
-      if (allocated(past)) self%past = reshape(past, [2, size(past)/2])
       self%largest = largest
       self%element = places(:2)
       self%increment = places(3:)
@@ -148,7 +133,7 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable :: lines(:)          !! one a warning
       real(dp) :: limit
-      integer :: i, last
+      integer :: i
 
       lines = self%repeated%lines()
       if (.not. allocated(self%closes)) return
@@ -161,18 +146,6 @@ contains
             to_text(model%mesh%element_number(self%element(i)))//' is '// &
             amount(i, self%largest(i))//'; the theory of small strains and displacements is '// &
             'not valid above '//amount(i, limit))
-      end do
-      do i = 1, size(interfaces)
-         associate (points => interfaces(i))
-            do last = 1, 2
-               if (self%past(last, i) <= 0.0_dp) cycle
-               call append(lines, 'contact pair '//points%name//': slave node '// &
-                  to_text(model%mesh%node_number(points%slave(merge(1, &
-                  size(points%slave), last == 1))))//' slides past the end of the master '// &
-                  'surface by more than a twentieth of its side; contact is solved as if it '// &
-                  'stayed opposite: extend the master, or exchange slave and master')
-            end do
-         end associate
       end do
       if (self%ended_early) return
       if (any(solves_mechanics(model%steps%analysis))) then

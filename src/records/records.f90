@@ -3,6 +3,7 @@
 module records
    use kinds, only: dp
    use field_recovery, only: error_record_type
+   use sliding_limits, only: slide_type
    use solution_report, only: solution_report_type, work_record_type
    use state_tables, only: state_table_type
    use zone_edges, only: edges_kept
@@ -45,6 +46,7 @@ module records
       !> along the tangent, of the slave against the master since the start [length]
       real(dp), allocatable :: movement(:)
       real(dp), allocatable :: smallest_gap(:)         !! smallest gamma so far [length]
+      type(slide_type) :: slide                        !! beyond what its contact points allow
       ! The next four are unallocated without heat.
       real(dp), allocatable :: conductance(:)          !! omega [power/(length^2 temperature)]
       real(dp), allocatable :: heat_flux(:)            !! slave to master [power/length^2]

@@ -24,6 +24,7 @@ module increment_records
    use quadrature, only: point_count
    use records, only: contact_record_type, element_points_record_type, increment_record_type
    use reduced_bodies, only: reduced_bodies_type
+   use sliding_limits, only: worst_slide
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: face_temperatures_type, law_at
@@ -79,6 +80,15 @@ contains
                record%stress_error)
          end if
          call warn_of_floor(step, record)
+         do i = 1, size(record%contacts)
+            associate (points => bodies%interfaces(i), slide => record%contacts(i)%slide)
+               if (slide%point == 0) cycle
+               call record%warn('contact pair '//points%name//' slides by ', slide%slip, &
+                  ', too far for contact points of the undeformed mesh: slave node '//to_text( &
+                  model%mesh%node_number(bodies%points%slave(bodies%points%interface_start(i) - &
+                  1 + slide%point)))//' '//slide%words, slide%excess)
+            end associate
+         end do
          if (solves_heat(step%analysis)) then
             if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
                record%fields%heat_flux, record%heat_flux_error)
@@ -149,6 +159,7 @@ contains
          contact%force(first:last), contact%shear_force(first:last), record)
       record%movement = contact%tangential(first:last)
       record%slip = record%movement - contact%slip_origin(first:last)
+      record%slide = worst_slide(points, closed, record%movement)
       if (allocated(bodies%thermal%matrix%value)) then
          allocate (record%slave_temperature(size(closed)), record%master_temperature( &
             size(closed)), source=0.0_dp)

@@ -1,0 +1,130 @@
+!> How far faces may slide on each other with contact points of the undeformed mesh.
+!>
+!> A contact point compares two points that lie opposite each other in the mesh. Where the slave
+!> has slid by s along the face, the master opposite is that of the arc length s farther on. That
+!> matters where
+!>
+!> - no master is there any more;
+!> - a master that deforms and conducts is another one: s exceeds the spacing of nodes;
+!> - the gap of the mesh is another one, h(s_k + s), because slopes or curvatures of the faces
+!>   differ: to the second order it changes by s h' + s^2 h''/2. Half of the first term is in the
+!>   linear theory, whose normals are midway between those of both faces. For a cylinder of radius R
+!>   on a plane the edge a of contact has h = a^2/(2R), and the change there over that is 2s/a.
+module sliding_limits
+   use contact_points, only: contact_points_type, small_offset
+   use kinds, only: dp
+   use text, only: to_text
+   implicit none
+   private
+   public :: slide_type, worst_slide
+
+   !> Part of the gaps that the contact closes by which sliding may change them. A cylinder on a
+   !> plane may so slide by a twentieth of half the width of its contact.
+   real(dp), parameter :: small_change = 0.1_dp
+
+   !> The contact point that slides farthest beyond a limit.
+   type :: slide_type
+      integer :: point = 0                 !! 0 where none does
+      real(dp) :: slip = 0.0_dp            !! along the face since the start [length]
+      real(dp) :: excess = 0.0_dp          !! what it does over the limit [-], above 1
+      character(:), allocatable :: words   !! what it does
+   end type slide_type
+
+contains
+
+   !> The worst of the contact points that touch.
+   pure function worst_slide(points, closed, movement) result(slide)
+      type(contact_points_type), intent(in) :: points   !! contact points of one interface
+      logical, intent(in) :: closed(:)                  !! (m) those that touch
+      real(dp), intent(in) :: movement(:)  !! (m) of the slave along its tangent [length]
+      type(slide_type) :: slide
+      real(dp), dimension(size(closed)) :: change, past, side, spacing
+      real(dp) :: closes
+
+      if (.not. any(closed)) return
+      side = small_offset*points%edge
+      past = past_end(points, movement)
+      call take(past/side, 'slides past the end of the master surface by ', past, &
+         ', more than a twentieth of its side; extend the master, or exchange slave and master')
+      if (.not. points%is_rigid) then
+         spacing = points%edge/((points%side_nodes - 1)*points%node_spacings)
+         call take(abs(movement)/spacing, 'slides farther than the spacing of its nodes, ', &
+            spacing, '; draw the bodies where they slide to')
+      end if
+      change = abs(gap_at(points, points%arc_length + movement) - points%initial_gap)
+      closes = closed_gap(points, closed)
+      call take(change/(small_change*closes), 'slides to where the gap of the mesh differs by ', &
+         change, ', more than a tenth of what the contact closes, '//to_text(closes)// &
+         '; draw the bodies where they slide to')
+
+   contains
+      !> Takes the contact point that exceeds a limit most, if it does so more than the one before.
+      pure subroutine take(over_limit, before, value, behind)
+         real(dp), intent(in) :: over_limit(:), value(:)   ! (m)
+         character(*), intent(in) :: before, behind
+         integer :: k
+
+         k = maxloc(over_limit, mask=closed, dim=1)
+         if (over_limit(k) <= max(1.0_dp, slide%excess)) return
+         slide%point = k
+         slide%slip = abs(movement(k))
+         slide%excess = over_limit(k)
+         slide%words = before//to_text(value(k))//behind
+      end subroutine take
+   end function worst_slide
+
+   !> How far a movement along the face takes contact points past the ends of the master; 0 where
+   !> they stay.
+   pure function past_end(points, movement) result(past)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: movement(:)
+      real(dp) :: past(size(movement))
+
+      associate (s => points%arc_length)
+         past = max(0.0_dp, -movement - s - points%to_end(1), &
+            movement + s - s(size(s)) - points%to_end(2))
+      end associate
+   end function past_end
+
+   !> Gaps of the mesh at arc lengths, linear between the contact points; beyond them that of the
+   !> last one.
+   pure function gap_at(points, s) result(gap)
+      type(contact_points_type), intent(in) :: points
+      real(dp), intent(in) :: s(:)
+      real(dp) :: gap(size(s))
+      real(dp) :: part
+      integer :: i, k
+
+      associate (at => points%arc_length, h => points%initial_gap)
+         do k = 1, size(s)
+            i = count(at <= s(k))
+            if (i == 0) then
+               gap(k) = h(1)
+            else if (i == size(at)) then
+               gap(k) = h(i)
+            else
+               part = (s(k) - at(i))/(at(i + 1) - at(i))
+               gap(k) = (1 - part)*h(i) + part*h(i + 1)
+            end if
+         end do
+      end associate
+   end function gap_at
+
+   !> How different the gaps are that the contact closes, with those of its open neighbours, for a
+   !> zone may end anywhere before them; or the largest overlap that it presses apart. At least what
+   !> the mesh cannot tell from none.
+   pure real(dp) function closed_gap(points, closed)
+      type(contact_points_type), intent(in) :: points
+      logical, intent(in) :: closed(:)
+      logical :: near(size(closed))
+
+      near = closed
+      near(2:) = near(2:) .or. closed(:size(closed) - 1)
+      near(:size(closed) - 1) = near(:size(closed) - 1) .or. closed(2:)
+      associate (h => points%initial_gap)
+         closed_gap = max(points%finest_gap, maxval(h, mask=near) - minval(h, mask=near), &
+            -minval(h, mask=closed))
+      end associate
+   end function closed_gap
+
+end module sliding_limits
