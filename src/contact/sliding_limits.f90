@@ -11,7 +11,7 @@
 !>   linear theory, whose normals are midway between those of both faces. For a cylinder of radius R
 !>   on a plane the edge a of contact has h = a^2/(2R), and the change there over that is 2s/a.
 module sliding_limits
-   use contact_points, only: contact_points_type, small_offset
+   use contact_points, only: contact_points_type
    use kinds, only: dp
    use text, only: to_text
    implicit none
@@ -21,6 +21,8 @@ module sliding_limits
    !> Part of the gaps that the contact closes by which sliding may change them. A cylinder on a
    !> plane may so slide by a twentieth of half the width of its contact.
    real(dp), parameter :: small_change = 0.1_dp
+   !> Part of the length in contact that may slide past the end of the master.
+   real(dp), parameter :: small_part = 0.05_dp
 
    !> The contact point that slides farthest beyond a limit.
    type :: slide_type
@@ -38,14 +40,16 @@ contains
       logical, intent(in) :: closed(:)                  !! (m) those that touch
       real(dp), intent(in) :: movement(:)  !! (m) of the slave along its tangent [length]
       type(slide_type) :: slide
-      real(dp), dimension(size(closed)) :: change, past, side, spacing
+      real(dp), dimension(size(closed)) :: change, length, past, spacing
       real(dp) :: closes
 
       if (.not. any(closed)) return
-      side = small_offset*points%edge
+      length = max(points%edge, maxval(points%arc_length, mask=closed) - &
+         minval(points%arc_length, mask=closed))
       past = past_end(points, movement)
-      call take(past/side, 'slides past the end of the master surface by ', past, &
-         ', more than a twentieth of its side; extend the master, or exchange slave and master')
+      call take(past/(small_part*length), 'slides past the end of the master surface by ', past, &
+         ', more than a twentieth of the length in contact; extend the master, or exchange '// &
+         'slave and master')
       if (.not. points%is_rigid) then
          spacing = points%edge/((points%side_nodes - 1)*points%node_spacings)
          call take(abs(movement)/spacing, 'slides farther than the spacing of its nodes, ', &

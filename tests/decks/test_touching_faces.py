@@ -122,7 +122,7 @@ def test_a_gap_of_chords_is_named_with_what_closes_it(tmp_path, kind, sides):
     path = deck(tmp_path / "d.inp", arcs, kind, sides, [HEAT])
     told = run("check", path).stderr
     lost = heat(path) < 0.99 * round_faces(math.pi / 2)
-    assert ("chords of the mesh leave" in told) == lost
+    assert ("Chords of curved faces" in told) == lost
     if not lost:
         return
     advised = told.split("put ADJUST=")[1].split()[0]
@@ -134,7 +134,7 @@ def test_a_gap_of_chords_is_named_with_what_closes_it(tmp_path, kind, sides):
 def test_gaps_of_printed_decimals_are_named(tmp_path):
     path = deck(tmp_path / "d.inp", inclined, "DC2D4", (3, 4), [HEAT], digits=8)
     told = run("check", path).stderr
-    assert "coordinates in single precision leave" in told
+    assert "decimals of coordinates leave" in told
     advised = told.split("put ADJUST=")[1].split()[0]
     again = deck(tmp_path / "a.inp", inclined, "DC2D4", (3, 4), [HEAT], f", ADJUST={advised}", 8)
     assert abs(heat(again) / flat(1.0) - 1) < 1e-4   # their area has 8 digits, too
