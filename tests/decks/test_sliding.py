@@ -22,8 +22,8 @@ def told(path):
 
 
 def roller(path, slide, pairing, mu=0.0, depth=-0.01):
-    """Write a deck of a rigid cylinder of radius 5 pressed into a block and pushed aside; return its
-    path. Half the width of the contact is about 0.2."""
+    """Write a deck of a rigid cylinder of radius 5, pressed into a block and pushed aside; return
+    its path. Half the width of the contact is about 0.2."""
     block = mesh("BLOCK", [k / 20 - 1 for k in range(41)], [k / 4 - 2 for k in range(9)], "CPE4")
     pair = [f"*CONTACT PAIR, INTERACTION=I, NAME=C, PAIRING={pairing}", "BLOCK.TOP, ROLL"]
     return write(
@@ -37,7 +37,8 @@ def roller(path, slide, pairing, mu=0.0, depth=-0.01):
 
 
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
-@pytest.mark.parametrize(("slide", "warns"), [(0.0, False), (0.005, False), (0.02, True), (-0.2, True)])
+@pytest.mark.parametrize(("slide", "warns"), [
+    (0.0, False), (0.005, False), (0.02, True), (-0.2, True)])
 def test_a_roller_that_moves_aside_by_a_tenth_of_its_contact(tmp_path, pairing, slide, warns):
     """At the edge a the gap x^2/(2R) changes by s a/R, over a^2/(2R) by 2s/a."""
     found = told(roller(tmp_path / "d.inp", slide, pairing))
@@ -55,8 +56,9 @@ def test_partial_slip_is_within_the_theory(tmp_path, pairing):
 
 def blocks(path, upper, lower, slide, pairing="", kind="CPE4"):
     """Write a deck of a block (columns, left, right) dragged along a wider one; return its path."""
-    parts = [mesh(name, [left + (right - left) * k / n for k in range(n + 1)], [y, y + 1], kind, first)
-             for name, (n, left, right), y, first in (("UP", upper, 0.0, 1), ("LOW", lower, -1.0, 501))]
+    parts = [mesh(name, [left + (right - left) * k / n for k in range(n + 1)], [y, y + 1], kind,
+                  first) for name, (n, left, right), y, first in (
+                      ("UP", upper, 0.0, 1), ("LOW", lower, -1.0, 501))]
     return write(path, without_unused_surfaces(
         [*parts[0], *parts[1], *material("UP"), *material("LOW"), "*SURFACE INTERACTION, NAME=I",
          f"*CONTACT PAIR, INTERACTION=I, NAME=C{pairing}", "UP.BOTTOM, LOW.TOP",

@@ -36,7 +36,7 @@ def flat(area):
 
 
 def round_faces(length):
-    """Return the heat from radius 1 to 3 across faces at radius 2, 1 and all round being `length`."""
+    """Return the heat from radius 1 to 3 across faces at radius 2; `length` is that at radius 1."""
     return WARM * length / (math.log(3) / CONDUCTIVITY + 1 / (2 * CLOSED))
 
 
@@ -46,7 +46,8 @@ def solid(name, kind):
                     conductivity=CONDUCTIVITY)
 
 
-def deck(path, shape, kind, sides, steps, pair="", digits=None, law=("*GAP CONDUCTANCE", "10., 0.")):
+def deck(path, shape, kind, sides, steps, pair="", digits=None,
+         law=("*GAP CONDUCTANCE", "10., 0.")):
     """Write a deck of two blocks of length 1 that touch at height 1; return its path."""
     blocks = [mesh(name, [k / n for k in range(n + 1)], [y, y + 1], kind, first, to=shape)
               for name, n, y, first in (("LOW", sides[0], 0.0, 1), ("UP", sides[1], 1.0, 5001))]
