@@ -127,7 +127,8 @@ contains
             nodes_of(mesh, points, k)//'. Chords of curved faces or decimals of coordinates '// &
             'leave up to '//few_digits(points%finest_gap)//' between faces that touch; without '// &
             'mechanics these gaps stay open and conduct '// &
-            percent(conductance(law, .false., gap, 0.0_dp)/closed)//' of what touching faces conduct. If the faces touch, put ADJUST='// &
+            percent(conductance(law, .false., gap, 0.0_dp)/closed)//' of what '// &
+            'touching faces conduct. If the faces touch, put ADJUST='// &
             few_digits(1.1_dp*gap)//' on *CONTACT PAIR, or give both the same divisions'
       end associate
    end function unresolved_warning
