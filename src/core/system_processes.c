@@ -1,5 +1,5 @@
 /* Children, signals and memory that runs out: what needs the system's headers, which Fortran
- * cannot read. Interfaces: processes.f90, interruption.f90.
+ * cannot read. Interfaces: processes.f90, interruption.f90, ordering.f90 in linalg.
  *
  * A run may have to end within an increment: because a signal came, or because there is no memory
  * left. A signal handler may then call nothing but what POSIX.1-2017, 2.4.3 allows in one
@@ -8,6 +8,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <metis.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -266,6 +267,29 @@ void thercon_hold_end(int holds)
 {
    is_held = holds;
    if (!is_held && caught != 0 && ends == at_once) end_by_signal();
+}
+
+/* METIS_NodeND of a graph, with default options. While METIS works it has handlers of its own for
+ * SIGTERM and SIGABRT, which leave it by longjmp from wherever it is, and the handlers that it puts
+ * back would serve one signal only. So SIGTERM waits for its end, and both handlers are restored.
+ * SIGABRT cannot wait: METIS raises it where it has no memory. */
+int thercon_order_graph(idx_t vertices, idx_t *start, idx_t *neighbour, idx_t *order,
+   idx_t *position)
+{
+   struct sigaction on_term, on_abort;
+   sigset_t held, before;
+   int status;
+
+   sigemptyset(&held);
+   sigaddset(&held, SIGTERM);
+   sigprocmask(SIG_BLOCK, &held, &before);
+   sigaction(SIGTERM, NULL, &on_term);
+   sigaction(SIGABRT, NULL, &on_abort);
+   status = METIS_NodeND(&vertices, start, neighbour, NULL, NULL, order, position);
+   sigaction(SIGTERM, &on_term, NULL);
+   sigaction(SIGABRT, &on_abort, NULL);
+   sigprocmask(SIG_SETMASK, &before, NULL);
+   return status;
 }
 
 /* Memory: the linker has the calls of the program itself and of archives in it, not those of shared

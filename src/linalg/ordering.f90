@@ -2,7 +2,7 @@
 !> (A. George and J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981,
 !> ch. 4). For MUMPS: nested dissection by METIS.
 module ordering
-   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
+   use, intrinsic :: iso_c_binding, only: c_int
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
@@ -12,14 +12,15 @@ module ordering
       profile_order
 
    interface
-      function metis_nodend(nvtxs, xadj, adjncy, vwgt, options, perm, iperm) &
-         result(status) bind(c, name='METIS_NodeND')
-         import :: c_int, c_ptr
-         integer(c_int), intent(in) :: nvtxs, xadj(*), adjncy(*)
-         type(c_ptr), value :: vwgt, options
-         integer(c_int), intent(out) :: perm(*), iperm(*)
+      !> METIS_NodeND while SIGTERM waits.
+      function order_graph(vertices, start, neighbour, order, position) result(status) &
+         bind(c, name='thercon_order_graph')
+         import :: c_int
+         integer(c_int), value :: vertices
+         integer(c_int), intent(in) :: start(*), neighbour(*)   ! from 0
+         integer(c_int), intent(out) :: order(*), position(*)
          integer(c_int) :: status
-      end function metis_nodend
+      end function order_graph
    end interface
 
 contains
@@ -194,23 +195,25 @@ contains
    end subroutine sort_by_degree
 
    !> Fill-reducing position of each vertex of a graph. METIS's default options fix its random seed.
-   !> Error: METIS fails.
+   !> Error: METIS fails, and there are no positions.
    subroutine nested_dissection(graph, position, error)
       type(sparse_matrix_type), intent(in) :: graph !! both triangles without the diagonal
       integer, allocatable, intent(out) :: position(:)    !! (rows) new position of each vertex
       type(error_type), allocatable, intent(out) :: error
       integer(c_int), allocatable :: order(:)
       integer(c_int) :: status
-      integer(c_int), parameter :: metis_ok = 1
+      integer(c_int), parameter :: metis_ok = 1, metis_has_no_memory = -3
 
       allocate (order(graph%row_count), position(graph%row_count))
       ! METIS divides by the number of vertices.
       if (graph%row_count == 0) return
-      status = metis_nodend(int(graph%row_count, c_int), graph%row_start - 1, graph%column - 1, &
-         c_null_ptr, c_null_ptr, order, position)
+      status = order_graph(int(graph%row_count, c_int), graph%row_start - 1, graph%column - 1, &
+         order, position)
       position(:) = position + 1
-      if (status /= metis_ok) call set_error(error, status_internal, &
-         'METIS could not order the unknowns')
+      if (status == metis_ok) return
+      deallocate (position)
+      call set_error(error, status_internal, 'METIS could not order the unknowns')
+      if (status == metis_has_no_memory) error%message = error%message//': memory ran out'
    end subroutine nested_dissection
 
    !> First row of each column of a symmetric matrix in another order, the skyline.

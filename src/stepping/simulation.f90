@@ -6,7 +6,7 @@ module simulation
    use contact_system, only: contact_open
    use controls, only: stage_part
    use discretisation_errors, only: recovery_type
-   use errors, only: error_type
+   use errors, only: error_type, status_internal
    use field_problem, only: solved_loads_type
    use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
@@ -113,7 +113,6 @@ contains
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
-      type(error_type), allocatable :: of_elimination
       type(heat_equation_type) :: equation
       type(sparse_matrix_type) :: film
       type(step_clock_type) :: clock
@@ -138,11 +137,15 @@ contains
             film = equation%left_film(bodies%capacity)
          end if
          call heat%renumber_both(bodies)
-         ! Both fields are eliminated while neither has factors, for their memory. Where that fails,
-         ! heat%reduce fails again and says so.
+         ! Both fields are eliminated while neither has factors, for their memory. Where a matrix is
+         ! singular the factors fail, too, and say better why.
          if (solves_mechanics(analysis)) call bodies%equilibrium%renumber( &
             bodies%mechanical)
-         if (solves_heat(analysis)) call heat%eliminate(model, bodies, film, of_elimination)
+         if (solves_heat(analysis)) call heat%eliminate(model, bodies, film, error)
+         if (allocated(error)) then
+            if (error%status == status_internal) return
+            deallocate (error)
+         end if
          if (solves_mechanics(analysis)) call bodies%reduce(model, heat%node_rank, error)
          if (solves_heat(analysis) .and. .not. allocated(error)) call heat%reduce(model, bodies, &
             film, error)

@@ -122,6 +122,79 @@ def test_a_signal_that_the_caller_ignores_stays_ignored(tmp_path):
     assert process.returncode == 0, messages
 
 
+# METIS asks for its first random number with its own handlers of signals in place.
+METIS = """
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+void srand(unsigned int seed)
+{
+   if (getenv("METIS_IS_SENT")) kill(getpid(), SIGTERM);
+   ((void (*)(unsigned int))dlsym(RTLD_NEXT, "srand"))(seed);
+}
+
+int METIS_NodeND(int *n, int *start, int *next, int *weight, int *options, int *order, int *position)
+{
+   int (*order_nodes)(int *, int *, int *, int *, int *, int *, int *) =
+      (int (*)(int *, int *, int *, int *, int *, int *, int *))dlsym(RTLD_NEXT, "METIS_NodeND");
+   return getenv("METIS_FAILS") ? -4 : order_nodes(n, start, next, weight, options, order, position);
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def metis(tmp_path_factory):
+    """Return an environment in which METIS can be disturbed."""
+    folder = tmp_path_factory.mktemp("metis")
+    (folder / "metis.c").write_text(METIS)
+    subprocess.run([os.environ.get("CC", "cc"), "-shared", "-fPIC", "-o", "metis.so", "metis.c", "-ldl"],
+                   cwd=folder, check=True)
+    return os.environ | {"LD_PRELOAD": str(folder / "metis.so"),
+                         "ASAN_OPTIONS": "verify_asan_link_order=0"}   # of the preset `sanitize`
+
+
+def by_mumps(folder, increments):
+    """Return the command that solves heat and mechanics by MUMPS, with one order of both."""
+    deck = heat(folder, "long.inp", increments)
+    return [PROGRAM, "run", str(copy_deck(deck, deck, ["*SOLVER, TYPE=MUMPS"])), "--out", str(folder)]
+
+
+@pytest.mark.parametrize("ignores", [False, True])
+def test_a_signal_while_metis_orders_unknowns_waits_for_its_end(tmp_path, metis, ignores):
+    """METIS would take it for an error of its own and leave by longjmp; ignored it changes nothing."""
+    process = subprocess.run(
+        by_mumps(tmp_path, 10), env=metis | {"METIS_IS_SENT": "1"}, capture_output=True, text=True,
+        timeout=PATIENCE, preexec_fn=partial(signal.signal, signal.SIGTERM,
+                                             signal.SIG_IGN if ignores else signal.SIG_DFL))
+    assert process.returncode == (0 if ignores else 5), process.stderr
+    assert ignores or process.stderr.endswith("error: ended by SIGTERM before the first increment\n")
+
+
+def test_a_failure_of_metis_is_said(tmp_path, metis):
+    """Not gone on from with an order at random."""
+    process = subprocess.run(by_mumps(tmp_path, 10), env=metis | {"METIS_FAILS": "1"},
+                             capture_output=True, text=True, timeout=PATIENCE)
+    assert process.returncode == 3, process.stderr
+    assert process.stderr.endswith(": METIS could not order the unknowns\n")
+
+
+def test_handlers_of_signals_outlast_metis(tmp_path):
+    """One that it puts back would serve a signal only, and the next one kill the run."""
+    process = subprocess.Popen(by_mumps(tmp_path, INCREMENTS), text=True, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE)
+    until = time.monotonic() + PATIENCE
+    while len(lines_of(tmp_path / "long.sta")) < BEFORE:
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.002)
+    while process.poll() is None and time.monotonic() < until:
+        process.send_signal(signal.SIGTERM)
+    _, messages = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 5, messages
+
+
 def cpu_seconds(process):
     """Return the CPU seconds of a process that was not waited for, user and system."""
     fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
