@@ -15,9 +15,10 @@ PRINTS = ["*NODE PRINT, NSET=BODY", "U", "*EL PRINT, ELSET=BODY", "S"]
 HELD = ["*BOUNDARY", "BODY.LEFT, 1, 1", "BODY.RIGHT, 1, 1", "1, 2, 2"]
 
 
-def bar(kind="CPE8", poisson=0.0, cut=("2, S2", "6, S2"), normal=(), node="900"):
+def bar(kind="CPE8", poisson=0.0, cut=("2, S2", "6, S2"), normal=(), node="900",
+        heights=(0.0, 0.5, HEIGHT), to=None):
     """Return a bar of 4 x 2 elements along x that a section cuts in the middle."""
-    return [*mesh("BODY", [0.0, 1.0, 2.0, 3.0, LENGTH], [0.0, 0.5, HEIGHT], kind, 1),
+    return [*mesh("BODY", [0.0, 1.0, 2.0, 3.0, LENGTH], list(heights), kind, 1, to=to),
             *material("BODY", (MODULUS, poisson), EXPANSION, 2.0),
             "*NODE, NSET=BOLT", "900, 0., 9.", "*NODE, NSET=OTHER", "901, 0., 9.",
             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.",
@@ -48,6 +49,36 @@ def test_a_normal_of_the_card_is_taken_as_it_is_as_in_calculix(tmp_path, normal)
         [*bar("CPS8", 0.3, normal=[normal]), *STEP, *HELD, "*CLOAD", "900, 1, 3.", *PRINTS,
          "*END STEP"]))
     assert_within(differences(calculix(deck), thercon(deck)), DIGITS)
+
+
+BEND, LEAN = 0.25, 0.3   # above this height the section leans by as much a height
+
+
+def bent(heights, normal=()):
+    """Return the cards of a bar whose section is bent, pulled by a force."""
+    def lean(x, y):
+        return x + LEAN * max(y - BEND, 0.0) * x * (LENGTH - x) / 4, y
+
+    cut = [f"{element}, S2" for element in range(2, 4 * len(heights) - 4, 4)]
+    model = bar("CPE8", 0.3, cut, normal, heights=heights, to=lean)
+    return without_unused_surfaces([*model, *STEP, *HELD, "*CLOAD", "900, 1, 3.", *PRINTS,
+                                    "*END STEP"])
+
+
+@pytest.mark.parametrize("heights", [[0.0, BEND, HEIGHT], [0.0, BEND, 0.4, HEIGHT]])
+def test_a_bent_section_has_the_normal_of_its_chord_however_it_is_divided(tmp_path, heights):
+    chord = LEAN * (HEIGHT - BEND)
+    plain = write(tmp_path / "plain.inp", bent(heights))
+    given = write(tmp_path / "given.inp", bent(heights, [f"{HEIGHT}, {-chord}"]))
+    assert_within(differences(thercon(given), thercon(plain)), DIGITS)
+
+
+def test_a_bent_section_with_the_mean_of_the_normals_of_its_sides_is_as_in_calculix(tmp_path):
+    heights = [0.0, BEND, HEIGHT]
+    length = np.hypot(1.0, LEAN)
+    plain = write(tmp_path / "plain.inp", bent(heights))
+    given = write(tmp_path / "given.inp", bent(heights, [f"{1.0 + 1.0 / length}, {-LEAN / length}"]))
+    assert_within(differences(calculix(plain), thercon(given)), DIGITS)
 
 
 def test_triangles_with_one_node_at_a_section_are_on_its_side(tmp_path):
