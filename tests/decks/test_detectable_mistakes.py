@@ -252,10 +252,42 @@ CONSTANTS = "*PHYSICAL CONSTANTS, ABSOLUTE ZERO={}, STEFAN BOLTZMANN={}"
 def test_constants_of_radiation_in_other_units(tmp_path, units, zero, boltzmann, told):
     label = [f'*OPTIONS, UNITS="{units}"'] if units else []
     found = warnings(tmp_path, label, [CONSTANTS.format(zero, boltzmann)], heated("20."))
+    found = [(message, card) for message, card in found if "Young" not in message and "conductivity" not in message]
     assert len(found) == len(told)
     for (message, card), words in zip(found, told, strict=True):
         assert words in message
         assert card.startswith("*PHYSICAL CONSTANTS")
+
+
+@pytest.mark.parametrize(("units", "young", "conductivity", "told"), [
+    ("mm MPa W C", 2.1e5, 0.05, {}), ("mm MPa W C", 1e8, 2.0, {}), ("m Pa W K", 2.1e11, 50.0, {}), ("in psi BTU/h F", 3e7, 2.2, {}),
+    ("mm N/mm2 mW C", 2.1e5, 50.0, {}), ("m Pa W C", 5e3, 0.02, {}), ("m GPa kW C", 1050.0, 2.0, {}),
+    ("furlong stone horse Z", 1e30, 1e30, {}), (None, 1e30, 1e30, {}),
+    ("mm MPa W C", 2.1e11, 50.0, {"*ELASTIC": "2.1E+11 of LOW is 2.1E+17 Pa", "*CONDUCTIVITY": "50 of LOW is 50000 W/(m K)"}),
+    ("m Pa W C", 210.0, 50.0, {"*ELASTIC": "210 of LOW is 210 Pa"}),
+    ("m kPa kW K", 2.1e8, 50.0, {"*CONDUCTIVITY": "50 of LOW is 50000 W/(m K)"}),
+    ("in psi BTU/h F", 2.1e12, 2.2, {"*ELASTIC": "is 1.447"})])
+def test_properties_that_no_solid_has_in_the_units_of_the_deck(tmp_path, units, young, conductivity, told):
+    label = [f'*OPTIONS, UNITS="{units}"'] if units else []
+    cards = [*mesh("LOW", [0.0, 1.0], [0.0, 1.0]), *solid("LOW", young, 0.3, 0.0, conductivity), *HEATED]
+    found = warnings(tmp_path, label, cards)
+    assert {card for _, card in found} == told.keys()
+    assert all(told[card] in message and "units of *OPTIONS, UNITS=, beyond the" in message for message, card in found)
+
+
+@pytest.mark.parametrize("analysis", ["*STATIC", "*HEAT TRANSFER, STEADY STATE"])
+def test_units_of_properties_that_no_step_needs_are_not_judged(tmp_path, analysis):
+    cards = [*mesh("LOW", [0.0, 1.0], [0.0, 1.0]), *solid("LOW", 2.1e11, 0.3, 0.0, 50.0),
+             *(analysis if card.startswith("*COUPLED") else card for card in HEATED
+               if analysis != "*STATIC" or ", 11," not in card)]
+    found = warnings(tmp_path, ['*OPTIONS, UNITS="mm MPa W C"'], cards)
+    assert [card for message, card in found if "of solids" in message] == [
+        "*ELASTIC" if analysis == "*STATIC" else "*CONDUCTIVITY"]
+
+
+HEATED = ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "LOW, 20.", "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE",
+          "1., 1.", "*BOUNDARY", "LOW.BOTTOM, 1, 2", "LOW.TOP, 2, 2, 1.E-5", "LOW.BOTTOM, 11, 11, 20.", "LOW.TOP, 11, 11, 90.",
+          "*END STEP"]
 
 
 def heated(cold):

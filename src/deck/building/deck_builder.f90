@@ -26,7 +26,7 @@ module deck_builder
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use deck_structure, only: card_count, check_structure
-   use heat_checks, only: check_constants, check_heat_paths, check_starts
+   use heat_checks, only: check_heat_paths, check_starts
    use mesh_checks, only: check_folds
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
@@ -39,6 +39,7 @@ module deck_builder
    use storage_checks, only: check_storage
    use text, only: to_text
    use touch_checks, only: check_touches
+   use unit_checks, only: check_units
    implicit none
    private
    public :: build_model
@@ -168,7 +169,7 @@ contains
          call check_usage(cards, context, model, report)
          call check_heat_paths(cards, model, report)
          call check_friction_heat(cards, context, model, report)
-         call check_constants(cards, model, report)
+         call check_units(cards, model, report)
       end if
       call note_defaults(cards, context, model)
    end subroutine complete_model

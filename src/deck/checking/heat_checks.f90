@@ -1,8 +1,7 @@
 !> Slips that steps with heat show: contact without a law for its conductance, coefficients of
-!> expansion in another unit than the temperatures, constants of radiation in other units.
+!> expansion in another unit than the temperatures.
 module heat_checks
-   use card_parameters, only: has_parameter, parameter_place
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: cards_type
    use conductance_laws, only: law_none
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -14,42 +13,13 @@ module heat_checks
    use model, only: model_type
    use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat, &
       solves_mechanics
-   use text, only: counted, to_text, to_upper
+   use text, only: counted, to_text
    implicit none
    private
-   public :: check_heat_paths, check_starts, check_constants
+   public :: check_heat_paths, check_starts, temperature_range
 
    real(dp), parameter :: small_strain = 0.1_dp   !! largest for which small strains hold
    real(dp), parameter :: far = 0.25_dp   !! of a table's span, from ZERO= to where bodies start
-
-   !> Stefan-Boltzmann constant, CODATA 2018 [W/(m^2 K^4)].
-   real(dp), parameter :: stefan_boltzmann = 5.670374419e-8_dp
-
-   !> A unit by its labels, which blanks separate.
-   type :: unit_type
-      character(25) :: labels
-      real(dp) :: size                !! [K], [m], [W]
-      real(dp) :: zero = 0.0_dp       !! absolute zero of a scale of temperature
-   end type unit_type
-
-   type(unit_type), parameter :: temperatures(4) = [ &
-      unit_type('C CELSIUS', 1.0_dp, -273.15_dp), unit_type('K KELVIN', 1.0_dp), &
-      unit_type('F FAHRENHEIT', 5.0_dp/9, -459.67_dp), unit_type('R RANKINE', 5.0_dp/9)]
-
-   type(unit_type), parameter :: lengths(7) = [ &
-      unit_type('M', 1.0_dp), unit_type('DM', 1.0e-1_dp), unit_type('CM', 1.0e-2_dp), &
-      unit_type('MM', 1.0e-3_dp), unit_type('UM', 1.0e-6_dp), unit_type('FT', 0.3048_dp), &
-      unit_type('IN INCH', 0.0254_dp)]
-
-   !> Labels of power are as written: m is milli and M mega.
-   type(unit_type), parameter :: powers(7) = [ &
-      unit_type('W w J/s', 1.0_dp), unit_type('mW mJ/s Nmm/s N*mm/s', 1.0e-3_dp), &
-      unit_type('kW KW kJ/s', 1.0e3_dp), unit_type('MW MJ/s', 1.0e6_dp), &
-      unit_type('erg/s', 1.0e-7_dp), unit_type('BTU/s Btu/s', 1055.05585_dp), &
-      unit_type('BTU/h Btu/h BTU/hr Btu/hr', 0.29307107_dp)]
-
-   real(dp), parameter :: other_digits = 0.01_dp   !! relative difference of a constant
-   real(dp), parameter :: other_scale = 0.5_dp     !! difference of absolute zero [K]
 
 contains
 
@@ -203,8 +173,8 @@ contains
    !> Least and largest of the temperatures that the deck gives: initial ones, prescribed ones and
    !> sinks of films, with the extreme factors of their amplitudes.
    pure function temperature_range(model) result(ends)
-      type(model_type), intent(in) :: model      ! with its loads and supports
-      real(dp) :: ends(2)                        ! [temperature]
+      type(model_type), intent(in) :: model      !! with its loads and supports
+      real(dp) :: ends(2)                        !! [temperature]
       integer :: i, s
 
       ends = [minval(model%initial_temperature), maxval(model%initial_temperature)]
@@ -237,94 +207,5 @@ contains
          end associate
       end if
    end subroutine widen
-
-   !> Warns of an absolute zero or a constant of Stefan and Boltzmann in another unit than the deck
-   !> says, and of temperatures below absolute zero.
-   subroutine check_constants(cards, model, report)
-      type(cards_type), intent(in) :: cards
-      type(model_type), intent(in) :: model               !! with its loads and supports
-      type(deck_report_type), intent(inout) :: report     !! receives warnings
-      integer :: k
-
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'PHYSICAL CONSTANTS') cycle
-         call check_zero(cards%keywords(k), model, report)
-         call check_boltzmann(cards%keywords(k), model, report)
-      end do
-   end subroutine check_constants
-
-   subroutine check_zero(card, model, report)
-      type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: message
-      type(unit_type) :: scale
-      real(dp) :: least(2)
-
-      if (.not. has_parameter(card, 'ABSOLUTE ZERO')) return
-      scale = unit_of(scale_label(model%units%temperature), temperatures)
-      least = temperature_range(model)
-      associate (given => model%constants%absolute_zero, label => model%units%temperature)
-         message = 'absolute zero is '//to_text(given)
-         if (abs(given - scale%zero)*scale%size > other_scale) then
-            message = message//', but '//to_text(scale%zero)//' in '//label//', the unit of '// &
-               '*OPTIONS, UNITS=; give that, or correct UNITS='
-         else if (given > 0.0_dp) then
-            message = message//', above 0: it is -273.15 in C, -459.67 in F and 0 in K'
-         else if (least(1) < given) then
-            message = message//', but the deck has a temperature of '//to_text(least(1))// &
-               ', below it; give both in one unit: absolute zero is -273.15 in C, -459.67 in F '// &
-               'and 0 in K'
-         else
-            return
-         end if
-      end associate
-      call report%warning(parameter_place(card, 'ABSOLUTE ZERO'), message)
-   end subroutine check_zero
-
-   subroutine check_boltzmann(card, model, report)
-      type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
-      type(unit_type) :: degree, metre, watt
-      real(dp) :: constant
-
-      if (.not. has_parameter(card, 'STEFAN BOLTZMANN')) return
-      degree = unit_of(scale_label(model%units%temperature), temperatures)
-      metre = unit_of(to_upper(model%units%length), lengths)
-      watt = unit_of(model%units%power, powers)
-      if (min(degree%size, metre%size, watt%size) <= 0.0_dp) return
-      constant = stefan_boltzmann*metre%size**2*degree%size**4/watt%size
-      associate (given => model%constants%stefan_boltzmann, units => model%units)
-         if (abs(given - constant) <= other_digits*constant) return
-         call report%warning(parameter_place(card, 'STEFAN BOLTZMANN'), 'the constant of '// &
-            'Stefan and Boltzmann is '//to_text(given)//', but '//to_text(constant)//' in the '// &
-            'units of *OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '// &
-            units%temperature//'^4); give that, or correct UNITS=')
-      end associate
-   end subroutine check_boltzmann
-
-   !> Finds a unit; its size is 0 where the label is not known.
-   pure type(unit_type) function unit_of(label, units)
-      character(*), intent(in) :: label
-      type(unit_type), intent(in) :: units(:)
-      integer :: i
-
-      unit_of = unit_type('', 0.0_dp)
-      do i = 1, size(units)
-         if (index(' '//trim(units(i)%labels)//' ', ' '//label//' ') > 0) unit_of = units(i)
-      end do
-   end function unit_of
-
-   !> A label of a scale of temperature without the sign or the word for a degree.
-   pure function scale_label(label) result(name)
-      character(*), intent(in) :: label
-      character(*), parameter :: degree_sign = char(194)//char(176)
-      character(:), allocatable :: name
-
-      name = to_upper(label)
-      if (index(name, degree_sign) == 1) name = name(3:)
-      if (index(name, 'DEG') == 1) name = name(4:)
-   end function scale_label
 
 end module heat_checks

@@ -1,0 +1,202 @@
+!> Constants in other units than *OPTIONS, UNITS= says.
+module unit_checks
+   use card_parameters, only: has_parameter, parameter_place
+   use cards, only: cards_type, keyword_card_type
+   use deck_report, only: deck_report_type
+   use heat_checks, only: temperature_range
+   use kinds, only: dp
+   use materials, only: property_keywords
+   use model, only: model_type
+   use steps, only: solves_heat, solves_mechanics
+   use text, only: to_text, to_upper
+   implicit none
+   private
+   public :: check_units
+
+   !> Stefan-Boltzmann constant, CODATA 2018 [W/(m^2 K^4)].
+   real(dp), parameter :: stefan_boltzmann = 5.670374419e-8_dp
+
+   !> A unit by its labels, which blanks separate.
+   type :: unit_type
+      character(25) :: labels
+      real(dp) :: size                !! [K], [m], [W], [Pa]
+      real(dp) :: zero = 0.0_dp       !! absolute zero of a scale of temperature
+   end type unit_type
+
+   type(unit_type), parameter :: temperatures(4) = [ &
+      unit_type('C CELSIUS', 1.0_dp, -273.15_dp), unit_type('K KELVIN', 1.0_dp), &
+      unit_type('F FAHRENHEIT', 5.0_dp/9, -459.67_dp), unit_type('R RANKINE', 5.0_dp/9)]
+
+   type(unit_type), parameter :: lengths(7) = [ &
+      unit_type('M', 1.0_dp), unit_type('DM', 1.0e-1_dp), unit_type('CM', 1.0e-2_dp), &
+      unit_type('MM', 1.0e-3_dp), unit_type('UM', 1.0e-6_dp), unit_type('FT', 0.3048_dp), &
+      unit_type('IN INCH', 0.0254_dp)]
+
+   !> Labels of power are as written: m is milli and M mega.
+   type(unit_type), parameter :: powers(7) = [ &
+      unit_type('W w J/s', 1.0_dp), unit_type('mW mJ/s Nmm/s N*mm/s', 1.0e-3_dp), &
+      unit_type('kW KW kJ/s', 1.0e3_dp), unit_type('MW MJ/s', 1.0e6_dp), &
+      unit_type('erg/s', 1.0e-7_dp), unit_type('BTU/s Btu/s', 1055.05585_dp), &
+      unit_type('BTU/h Btu/h BTU/hr Btu/hr', 0.29307107_dp)]
+
+   type(unit_type), parameter :: stresses(7) = [ &
+      unit_type('PA N/M2 N/M^2', 1.0_dp), unit_type('KPA', 1.0e3_dp), &
+      unit_type('MPA N/MM2 N/MM^2', 1.0e6_dp), unit_type('GPA', 1.0e9_dp), &
+      unit_type('BAR', 1.0e5_dp), unit_type('PSI', 6894.757_dp), unit_type('KSI', 6.894757e6_dp)]
+
+   ! Least and largest of solids: gels, and a thousand times diamond, because stiff bodies stand for
+   ! rigid ones; aerogels and pure copper at 20 K.
+   real(dp), parameter :: moduli(2) = [1.0e3_dp, 1.2e15_dp]         !! [Pa]
+   real(dp), parameter :: conductivities(2) = [1.0e-2_dp, 1.0e4_dp] !! [W/(m K)]
+
+   real(dp), parameter :: other_digits = 0.01_dp   !! relative difference of a constant
+   real(dp), parameter :: other_scale = 0.5_dp     !! difference of absolute zero [K]
+
+contains
+
+   !> Warns of constants in another unit than the deck says, and of temperatures below absolute
+   !> zero.
+   subroutine check_units(cards, model, report)
+      type(cards_type), intent(in) :: cards
+      type(model_type), intent(in) :: model               !! with its loads and supports
+      type(deck_report_type), intent(inout) :: report     !! receives warnings
+      real(dp) :: degree, metre, pascal, watt
+      integer :: k, m
+
+      degree = size_of(scale_label(model%units%temperature), temperatures)
+      metre = size_of(to_upper(model%units%length), lengths)
+      watt = size_of(model%units%power, powers)
+      pascal = size_of(to_upper(model%units%stress), stresses)
+      m = 0
+      do k = 1, size(cards%keywords)
+         select case (cards%keywords(k)%name)
+         case ('PHYSICAL CONSTANTS')
+            call check_zero(cards%keywords(k), model, report)
+            if (min(degree, metre) > 0.0_dp) call check_boltzmann(cards%keywords(k), &
+               watt/(metre**2*degree**4), model, report)
+         case ('MATERIAL')
+            m = m + 1
+         case ('ELASTIC')
+            if (any(solves_mechanics(model%steps%analysis))) call check_property( &
+               cards%keywords(k), model, m, pascal, report)
+         case ('CONDUCTIVITY')
+            if (min(degree, metre) > 0.0_dp .and. any(solves_heat(model%steps%analysis))) call &
+               check_property(cards%keywords(k), model, m, watt/(metre*degree), report)
+         case default
+            cycle
+         end select
+      end do
+   end subroutine check_units
+
+   !> Warns of a property whose first constant is none of a solid.
+   subroutine check_property(card, model, m, unit, report)
+      type(keyword_card_type), intent(in) :: card
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: m                            ! index of its material, or 0
+      real(dp), intent(in) :: unit                        ! [Pa] or [W/(m K)], 0 where not known
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: si_unit
+      real(dp) :: ends(2), value
+      integer :: i
+
+      if (m == 0 .or. unit <= 0.0_dp) return
+      ends = merge(moduli, conductivities, card%name == 'ELASTIC')
+      si_unit = trim(merge('Pa     ', 'W/(m K)', card%name == 'ELASTIC'))
+      associate (material => model%materials(m))
+         do i = 1, size(material%given)
+            if (property_keywords(material%given(i)%kind) /= card%name) cycle
+            associate (values => material%given(i)%values(1, :))
+               value = maxval(values)
+               if (value*unit <= ends(2)) value = minval(values)
+            end associate
+            if (value*unit >= ends(1) .and. value*unit <= ends(2)) cycle
+            call report%warning(card%place, trim(material%given(i)%names(1))//' '// &
+               to_text(value)//' of '//material%name//' is '//to_text(value*unit)//' '//si_unit// &
+               ' in the units of *OPTIONS, UNITS=, beyond the '//to_text(ends(1))//' to '// &
+               to_text(ends(2))//' '//si_unit//' of solids; give it in those units, or correct '// &
+               'UNITS=')
+         end do
+      end associate
+   end subroutine check_property
+
+   subroutine check_zero(card, model, report)
+      type(keyword_card_type), intent(in) :: card
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: message
+      type(unit_type) :: scale
+      real(dp) :: least(2)
+
+      if (.not. has_parameter(card, 'ABSOLUTE ZERO')) return
+      scale = unit_of(scale_label(model%units%temperature), temperatures)
+      least = temperature_range(model)
+      associate (given => model%constants%absolute_zero, label => model%units%temperature)
+         message = 'absolute zero is '//to_text(given)
+         if (abs(given - scale%zero)*scale%size > other_scale) then
+            message = message//', but '//to_text(scale%zero)//' in '//label//', the unit of '// &
+               '*OPTIONS, UNITS=; give that, or correct UNITS='
+         else if (given > 0.0_dp) then
+            message = message//', above 0: it is -273.15 in C, -459.67 in F and 0 in K'
+         else if (least(1) < given) then
+            message = message//', but the deck has a temperature of '//to_text(least(1))// &
+               ', below it; give both in one unit: absolute zero is -273.15 in C, -459.67 in F '// &
+               'and 0 in K'
+         else
+            return
+         end if
+      end associate
+      call report%warning(parameter_place(card, 'ABSOLUTE ZERO'), message)
+   end subroutine check_zero
+
+   subroutine check_boltzmann(card, unit, model, report)
+      type(keyword_card_type), intent(in) :: card
+      real(dp), intent(in) :: unit                        ! [W/(m^2 K^4)], 0 where not known
+      type(model_type), intent(in) :: model
+      type(deck_report_type), intent(inout) :: report
+      real(dp) :: constant
+
+      if (.not. has_parameter(card, 'STEFAN BOLTZMANN') .or. unit <= 0.0_dp) return
+      constant = stefan_boltzmann/unit
+      associate (given => model%constants%stefan_boltzmann, units => model%units)
+         if (abs(given - constant) <= other_digits*constant) return
+         call report%warning(parameter_place(card, 'STEFAN BOLTZMANN'), 'the constant of '// &
+            'Stefan and Boltzmann is '//to_text(given)//', but '//to_text(constant)//' in the '// &
+            'units of *OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '// &
+            units%temperature//'^4); give that, or correct UNITS=')
+      end associate
+   end subroutine check_boltzmann
+
+   !> Size of a unit, 0 where the label is not known.
+   pure real(dp) function size_of(label, units)
+      character(*), intent(in) :: label
+      type(unit_type), intent(in) :: units(:)
+      type(unit_type) :: unit
+
+      unit = unit_of(label, units)
+      size_of = unit%size
+   end function size_of
+
+   !> Finds a unit; its size is 0 where the label is not known.
+   pure type(unit_type) function unit_of(label, units)
+      character(*), intent(in) :: label
+      type(unit_type), intent(in) :: units(:)
+      integer :: i
+
+      unit_of = unit_type('', 0.0_dp)
+      do i = 1, size(units)
+         if (index(' '//trim(units(i)%labels)//' ', ' '//label//' ') > 0) unit_of = units(i)
+      end do
+   end function unit_of
+
+   !> A label of a scale of temperature without the sign or the word for a degree.
+   pure function scale_label(label) result(name)
+      character(*), intent(in) :: label
+      character(*), parameter :: degree_sign = char(194)//char(176)
+      character(:), allocatable :: name
+
+      name = to_upper(label)
+      if (index(name, degree_sign) == 1) name = name(3:)
+      if (index(name, 'DEG') == 1) name = name(4:)
+   end function scale_label
+
+end module unit_checks
