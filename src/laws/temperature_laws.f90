@@ -15,7 +15,7 @@ module temperature_laws
    private
    public :: face_temperatures_type, law_at, temperature_derivatives, law_jumps, largest_jump
    public :: relative_jump
-   public :: is_below_zero, radiation_ends
+   public :: is_below_zero, radiates, radiation_ends
 
    !> Temperatures of the two faces at a contact point.
    type :: face_temperatures_type
@@ -149,14 +149,19 @@ contains
       if (larger > 0.0_dp) relative_jump = abs(law_jump(there))/larger
    end function relative_jump
 
+   !> Whether faces radiate.
+   elemental logical function radiates(law)
+      type(conductance_law_type), intent(in) :: law      !! as the deck has it
+
+      radiates = .false.
+      if (allocated(law%by_temperature)) radiates = law%by_temperature%radiance > 0.0_dp
+   end function radiates
+
    !> Whether faces radiate until they meet, and no longer when they have.
    elemental logical function radiation_ends(law)
       type(conductance_law_type), intent(in) :: law      !! as the deck has it
 
-      radiation_ends = .false.
-      if (.not. allocated(law%by_temperature)) return
-      radiation_ends = law%by_temperature%radiance > 0.0_dp .and. &
-         law%closed_kind /= law_none .and. .not. law%closed_adds
+      radiation_ends = radiates(law) .and. law%closed_kind /= law_none .and. .not. law%closed_adds
    end function radiation_ends
 
    !> Temperatures, equal on both faces, at which the law without radiation jumps most at
@@ -194,10 +199,9 @@ contains
       type(conductance_law_type), intent(in) :: law      !! as the deck has it
       type(face_temperatures_type), intent(in) :: faces
 
-      is_below_zero = .false.
-      if (.not. allocated(law%by_temperature)) return
-      is_below_zero = law%by_temperature%radiance > 0.0_dp .and. &
-         faces%mean - 0.5_dp*abs(faces%jump) < law%by_temperature%absolute_zero
+      is_below_zero = radiates(law)
+      if (is_below_zero) is_below_zero = faces%mean - 0.5_dp*abs(faces%jump) < &
+         law%by_temperature%absolute_zero
    end function is_below_zero
 
 end module temperature_laws

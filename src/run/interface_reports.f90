@@ -1,6 +1,7 @@
 !> Errors and warnings on the interfaces of a deck once they are made, and on *VERIFY cards at
 !> positions that only contact points can tell.
 module interface_reports
+   use conductance_laws, only: law_none
    use connections, only: match_surfaces, match_tie
    use contact_points, only: contact_points_type
    use deck_report, only: deck_report_type
@@ -8,12 +9,13 @@ module interface_reports
    use contact_definitions, only: contact_definition_type, is_removed
    use element_kinds, only: axisymmetric, plane_stress
    use errors, only: error_type
+   use gap_areas, only: curved_gap_warning
    use interface_warnings, only: clearance_warning, distance_warning, offset_warning, &
       overlap_warning, tie_words, unresolved_warning
    use kinds, only: dp
    use model, only: model_type
    use steps, only: solves_heat, solves_mechanics
-   use temperature_laws, only: largest_jump, law_at
+   use temperature_laws, only: largest_jump, law_at, radiates
    use text, only: append, read_real, string_type, to_text, to_upper
    use verification, only: is_on_interface
    implicit none
@@ -136,6 +138,10 @@ contains
             end associate
          end if
       end if
+      associate (law => model%interactions(model%contacts(i)%interaction)%law)
+         if (any(solves_heat(model%steps%analysis)) .and. law%open_kind /= law_none) call &
+            warn(curved_gap_warning(model%mesh, points, radiates(law)))
+      end associate
       call warn(thickness_warning(model, i))
       call warn(plane_warning(model, model%contacts(i)))
    contains
