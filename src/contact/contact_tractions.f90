@@ -7,7 +7,7 @@ module contact_tractions
    use kinds, only: dp
    implicit none
    private
-   public :: in_contact, pressures, shears
+   public :: in_contact, no_gap, pressures, shears
 
    !> Part of the side's length below which a gap is rounding.
    real(dp), parameter :: no_gap = 1.0e-12_dp

@@ -31,7 +31,7 @@ module conductance_laws
    !> The open and the closed law of one surface interaction. Tables are straight lines between
    !> their rows and hold their end values outside, unless open_ends. Where a law varies with the
    !> temperatures of the faces, temperature_laws sets the components for given temperatures from
-   !> the last one, which this module does not use.
+   !> the last one.
    type :: conductance_law_type
       integer :: open_kind = law_none      !! law_none, law_gas or law_clearance
       integer :: closed_kind = law_none    !! law_none, law_power or law_pressure
@@ -162,13 +162,20 @@ contains
       jump = conductance(law, .true., 0.0_dp, 0.0_dp) - conductance(law, .false., 0.0_dp, 0.0_dp)
    end function law_jump
 
-   !> Decrease of omega beyond the last gap of a table that ends there; zero for any other law.
+   !> Decrease of omega beyond the last gap of a table that ends there, at the temperature at which
+   !> it is largest; zero for any other law.
    pure function table_jump(law) result(jump)
-      type(conductance_law_type), intent(in) :: law
+      type(conductance_law_type), intent(in) :: law !! as the deck has it
       real(dp) :: jump                              !! [power/(length^2 temperature)]
 
       jump = 0.0_dp
-      if (law%open_ends) jump = law%open_omega(size(law%open_omega))
+      if (.not. law%open_ends) return
+      jump = law%open_omega(size(law%open_omega))
+      if (.not. allocated(law%by_temperature)) return
+      associate (rows => law%by_temperature)
+         if (allocated(rows%open_columns)) jump = maxval(rows%open_columns( &
+            size(law%table_gap), :))
+      end associate
    end function table_jump
 
    !> Whether omega depends on the temperatures of the faces.

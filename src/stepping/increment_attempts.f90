@@ -8,7 +8,7 @@ module increment_attempts
    use errors, only: error_type, set_error, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, strain_rate
-   use increment_checks, only: check_heat, check_record, warn_of_choices, warn_of_tables
+   use increment_checks, only: check_heat, check_record, warn_of_choices
    use increment_data, only: increment_data_type, increment_workspace_type, stage_type
    use increment_records, only: complete_record
    use increment_solution, only: begin_increment, recover_fields, solve_points
@@ -20,6 +20,7 @@ module increment_attempts
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
+   use table_checks, only: warn_of_tables
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
@@ -115,7 +116,7 @@ contains
             since = wall_seconds()
             call complete_record(bodies, model, run%recovery, run%loads, trial%data, next, record)
             run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
-            call warn_of_tables(model, record)
+            call warn_of_tables(model, bodies%points, record)
             if (stability_is_due(record, model)) run%solved = trial%workspace%of_motions()
             call check_record(record, step%analysis, error)
             if (allocated(error)) return

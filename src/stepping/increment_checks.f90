@@ -2,12 +2,9 @@
 module increment_checks
    use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type
-   use element_kinds, only: element_node_count
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use kinds, only: dp
-   use materials, only: follows_temperature, property_keywords
-   use mesh_bodies, only: body_name
-   use model, only: follows_temperatures, model_type
+   use model, only: model_type
    use records, only: increment_record_type
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
@@ -17,9 +14,8 @@ module increment_checks
    implicit none
    private
    public :: check_balance, check_heat, check_record, check_values, check_violation
-   public :: warn_of_choices, warn_of_tables
+   public :: warn_of_choices
 
-   real(dp), parameter :: margin = 1.0e-9_dp          !! of a table, that rounding may leave
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
    real(dp), parameter :: sound_imbalance = 1.0e-6_dp !! of heat and forces in discrete equations
 
@@ -122,59 +118,6 @@ contains
       if (allocated(error)) deallocate (error)
       call set_error(error, status_no_convergence, words)
    end subroutine check_heat
-
-   !> Warns of temperatures beyond the first and last rows of tables of the bodies' materials.
-   subroutine warn_of_tables(model, record)
-      type(model_type), intent(in) :: model
-      type(increment_record_type), intent(inout) :: record     !! receives the warnings
-      logical :: is_of(size(model%mesh%node_number))
-      integer :: e, i, m
-
-      if (.not. follows_temperatures(model)) return
-      do m = 1, size(model%materials)
-         if (.not. follows_temperature(model%materials(m))) cycle
-         is_of = .false.
-         do e = 1, size(model%mesh%element_kind)
-            if (model%sections(model%mesh%element_section(e))%material == m) then
-               is_of(model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), &
-               e)) = .true.
-            end if
-         end do
-         if (.not. any(is_of)) cycle
-         associate (t => record%fields%temperature)
-            call warn_of_end(minloc(t, dim=1, mask=is_of), -1.0_dp, ' below their first rows')
-            call warn_of_end(maxloc(t, dim=1, mask=is_of), 1.0_dp, ' above their last rows')
-         end associate
-      end do
-   contains
-      subroutine warn_of_end(node, side, where)
-         integer, intent(in) :: node
-         real(dp), intent(in) :: side
-         character(*), intent(in) :: where
-         character(:), allocatable :: left
-         real(dp) :: row, beyond
-
-         left = ''
-         beyond = 0.0_dp
-         associate (material => model%materials(m), there => record%fields%temperature(node))
-            do i = 1, size(material%given)
-               associate (rows => material%given(i)%temperature)
-                  row = rows(merge(size(rows), 1, side > 0.0_dp))
-                  if (size(rows) == 1 .or. side*(there - row) <= margin*(maxval(rows) - &
-                     minval(rows))) cycle
-               end associate
-               left = left//', *'//trim(property_keywords(material%given(i)%kind))//' ('// &
-                  to_text(row)//')'
-               beyond = max(beyond, side*(there - row))
-            end do
-            if (len(left) > 0) call record%warn(body_name(model, model%mesh%node_body(node))// &
-               ' leaves the tables of '//material%name//where//', and their values there are '// &
-               'held: temperature ', there, ' at node '// &
-               to_text(model%mesh%node_number(node))//', time '//to_text(record%time)//'; '// &
-               left(3:), severity=beyond)
-         end associate
-      end subroutine warn_of_end
-   end subroutine warn_of_tables
 
    !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
    !> and nothing holds, contact states of which friction allows several.

@@ -6,7 +6,7 @@ module increment_records
    use contact_operator, only: touches
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick
-   use contact_tractions, only: in_contact, pressures, shears
+   use contact_tractions, only: in_contact, no_gap, pressures, shears
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery, table_is_due
    use equations, only: section_nodes
@@ -133,7 +133,8 @@ contains
       type(conductance_law_type) :: law
       type(contact_points_type) :: points
       logical, allocatable :: closed(:), rests(:)
-      integer :: first, k, last
+      integer :: beside, first, k, last
+      real(dp) :: rounding
 
       first = bodies%points%interface_start(i)
       last = bodies%points%interface_start(i + 1) - 1
@@ -168,18 +169,44 @@ contains
       end if
       if (.not. with_heat) return
       record%conductance = next%carrying(first:last)
-      do k = 1, size(rests)
-         if (.not. rests(k)) cycle
-         law = law_at(bodies%laws%conductance(first - 1 + k), face_temperatures_type( &
-            0.5_dp*(record%slave_temperature(k) + record%master_temperature(k)), &
-            next%jump(first - 1 + k)))
-         record%conductance(k) = conductance(law, .true., 0.0_dp, record%pressure(k))
+      do k = 1, merge(size(rests), 0, next%has_mechanics)
+         if (points%weight(k) > 0.0_dp .or. .not. closed(k)) cycle
+         beside = 0
+         associate (row => first - 1 + k)
+            ! A force that a gap of rounding takes away is none.
+            rounding = no_gap*points%edge(k)*bodies%equilibrium%contact%alone(row)
+            if (contact%force(row) <= rounding) beside = &
+               resting_beside(next%resting(first:last), record%pressure, k)
+            if (beside > 0) then
+               record%conductance(k) = record%conductance(beside)
+            else if (rests(k)) then
+               law = law_at(bodies%laws%conductance(row), face_temperatures_type( &
+                  0.5_dp*(record%slave_temperature(k) + record%master_temperature(k)), &
+                  next%jump(row)))
+               record%conductance(k) = conductance(law, .true., 0.0_dp, record%pressure(k))
+            end if
+         end associate
       end do
       associate (jump => next%jump(first:last))
          record%heat_flux = heat_across(1.0_dp, record%conductance, jump)
          record%heat_rate = sum(heat_across(points%weight, record%conductance, jump))
       end associate
    end function contact_record
+
+   !> A contact point beside another one that rests while none beside it presses; 0 for none. Where
+   !> the law jumps, both conduct the same, between the values of the open and the closed law.
+   pure integer function resting_beside(resting, pressure, k)
+      logical, intent(in) :: resting(:)                    ! (m)
+      real(dp), intent(in) :: pressure(:)                  ! (m) 0 where it rests [stress]
+      integer, intent(in) :: k                             ! a contact point
+      integer, allocatable :: beside(:)
+      integer :: n
+
+      beside = pack([k - 1, k + 1], [k > 1, k < size(resting)])
+      n = findloc(resting(beside), .true., dim=1)
+      resting_beside = 0
+      if (n > 0 .and. .not. any(pressure(beside) > 0.0_dp)) resting_beside = beside(n)
+   end function resting_beside
 
    !> Tractions, sums and edges of an interface from its nodal forces.
    pure subroutine measure_contact(points, friction, closed, force, shear_force, record)

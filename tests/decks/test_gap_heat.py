@@ -10,12 +10,14 @@ table, so k(T) is the formula's.
 """
 
 import math
+import re
 from types import SimpleNamespace
 
+import h5py
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import run, solve
-from physics import follows
+from physics import follows, mesh
 from test_values_contact import PRESSURE, crossing, pressed
 
 SIGMA, GAP, B = 5.670374419e-8, 5e-5, 1e-6
@@ -198,3 +200,95 @@ def test_warnings_know_the_temperatures(tmp_path, cards, words):
     process = run("check", deck)
     assert process.returncode == 0
     assert (words in process.stderr) if words else ("FACES" not in process.stderr)
+
+
+LEFT = "contact pair FACE leaves a table of FACES"
+
+
+@pytest.mark.parametrize(("gap", "cards", "words"), [
+    (None, ["*GAP CONDUCTANCE, PRESSURE", "0.5, 0.", "1.5, 4."], "above its last pressure, 4, "),
+    (None, ["*GAP CONDUCTANCE, PRESSURE", "0.5, 6.", "1.5, 10."], "below its first pressure, 6, "),
+    (None, ["*GAP CONDUCTANCE, PRESSURE", "0.5, 0.", "1.5, 5."], None),
+    (None, ["*GAP CONDUCTANCE, PRESSURE", "0.5, 0.", "1.5, 2.", "1.5, 4."], None),
+    (None, ["*GAP CONDUCTANCE, PRESSURE", "0.5, 0.", "0.5, 4."], None),
+    (None, ["*GAP CONDUCTANCE, PRESSURE", "0.5, 0., 0.", "1.5, 9., 0.", "0.6, 0., 20.", "1.5, 9., 20."],
+     "above its last mean temperature, 20, "),
+    (None, ["*GAP LAW, TYPE=CLEARANCE", "0.5, 0.1", "0.2, 0.2"], "below its first gap, 0.1, "),
+    (0.1, ["*GAP LAW, TYPE=CLEARANCE", "0.8, 0.", "0.4, 0.05"], "above its last gap, 5E-2, "),
+    (0.1, ["*GAP LAW, TYPE=CLEARANCE", "0.8, 0.", "0.4, 0.15"], None),
+    (0.1, ["*GAP LAW, TYPE=CLEARANCE", "0.8, 0.", "0., 0.05"], None),
+    (0.1, ["*GAP CONDUCTANCE, CLEARANCE", "0.8, 0.", "0., 0.05"], None),
+    (0.1, ["*GAP CONDUCTANCE, CLEARANCE", "0.8, 0., 0.", "0., 0.3, 0.", "0.9, 0., 20.", "0., 0.3, 20."],
+     "above its last mean temperature, 20, "),
+    (0.1, ["*GAP LAW, TYPE=GAS", "1., 1., 0.", "2., 1., 20."], "above its last mean temperature, 20, "),
+    (0.1, ["*GAP RADIATION", "0.8, 0.6", "1., 0.", "0.4, 0.05"], "above its last gap, 5E-2, ")])
+def test_a_table_of_conductances_that_a_run_leaves_is_one_warning(tmp_path, gap, cards, words):
+    """Faces are pressed by 5, or apart by 0.1; the mean of their temperatures is above 20."""
+    deck = write(tmp_path / "deck.inp", [ZERO.format(-273.0, 1e-9), *pressed(*cards, gap=gap)])
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    found = [line for line in process.stderr.splitlines() if LEFT in line]
+    assert len(found) == (words is not None)
+    for line in found:
+        assert f"{LEFT} {words}and the conductance there is held: {words.split(', ')[0].split(maxsplit=3)[3]} " in line
+        assert "at slave node" in line
+
+
+@pytest.mark.parametrize(("cards", "told"), [
+    (["*GAP CONDUCTANCE", "5., 0.", "5., 1."], True), (["*GAP CONDUCTANCE", "5., 0."], False),
+    (["*GAP CONDUCTANCE", "5., 1."], True), (["*GAP CONDUCTANCE", "5., 0.", "6., 1."], False),
+    (["*GAP CONDUCTANCE", "5., 0., 0.", "5., 1., 0.", "6., 0., 9.", "6., 1., 9."], True),
+    (["*GAP CONDUCTANCE, PRESSURE", "5., 0.", "5., 1."], False)])
+def test_a_conductance_that_is_one_over_pressure_or_clearance_is_ambiguous(tmp_path, cards, told):
+    process = run("check", write(tmp_path / "deck.inp", pressed(*cards)))
+    assert process.returncode == 0
+    assert ("the conductance of FACES is the same in all rows; its second column is taken as the "
+            "pressure" in process.stderr) == told
+
+
+@pytest.mark.parametrize(("last", "told"), [((0.0, 0.0, 0.0), None), ((0.0, 56.0, 0.0), 56), ((30.0, 0.0, 40.0), 40)])
+def test_a_table_of_clearances_that_ends_above_0_at_one_of_its_temperatures(tmp_path, last, told):
+    rows = [row for value, t in zip(last, (100, 300, 400), strict=True) for row in (f"180., 0., {t}.", f"{value}, 0.002, {t}.")]
+    process = run("check", write(tmp_path / "deck.inp", pressed("*GAP CONDUCTANCE, CLEARANCE", *rows, gap=1e-3)))
+    assert process.returncode == 0
+    assert ("where the gap exceeds that of the last row" in process.stderr) == (told is not None)
+    assert f"the conductance of FACES falls from {told} to 0" in process.stderr or told is None
+
+
+def rings(kind, outer, law):
+    """Return two tubes of radii 4 and 5, `outer` and 12, the inner one at 100 degrees, the other at 0."""
+    def place(r, t):
+        return (r, t) if kind == "CAX8" else (r * math.cos(t), r * math.sin(t))
+
+    turns = [math.pi / 32 * n for n in range(17)]
+    return without_unused_surfaces([
+        *mesh("IN", [4.0, 5.0], turns, kind, to=place), *mesh("OUT", [outer, 12.0], turns, kind, 1001, to=place),
+        *solid("IN", 1e5, 0.3, 0.0, 1e6), *solid("OUT", 1e5, 0.3, 0.0, 1e6), ZERO.format(-273.15, SIGMA),
+        "*SURFACE INTERACTION, NAME=FACES", *law, "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "OUT.LEFT, IN.RIGHT",
+        "*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "IN.LEFT, 11, 11, 100.", "OUT.RIGHT, 11, 11, 0.",
+        "*END STEP"])
+
+
+@pytest.mark.parametrize("kind", ["CPE8", "CAX8"])
+@pytest.mark.parametrize("outer", [5.4, 10.0, 11.5])
+@pytest.mark.parametrize(("law", "radiates"), [(["*GAP LAW, TYPE=GAS", "0.1, 1.E-9"], False),
+                                               (["*GAP RADIATION", "1., 1."], True)])
+def test_heat_across_a_wide_gap_of_round_faces_is_warned_of(tmp_path, kind, outer, law, radiates):
+    """Beside concentric cylinders: conduction 2 pi k/ln(r2/r1), radiation of black ones from the inner to the outer."""
+    deck = write(tmp_path / "deck.inp", rings(kind, outer, law))
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    angle, height = (math.pi / 2, 1.0) if kind == "CPE8" else (2 * math.pi, math.pi / 2)
+    exact = 0.1 * 100.0 / math.log(outer / 5.0)
+    if radiates:
+        exact = SIGMA * 5.0 * (373.15**4 - 273.15**4)
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        heat = abs(file["contact/FACE/heat_rate"][-1])
+    excess = heat / (exact * angle * height) - 1.0
+    formula = (5 + outer) / (10 if radiates else 2 * (outer - 5) / math.log(outer / 5)) - 1
+    assert excess == pytest.approx(formula, abs=2e-4)
+    told = re.findall(r"(radiation|conduction) between round ones is (up to )?(\S+) % too large", process.stderr)
+    assert len(told) == (excess > 0.05)
+    for what, up_to, percent in told:
+        assert (what, bool(up_to)) == (("radiation", True) if radiates else ("conduction", False))
+        assert float(percent) == pytest.approx(100 * excess, rel=0.02)

@@ -8,6 +8,7 @@ import math
 import h5py
 import numpy as np
 import pytest
+from blocks import without_unused_surfaces
 from physics import follows, judge, material, mesh
 
 GIVE = 1e-7
@@ -233,3 +234,27 @@ def test_edges_that_alone_carry_a_pellet_stick_and_slip_in_their_ring(tmp_path):
         assert (file["contact/ENDS/status"][-1] > 0).sum() == 1
         assert file["contact/ENDS/normal_force"][-1] > 0.1 * math.pi
         assert file["history/force_imbalance"][-1] < 1e-10
+
+
+@pytest.mark.parametrize("kind", ["CAX8", "CAX4"])
+def test_on_the_axis_a_resting_face_has_the_heat_of_its_other_points(tmp_path, kind):
+    """Round bars of length 1 between plates, conductivities 2 and 1, hot above, a gap g between.
+
+    Open, the upper bar is longer than the gap; with the conductance of closed faces both are
+    shorter. They rest with the flux q that makes them as long: alpha (T - q/k2/2 + q/k1/2) = g. On
+    the axis three-node sides give a contact point no area, so no force tells that it rests.
+    """
+    hot, expansion, flux = 100.0, 1e-4, 20.0
+    gap = expansion * (hot - flux / 4)
+    cards = [*mesh("LOW", [0.0, 0.3, 1.0], [0.0, 0.5, 1.0], kind),
+             *mesh("UP", [0.0, 0.3, 1.0], [1.0 + gap, 1.5 + gap, 2.0 + gap], kind, first=101),
+             *material("LOW", (YOUNG, 0.0), expansion, 2.0),
+             *material("UP", (YOUNG, 0.0), expansion, 1.0),
+             "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", "100., 0., 1.",
+             "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE, PAIRING=NODES", "UP.BOTTOM, LOW.TOP",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "LOW, 0.", "UP, 0.", "*STEP",
+             "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1.", "*BOUNDARY",
+             "LOW.BOTTOM, 2", "UP.TOP, 2", "LOW, 1", "UP, 1", "LOW.BOTTOM, 11, 11, 0.",
+             f"UP.TOP, 11, 11, {hot}", "*END STEP"]
+    judge(tmp_path, without_unused_surfaces(cards), [
+        ("heat_flux", where, "LAST", flux, 1e-6) for where in ("MIN", "MAX", "FACE@0")])

@@ -59,7 +59,7 @@ contains
       call read_table(cards, card, trim(merge('gap     ', 'pressure', is_open)), temperature, &
          report, table)
       if (report%error_count() == errors) call check_columns(card, name, is_open, &
-         table%columns, report)
+         table, report)
       if (allocated(table%temperature)) then
          if (is_open .and. report%error_count() == errors) call check_last_gaps(cards, card, &
             temperature, report)
@@ -125,28 +125,37 @@ contains
    end function falls
 
    !> Warns of a table that conducts nothing, and of one without a parameter that is taken as one of
-   !> clearance.
-   subroutine check_columns(card, name, is_open, columns, report)
+   !> clearance, or that may be meant so.
+   subroutine check_columns(card, name, is_open, table, report)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
       logical, intent(in) :: is_open
-      real(dp), intent(in) :: columns(:, :)
+      type(gap_table_type), intent(in) :: table
       type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: words
       integer :: n
 
-      if (all(columns <= 0.0_dp)) call report%warning(card%place, 'all conductances of this '// &
-         'table of '//name//' are 0: it conducts no heat; the first column of *GAP CONDUCTANCE '// &
-         'is the conductance')
+      if (all(table%columns <= 0.0_dp)) call report%warning(card%place, &
+         'all conductances of this table of '//name//' are 0: it conducts no heat; the first '// &
+         'column of *GAP CONDUCTANCE is the conductance')
       if (is_open .and. .not. has_parameter(card, 'CLEARANCE')) call report%warning(card%place, &
          'the second column of this table of '//name//' is taken as the clearance, as in '// &
          'Abaqus; in CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or '// &
          'PRESSURE if that is meant')
-      if (is_open .or. has_parameter(card, 'PRESSURE')) return
-      n = size(columns, 1)
-      if (any(columns(2:, :) < columns(:n - 1, :))) call report%warning(card%place, &
-         'the conductance of '//name//' falls along the table and rises elsewhere; its '// &
-         'second column is taken as the pressure, as in CalculiX; in Abaqus it is the '// &
-         'clearance: write *GAP CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
+      if (is_open .or. has_parameter(card, 'PRESSURE') .or. all(table%columns <= 0.0_dp)) return
+      n = size(table%abscissa)
+      associate (before => table%columns(:n - 1, :), behind => table%columns(2:, :))
+         if (any(behind < before)) then
+            words = ' falls along the table and rises elsewhere'
+         else if (any(behind > before) .or. table%abscissa(n) <= 0.0_dp) then
+            return   ! it rises, or is of faces that touch without pressure
+         else
+            words = ' is the same in all rows'
+         end if
+      end associate
+      call report%warning(card%place, 'the conductance of '//name//words//'; its second column '// &
+         'is taken as the pressure, as in CalculiX; in Abaqus it is the clearance: write '// &
+         '*GAP CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
    end subroutine check_columns
 
    !> Refuses a table that ends at other gaps at other temperatures: between them it would end at
