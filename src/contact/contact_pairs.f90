@@ -218,7 +218,7 @@ contains
    end subroutine make_contact_points
 
    !> The contact points of a face and the line of a rigid body: mortar points, or with
-   !> PAIRING=NODES the slave's nodes and the points of the line nearest to them.
+   !> PAIRING=NODES the slave's nodes and the points of the line that their normals meet.
    !> Errors: a line that shows its back to the slave; as find_points.
    subroutine set_rigid_points(mesh, definition, drawing, slave, thickness, points, error)
       type(mesh_type), intent(in) :: mesh
@@ -241,7 +241,7 @@ contains
       if (allocated(error)) return
       if (definition%pairing == pairing_nodes) then
          drawn = mesh
-         call opposite_line(drawing, slave, drawn, master)
+         call opposite_line(drawing, slave, points%about_axis, drawn, master)
          call set_node_pairs(drawn, definition, slave, master, thickness, points, error)
          if (allocated(error)) return
          call check_covered(drawn, definition, slave, master, size(points%slave), error)

@@ -7,7 +7,7 @@
 module rigid_masters
    use chain_geometry, only: chain_tangents
    use contact_definitions, only: contact_definition_type
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, no_radius
    use drawn_lines, only: drawn_line_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
@@ -19,9 +19,6 @@ module rigid_masters
    implicit none
    private
    public :: check_facing, follow_reference, opposite_line, sampled_line
-
-   real(dp), parameter :: no_step = 1.0e-9_dp   !! part of a length that is rounding
-   integer, parameter :: most_steps = 100       !! each leaves the square of a slope's sine
 
 contains
 
@@ -40,49 +37,50 @@ contains
    end subroutine sampled_line
 
    !> The points of the drawing that the normals of the slave's nodes meet, as master of node pairs,
-   !> with the drawing's tangents, 0 at points beyond its ends.
-   pure subroutine opposite_line(drawing, slave, mesh, master)
+   !> with the drawing's tangents, 0 where they meet none. The line goes on there at the distance of
+   !> the nearest node with one, so that the weights of pairs do not depend on what it does beside.
+   pure subroutine opposite_line(drawing, slave, about_axis, mesh, master)
       type(drawn_line_type), intent(in) :: drawing
       type(surface_chain_type), intent(in) :: slave    !! from its first contact point on
+      logical, intent(in) :: about_axis                !! whether x is a radius
       type(mesh_type), intent(inout) :: mesh           !! receives the nodes behind its own
       type(surface_chain_type), intent(out) :: master  !! runs as the slave does
-      real(dp) :: along(2, size(slave%nodes)), beyond, t, x(2, size(slave%nodes))
+      real(dp) :: ahead(size(slave%nodes)), beyond, side, t
+      real(dp), dimension(2, size(slave%nodes)) :: normal, x
       integer :: k, piece
+      logical :: is_met(size(slave%nodes))
 
-      along = chain_tangents(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
+      side = merge(-1.0_dp, 1.0_dp, slave%turned)
+      normal = chain_tangents(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
+      normal = side*reshape([normal(2, :), -normal(1, :)], shape(normal), order=[2, 1])
       master%side_nodes = slave%side_nodes
       master%closed = slave%closed
       master%turned = .not. slave%turned
       allocate (master%tangent(2, size(slave%nodes)), source=0.0_dp)
-      do k = 1, size(slave%nodes)
-         call find_met(drawing, mesh%coordinates(:, slave%nodes(k)), along(:, k), piece, t, &
-            x(:, k), beyond)
-         if (beyond > no_step*norm2(x(:, k) - mesh%coordinates(:, slave%nodes(1)))) cycle
-         ! The drawing has its body on the left, and so have the faces of the slave: both run
-         ! against each other.
-         master%tangent(:, k) = merge(1.0_dp, -1.0_dp, slave%turned)*drawing%tangent(piece, t)
-      end do
+      associate (from => mesh%coordinates(:, slave%nodes))
+         do k = 1, size(slave%nodes)
+            ! Where a face reaches the axis, its mirror image leans the other way.
+            if (about_axis .and. abs(from(1, k)) <= no_radius*maxval(abs(from(1, :)))) &
+               normal(:, k) = [0.0_dp, sign(1.0_dp, normal(2, k))]
+            call drawing%find_met(from(:, k), normal(:, k), piece, t, ahead(k))
+            is_met(k) = piece > 0
+            if (is_met(k)) then
+               ! The drawing has its body on the left, and so have the faces of the slave: both run
+               ! against each other.
+               x(:, k) = drawing%point(piece, t)
+               master%tangent(:, k) = -side*drawing%tangent(piece, t)
+            else
+               call drawing%find_nearest(from(:, k), piece, t, x(:, k), beyond)
+            end if
+         end do
+         do k = 1, size(slave%nodes)
+            if (is_met(k) .or. .not. any(is_met)) cycle
+            x(:, k) = from(:, k) + normal(:, k)*ahead(minloc(norm2(from - spread(from(:, k), 2, &
+               size(is_met)), dim=1), dim=1, mask=is_met))
+         end do
+      end associate
       call add_points(x, mesh, master%nodes)
    end subroutine opposite_line
-
-   !> The point of the drawing that a normal meets, from the nearest one on; the nearest one where
-   !> the normal meets none.
-   pure subroutine find_met(drawing, x, along, piece, t, foot, beyond)
-      type(drawn_line_type), intent(in) :: drawing
-      real(dp), intent(in) :: x(2), along(2)           ! where the normal starts; across it
-      integer, intent(out) :: piece
-      real(dp), intent(out) :: t, foot(2), beyond      ! as of find_nearest
-      integer :: i
-
-      call drawing%find_nearest(x, piece, t, foot, beyond)
-      do i = 1, most_steps
-         associate (aside => dot_product(foot - x, along))
-            if (abs(aside) <= no_step*norm2(foot - x)) return
-            call drawing%find_nearest(foot - aside*along, piece, t, foot, beyond)
-         end associate
-      end do
-      call drawing%find_nearest(x, piece, t, foot, beyond)
-   end subroutine find_met
 
    !> Adds nodes to a mesh.
    pure subroutine add_points(x, mesh, nodes)

@@ -1,5 +1,5 @@
-!> The lines and arcs of a drawing, which a rigid body carries: points, tangents and the nearest
-!> point of a drawn line.
+!> The lines and arcs of a drawing, which a rigid body carries: points, tangents, the nearest point of
+!> a drawn line, and the one that a normal meets.
 module drawn_lines
    use kinds, only: dp
    implicit none
@@ -10,6 +10,8 @@ module drawn_lines
    !> middle then leaves it by 2e-11 of the radius.
    real(dp), parameter :: sampled_angle = 0.01_dp
    real(dp), parameter :: no_side = 1.0e-6_dp   !! part of a piece that makes no side of its own
+   real(dp), parameter :: at_end = 1.0e-9_dp    !! part of a piece beyond its end that is rounding
+   integer, parameter :: most_steps = 20        !! for radii that differ by the digits of a deck
 
    !> Pieces one behind the other, with the rigid body on their left.
    type :: drawn_line_type
@@ -25,6 +27,7 @@ module drawn_lines
       procedure :: point
       procedure :: tangent
       procedure :: find_nearest
+      procedure :: find_met
       procedure :: goes_on
       procedure :: samples
    end type drawn_line_type
@@ -93,7 +96,7 @@ contains
       piece = 1
       t = 0.0_dp
       do i = 1, size(self%is_arc)
-         at = min(max(coordinate_of(i), 0.0_dp), 1.0_dp)
+         at = min(max(coordinate_of(self, i, x), 0.0_dp), 1.0_dp)
          distance = norm2(self%point(i, at) - x)
          if (distance >= nearest) cycle
          nearest = distance
@@ -109,25 +112,98 @@ contains
          beyond = abs(ahead)
          foot = foot + ahead*self%tangent(piece, t)
       end if
-   contains
-      !> Coordinate of the foot on a piece, which may be beyond its ends.
-      pure real(dp) function coordinate_of(i)
-         integer, intent(in) :: i
-         real(dp) :: middle(2)
-
-         if (self%is_arc(i)) then
-            middle = self%point(i, 0.5_dp) - self%centre(:, i)
-            associate (arm => x - self%centre(:, i))
-               coordinate_of = 0.5_dp + atan2(middle(1)*arm(2) - middle(2)*arm(1), &
-                  dot_product(middle, arm))/self%sweep(i)
-            end associate
-         else
-            associate (along => self%finish(:, i) - self%start(:, i))
-               coordinate_of = dot_product(x - self%start(:, i), along)/dot_product(along, along)
-            end associate
-         end if
-      end function coordinate_of
    end subroutine find_nearest
+
+   !> Coordinate of the foot of a point on a piece, which may be beyond its ends.
+   pure real(dp) function coordinate_of(self, i, x)
+      class(drawn_line_type), intent(in) :: self
+      integer, intent(in) :: i             ! the piece
+      real(dp), intent(in) :: x(2)         ! [length]
+      real(dp) :: middle(2)
+
+      if (self%is_arc(i)) then
+         middle = self%point(i, 0.5_dp) - self%centre(:, i)
+         associate (arm => x - self%centre(:, i))
+            coordinate_of = 0.5_dp + atan2(middle(1)*arm(2) - middle(2)*arm(1), &
+               dot_product(middle, arm))/self%sweep(i)
+         end associate
+      else
+         associate (along => self%finish(:, i) - self%start(:, i))
+            coordinate_of = dot_product(x - self%start(:, i), along)/dot_product(along, along)
+         end associate
+      end if
+   end function coordinate_of
+
+   !> The point that the normal of a face meets nearest to it, of those at which the line has its
+   !> body behind it.
+   pure subroutine find_met(self, x, normal, piece, t, ahead)
+      class(drawn_line_type), intent(in) :: self
+      real(dp), intent(in) :: x(2)         !! where the normal starts [length]
+      real(dp), intent(in) :: normal(2)    !! outward unit normal
+      integer, intent(out) :: piece        !! 0 where it meets none
+      real(dp), intent(out) :: t
+      real(dp), intent(out) :: ahead       !! how far from x, negative behind it [length]
+      real(dp) :: at(2), distance(2), tangent(2)
+      integer :: i, k
+
+      piece = 0
+      t = 0.0_dp
+      ahead = huge(ahead)
+      do i = 1, size(self%is_arc)
+         call meet_piece(self, i, x, normal, at, distance)
+         do k = 1, 2
+            if (abs(at(k) - 0.5_dp) > 0.5_dp + at_end .or. abs(distance(k)) >= abs(ahead)) cycle
+            at(k) = min(max(at(k), 0.0_dp), 1.0_dp)
+            tangent = self%tangent(i, at(k))
+            if (cross(normal, tangent) >= 0.0_dp) cycle
+            piece = i
+            t = at(k)
+            ahead = distance(k)
+         end do
+      end do
+   end subroutine find_met
+
+   !> The two points at which a line meets a piece or what it is part of, a straight line or a circle.
+   pure subroutine meet_piece(self, i, x, direction, t, ahead)
+      class(drawn_line_type), intent(in) :: self
+      integer, intent(in) :: i             ! the piece
+      real(dp), intent(in) :: x(2), direction(2)   ! of the line; a unit vector
+      real(dp), intent(out) :: t(2)        ! huge where it does not meet it
+      real(dp), intent(out) :: ahead(2)    ! distances from x along the direction [length]
+      real(dp) :: ends(2), half, radius
+      integer :: k, step
+
+      t = huge(t)
+      ahead = huge(ahead)
+      if (.not. self%is_arc(i)) then
+         associate (along => self%finish(:, i) - self%start(:, i), arm => x - self%start(:, i))
+            if (.not. abs(cross(direction, along)) > 0.0_dp) return
+            t(1) = cross(direction, arm)/cross(direction, along)
+            ahead(1) = cross(along, arm)/cross(direction, along)
+         end associate
+         return
+      end if
+      associate (arm => x - self%centre(:, i))
+         ends = [norm2(self%start(:, i) - self%centre(:, i)), norm2(self%finish(:, i) - &
+            self%centre(:, i))]
+         do k = 1, 2
+            radius = ends(1)
+            do step = 1, most_steps
+               half = radius**2 - cross(direction, arm)**2
+               if (half < 0.0_dp) exit
+               ahead(k) = merge(-1.0_dp, 1.0_dp, k == 1)*sqrt(half) - dot_product(direction, arm)
+               t(k) = coordinate_of(self, i, x + ahead(k)*direction)
+               radius = ends(1) + t(k)*(ends(2) - ends(1))
+            end do
+         end do
+      end associate
+   end subroutine meet_piece
+
+   pure real(dp) function cross(a, b)
+      real(dp), intent(in) :: a(2), b(2)
+
+      cross = a(1)*b(2) - a(2)*b(1)
+   end function cross
 
    !> Whether the line goes on at a point of it: none of its ends is near.
    pure logical function goes_on(self, x, near)
