@@ -175,8 +175,8 @@ contains
       end do
    end function link_stiffness
 
-   !> Stiffness of the bodies at some nodes: the smallest one's largest diagonal entry. Nodes without
-   !> elements, as on a drawing, have none to compare.
+   !> Stiffness of the bodies at some nodes: the smallest one's largest diagonal entry. Nodes
+   !> without elements, such as those of a drawing, do not count.
    pure function node_stiffness(matrix, nodes, components) result(stiffness)
       type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) of the bodies
       integer, intent(in) :: nodes(:)                     !! the nodes

@@ -207,8 +207,8 @@ contains
       end do
    end function on_tail
 
-   !> Force on a contact point that rounding of the coordinates makes, and that counts as none. Where
-   !> contact points move a body without strain, their S is rounding of what they have alone.
+   !> Force on a contact point that rounding of the coordinates makes, and that counts as none.
+   !> Where contact points move a body without strain, their S is rounding of what they have alone.
    pure real(dp) function least_force(self)
       class(contact_system_type), intent(in) :: self  !! [force]
       integer :: i
