@@ -14,9 +14,9 @@ module interface_quantities
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: closed_length, contact_of, edge_spacing, is_end_of_face, peak_is_at_end, &
-      peaks_at_corner, point_before, quantities_of, quantities_of_state, regime_of, &
-      resolved_length, rises_to_end, turns_at_peak
+   public :: closed_length, contact_of, contact_width, edge_spacing, is_end_of_face, &
+      peak_is_at_end, peaks_at_corner, point_before, quantities_of, quantities_of_state, &
+      regime_of, resolved_length, rises_to_end, turns_at_peak
 
    !> Regimes of a face with several contact states: a part of it is closed, or all of it.
    integer, parameter :: partly_closed = -1, closed = -2
@@ -88,7 +88,35 @@ contains
       end associate
    end subroutine quantities_of_state
 
-   !> Length of the interface that is closed.
+   !> Width of all zones of contact, from edge to edge as the summary has it. Contact points whose
+   !> zones have no width, as one that is closed alone may, have their tributary length.
+   pure real(dp) function contact_width(contact, s) result(width)
+      type(contact_record_type), intent(in) :: contact    !! state of the interface
+      real(dp), intent(in) :: s(:)                         !! (m) arc length [length]
+      integer :: edge, k
+
+      width = 0.0_dp
+      edge = 0
+      do k = 1, size(s) - 1
+         associate (is_closed => contact%contact_state(k:k + 1) /= contact_open)
+            if (is_closed(1) .neqv. is_closed(2)) then
+               edge = edge + 1
+               ! Edges beyond those that are kept are half-way between their contact points.
+               if (edge > size(contact%edges_contact)) then
+                  width = width + 0.5_dp*(s(k + 1) - s(k))
+               else
+                  width = width + abs(contact%edges_contact(edge) - s(merge(k, k + 1, &
+                     is_closed(1))))
+               end if
+            else if (is_closed(1)) then
+               width = width + s(k + 1) - s(k)
+            end if
+         end associate
+      end do
+      if (width <= 0.0_dp) width = closed_length(contact, s)
+   end function contact_width
+
+   !> Length of the interface that is closed, by the tributary lengths of its contact points.
    pure real(dp) function closed_length(contact, s) result(length)
       type(contact_record_type), intent(in) :: contact    !! state of the interface
       real(dp), intent(in) :: s(:)                         !! (m) arc length [length]

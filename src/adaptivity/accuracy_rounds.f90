@@ -10,7 +10,7 @@ module accuracy_rounds
    use accuracy_targets, only: accuracy_request_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
-   use interface_quantities, only: closed_length, is_end_of_face, peak_is_at_end
+   use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end
    use kinds, only: dp
    use no_estimates, only: at_corner, grows, no_reason, remains
    use quantity_types, only: find_quantity, quantity_type
@@ -134,11 +134,11 @@ contains
          quantity = estimated(self%demands(d)%quantity)
          associate (points => interfaces(self%demands(d)%interface), &
             contact => record%contacts(self%demands(d)%interface))
-            ! A relative target refers to the value, or of an edge to the length of the contact.
+            ! A relative target refers to the value, or of an edge to the width of the contact.
             value = contact_values(quantity%name, points, contact)
             scale = abs(value(1))
             if (quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(scale)) scale = &
-               closed_length(contact, points%arc_length)
+               contact_width(contact, points%arc_length)
             if (ieee_is_nan(scale)) scale = 0.0_dp
             self%largest(d) = max(self%largest(d), scale)
             if (.not. allocated(record%errors)) cycle
