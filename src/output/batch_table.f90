@@ -40,8 +40,9 @@ contains
       do i = 1, size(outcomes)
          associate (deck => outcomes(i))
             write (line, '(2x, a20)') deck%words()
-            if (deck%has_run) write (line(23:), '(2i12, 2i8, 2f10.2, f9.1)') deck%increments, &
-               deck%iterations, deck%verify_passed, deck%verify_failed, deck%seconds, &
+            if (deck%has_run) write (line(23:), '(2i12, 2i8, f10.2)') deck%increments, &
+               deck%iterations, deck%verify_passed, deck%verify_failed, deck%seconds
+            if (deck%has_run .and. .not. deck%is_earlier()) write (line(73:), '(f10.2, f9.1)') &
                deck%cpu_seconds, deck%peak_bytes/megabyte
             call print_line(unit, deck%path//repeat(' ', width - &
                character_count(printable(deck%path)))//trim(line))
@@ -75,7 +76,8 @@ contains
    end function counts_of
 
    !> Writes the CSV file; one that is there is replaced in one instant. Fields of a deck that was
-   !> not run are empty; those of one that runs say how far it is.
+   !> not run are empty; those of one that runs say how far it is. Of a result that was finished
+   !> before, CPU time and memory are not known.
    !> Error: status_internal, when the file cannot be written.
    subroutine write_batch(folder, outcomes, error)
       character(*), intent(in) :: folder                   !! folder of the results
@@ -114,8 +116,13 @@ contains
       line = line//to_text(deck%status)//','//deck%words()//','//quoted(deck%reason)//','// &
          to_text(deck%increments)//','//to_text(deck%iterations)//','// &
          to_text(deck%verify_passed)//','//to_text(deck%verify_failed)//','// &
-         with_decimals(deck%seconds, 3)//','//with_decimals(deck%cpu_seconds, 3)//','// &
-         with_decimals(deck%peak_bytes/megabyte, 3)
+         with_decimals(deck%seconds, 3)//','
+      if (deck%is_earlier()) then
+         line = line//','
+      else
+         line = line//with_decimals(deck%cpu_seconds, 3)//','// &
+            with_decimals(deck%peak_bytes/megabyte, 3)
+      end if
    end function row_of
 
 end module batch_table

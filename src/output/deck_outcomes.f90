@@ -52,6 +52,7 @@ module deck_outcomes
       procedure :: take
       procedure :: fail
       procedure :: words
+      procedure :: is_earlier
       procedure :: print => print_outcome
       procedure :: round_summary
       procedure :: print_failed_checks
@@ -162,6 +163,14 @@ contains
       end select
    end function words
 
+   !> Whether all that is known is of a result that was finished before: nothing was written, but it
+   !> has increments.
+   pure logical function is_earlier(self)
+      class(deck_outcome_type), intent(in) :: self   !! the run
+
+      is_earlier = self%increments > 0 .and. self%files == 0
+   end function is_earlier
+
    !> How a run ended that was not cut short.
    pure function end_of_run(failed_checks, misses_target) result(words)
       integer, intent(in) :: failed_checks           !! *VERIFY checks
@@ -191,7 +200,7 @@ contains
       integer :: i
 
       doubts = ''
-      if (self%words() == 'skipped') return
+      if (self%words() == 'skipped' .or. self%is_earlier() .and. self%status == status_ok) return
       ! Where nothing was done the reason, which is printed already, says all.
       if (self%status == status_internal .and. self%increments == 0 .and. self%files == 0) return
       if (self%status == status_ok .and. allocated(self%reason)) then

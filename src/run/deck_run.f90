@@ -83,7 +83,7 @@ contains
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
          call outcome%fail(error)
       end if
-      outcome%seconds = wall_seconds() - since
+      if (.not. allocated(deck%finished)) outcome%seconds = wall_seconds() - since
    end subroutine run_deck
 
    !> Solves a deck as it is written, or as the variation of a later round has it. The files of the
@@ -176,16 +176,22 @@ contains
       call report_failure(self, error, is_told)
    end subroutine begin_round
 
-   !> Says of a file why it is not solved; checks that failed in a finished run fail again.
+   !> Says of a file why it is not solved. Of a finished run the outcome is that of its result, so
+   !> that the table of a batch loses nothing; checks that failed in it fail again.
    subroutine skip(self)
       type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable :: error
 
       self%outcome%reason = reason_to_skip(self%deck)
       if (.not. allocated(self%deck%finished)) return
-      associate (failed => self%deck%finished%failed_checks)
+      associate (outcome => self%outcome, finished => self%deck%finished, &
+         failed => self%deck%finished%failed_checks)
+         outcome%increments = finished%increments
+         outcome%iterations = finished%iterations
+         outcome%verify_passed = finished%passed_checks
+         outcome%verify_failed = failed
+         outcome%seconds = finished%seconds
          if (failed == 0) return
-         self%outcome%verify_failed = failed
          call set_error(error, status_verify, 'its result is finished, and '//counted(failed, &
             '*VERIFY check')//' failed')
       end associate

@@ -17,6 +17,9 @@ module earlier_results
    public :: earlier_result_type, origin_type
 
    real(dp), parameter :: printed = 5.0e-6_dp   !! what six digits leave out of a time, relative
+   !> Stages of a run whose elapsed seconds the result has.
+   character(*), parameter :: stages(6) = [character(8) :: 'read', 'assemble', 'reduce', &
+      'iterate', 'recover', 'write']
 
    !> Where a run goes on from.
    type :: origin_type
@@ -36,7 +39,11 @@ module earlier_results
       character(:), allocatable :: settings   !! options that its run was given
       type(string_type), allocatable :: images(:)   !! its deck
       logical :: is_finished = .false.        !! whether its run came to its end
+      integer :: increments = 0               !! that it holds
+      integer :: iterations = 0               !! of these
+      integer :: passed_checks = 0            !! *VERIFY checks
       integer :: failed_checks = 0            !! *VERIFY checks
+      real(dp) :: seconds = 0.0_dp            !! of all stages of its run [s]
       real(dp), allocatable, private :: places(:, :)   !! (columns, restarts) as place_set
    contains
       procedure :: read => read_result
@@ -68,6 +75,7 @@ contains
       type(hdf5_reader_type) :: file
       real(dp), allocatable :: values(:)
       logical :: is_there
+      integer :: i
 
       inquire (file=path, exist=is_there)
       if (.not. is_there) call set_error(error, status_deck, 'there is no result "'//path//'"')
@@ -78,8 +86,16 @@ contains
       self%version = file%text('/run', 'version')
       self%settings = file%text('/run', 'settings')
       self%is_finished = file%number('/run', 'finished') > 0.0_dp
+      self%passed_checks = nint(file%number('/run', 'verify_passed'))
       self%failed_checks = nint(file%number('/run', 'verify_failed'))
+      do i = 1, size(stages)
+         self%seconds = self%seconds + file%number('/run', 'seconds_'//trim(stages(i)))
+      end do
       call file%strings('/deck', self%images)
+      call file%reals('/history/iterations', values)
+      self%increments = size(values)
+      self%iterations = nint(sum(values))
+      deallocate (values)
       allocate (values(0))
       if (file%has(restart_group)) call file%reals(place_set, values)
       self%places = reshape(values, [place_columns, size(values)/place_columns])

@@ -1,5 +1,6 @@
 """A run that goes on from a state of its result equals one that was never interrupted, bit for bit."""
 
+import csv
 import os
 import re
 import shutil
@@ -340,6 +341,18 @@ def test_a_run_that_was_ended_goes_on_in_its_own_files(long, long_result, tmp_pa
     assert_same(long_result, go_on(long, result, tmp_path))
 
 
+def batch_rows(folder):
+    """Return the rows of the table of a batch by the names of their decks."""
+    with (folder / "thercon-batch.csv").open(newline="") as file:
+        return {Path(row["deck"]).stem: row for row in csv.DictReader(file)}
+
+
+def stage_seconds(result):
+    """Return the seconds of all stages of a run, which its result has."""
+    with h5py.File(result) as file:
+        return sum(value for name, value in file["run"].attrs.items() if name.startswith("seconds_"))
+
+
 def test_a_batch_is_resumed(long, long_result, tmp_path):
     """A finished deck is skipped, an interrupted one goes on, and the others begin."""
     short = rods.write_rods(tmp_path / "short.inp")
@@ -348,11 +361,19 @@ def test_a_batch_is_resumed(long, long_result, tmp_path):
     process.send_signal(signal.SIGTERM)
     process.communicate(timeout=PATIENCE)
     assert not (tmp_path / "two_rods.vtkhdf").exists()
+    first = batch_rows(tmp_path)["short"]
     before = (tmp_path / "short.vtkhdf").stat().st_mtime_ns
     process = run("run", short, long, later, "--out", tmp_path, "--resume")
     assert process.returncode == 0, process.stderr
     assert f"{short}: note: skipped: its result is finished" in process.stderr
     assert (tmp_path / "short.vtkhdf").stat().st_mtime_ns == before
+    again = batch_rows(tmp_path)["short"]
+    told = ("status", "outcome", "increments", "iterations", "checks_passed", "checks_failed")
+    assert [again[key] for key in told] == [first[key] for key in told]
+    assert again["reason"] == "its result is finished"
+    assert again["seconds"] == f"{stage_seconds(tmp_path / 'short.vtkhdf'):.3f}"
+    assert again["cpu_seconds"] == again["peak_megabytes"] == ""
+    assert "solved 3" in process.stdout
     assert_same(long_result, tmp_path / "long.vtkhdf")
     assert kept(tmp_path / "two_rods.vtkhdf").size > 0
     assert "goes on" in (tmp_path / "long.lst").read_text()
@@ -369,9 +390,14 @@ def test_a_batch_is_resumed(long, long_result, tmp_path):
 def test_checks_that_failed_in_a_finished_run_fail_again(tmp_path):
     path = rods.write_rods(tmp_path / "rods.inp")
     deck = copy_deck(path, path, ["*VERIFY, KIND=ANALYTIC, SOURCE=none", "gap, FACE, 1., -5., 1.E-3"])
-    assert run("run", deck, "--out", tmp_path).returncode == 4
-    process = run("run", deck, "--out", tmp_path, "--resume")
+    assert run("run", deck, "--out", tmp_path, "--jobs", "1").returncode == 4
+    first = batch_rows(tmp_path)["rods"]
+    process = run("run", deck, "--out", tmp_path, "--resume", "--jobs", "1")
     assert process.returncode == 4, process.stderr
+    again = batch_rows(tmp_path)["rods"]
+    told = ("status", "outcome", "increments", "iterations", "checks_passed", "checks_failed")
+    assert [again[key] for key in told] == [first[key] for key in told]
+    assert int(again["checks_failed"]) == 1 and int(again["increments"]) > 0
 
 
 def test_the_command_line_refuses_what_does_not_go_together(tmp_path):
