@@ -15,6 +15,8 @@ from comparing import (  # noqa: F401  fixtures
 )
 from synthetic import edge_of_contact, write_result
 
+from thercon_post import style
+
 
 def pairs_table(path, rows):
     """Return the pairs of a result at some rows of its history as a long table."""
@@ -205,6 +207,32 @@ def test_rounding_equals_rounding(compare, tmp_path, theirs, status):
     assert f"S12: {2 - status} rows of rounding in both" in said
 
 
+@pytest.mark.parametrize(("name", "beside"), [
+    ("shear", "pressure"), ("MISES", "S22"), ("heat_rate@A", "heat_rate@B"), ("slip", "U1"),
+    ("RFL@TOP", "heat_in"), ("shear_force", "normal_force"), ("stress_error@body1", None),
+])  # fmt: skip
+def test_rounding_is_measured_by_all_quantities_of_its_kind(compare, tmp_path, name, beside):
+    one = {"time": [1.0, 2.0], name: [3e-10, -2e-13]}
+    other = {"time": [1.0, 2.0], name: [1e-14, 1e-13]}
+    files = [write_csv(tmp_path / f"{n}.csv", each) for n, each in (("a", one), ("b", other))]
+    found, said, _ = compare(*files)
+    assert (found == 0) == (beside is None)
+    for largest, status in ((345.0, 0), (0.01, 1)):
+        more = {beside: [largest, largest]} if beside else {}
+        for path, columns in zip(files, (one, other)):
+            write_csv(path, columns | more)
+        found, said, _ = compare(*files)
+        assert found == (status if beside else 0)
+        assert line_of(said, name)["ok"] == (found == 0)
+
+
+def test_a_displacement_is_not_measured_by_the_place_of_an_edge(compare, tmp_path):
+    columns = {"time": [1.0, 2.0], "U1": [1e-9, 2e-9], "edge_contact": [1e3, 1e3]}
+    files = [write_csv(tmp_path / "a.csv", columns)]
+    files += [write_csv(tmp_path / "b.csv", columns | {"U1": [1e-9, 3e-9]})]
+    assert compare(*files)[0] == 1
+
+
 def test_nan_equals_nan_and_nothing_else(compare, tmp_path):
     nodes = {"node": [1, 2]}
     first = write_csv(tmp_path / "case.csv", nodes | {"T": [np.nan, 3.0]})
@@ -350,6 +378,25 @@ def test_every_compared_row_is_written_on_request(compare, result, tmp_path):
         rows = list(csv.DictReader(file))
     assert [int(row["node"]) for row in rows] == list(columns["node"])
     np.testing.assert_array_equal([float(row["b"]) for row in rows], columns["pressure"])
+
+
+def test_each_map_of_differences_has_one_colour_bar(compare, result, tmp_path, monkeypatch):
+    """Of two B the maps would lie on each other; profiles of both have one panel."""
+    figures, write = [], style.write
+    monkeypatch.setattr(style, "write", lambda figure, *rest: (figures.append(figure), write(figure, *rest))[1])
+    others = [tmp_path / f"{name}.vtkhdf" for name in ("cold", "hot")]
+    for path, factor in zip(others, (0.5, 2.0)):
+        write_result(path)
+        with h5py.File(path, "r+") as file:
+            for name in ("temperature", "displacement"):
+                file[f"VTKHDF/PointData/{name}"][...] *= factor
+    compare(result, *others, "--only", "NT", "U1", "pressure", picture=True)
+    panels = [axes for axes in figures[0].axes if axes.get_label() != "<colorbar>" and axes.axison]
+    titles = [axes.get_title(loc="left").split(" ", 1)[1] for axes in panels]
+    assert [title.partition(",")[0] for title in titles] == ["pressure", "NT", "NT", "U1", "U1"]
+    assert [title.rpartition(", ")[2] for title in titles[1:]] == 2 * ["cold.vtkhdf", "hot.vtkhdf"]
+    assert sum(axes.get_label() == "<colorbar>" for axes in figures[0].axes) == 4
+    assert all(len(axes.collections) == 1 for axes in panels[1:])
 
 
 def test_a_picture_is_drawn_for_every_kind_of_table(compare, result, tmp_path):

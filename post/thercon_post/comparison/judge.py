@@ -8,6 +8,20 @@ from ..errors import UserError
 
 KINDS = ("abs", "rel", "block")
 
+# Quantities, without the number of a component, that have one unit and the rounding of one problem.
+# Places are not displacements: they are larger by far.
+QUANTITIES = {
+    "temperature": ("NT", "slave_temperature", "master_temperature"),
+    "displacement": ("U", "gap", "slip"),
+    "place": ("edge_contact", "edge_stick"),
+    "stress": ("pressure", "shear", "S", "MISES"),
+    "flux": ("heat_flux", "HFL"),
+    "force": ("normal_force", "shear_force", "RF"),
+    "power": ("heat_rate", "heat_in", "heat_out", "heat_stored", "heat_friction", "heat_dilatation",
+              "RFL"),
+    "share": ("stress_error", "heat_flux_error"),
+}
+
 # Part of the largest value of a quantity below which values are rounding.
 ROUNDING = 1e-9
 
@@ -49,22 +63,23 @@ def read_tolerances(texts):
 
 
 def floors(blocks):
-    """Return {quantity: value below which it is rounding}, by the largest of all components and
-    times in both files: S12 of a bar is measured by S11."""
-    largest = {}
+    """Return {quantity: value below which it is rounding}, by the largest of all quantities of its
+    kind, components and times in both files: S12 of a bar is measured by S11, the shear of a smooth
+    face by its pressure, the heat rate of one interface by that of another."""
+    largest = {"share": 1.0}
     for block in blocks:
         for values in () if block.state else (block.a, block.b):
             values = np.ma.compressed(np.ma.asanyarray(values)).astype(float)
             finite = np.abs(values[np.isfinite(values)])
-            whole = vector(block.quantity)
-            largest[whole] = max(largest.get(whole, 0.0), float(np.max(finite, initial=0.0)))
-    return {each.quantity: ROUNDING * largest.get(vector(each.quantity), 0.0) for each in blocks}
+            kind = kind_of(block.quantity)
+            largest[kind] = max(largest.get(kind, 0.0), float(np.max(finite, initial=0.0)))
+    return {each.quantity: ROUNDING * largest.get(kind_of(each.quantity), 0.0) for each in blocks}
 
 
-def vector(name):
-    """Return the quantity of which a name is a component: S of S12, U of U1."""
-    base, at, contact = name.partition("@")
-    return base.rstrip("0123456789") + at + contact
+def kind_of(name):
+    """Return the kind of a quantity; of one that has none here, that of which it is a component."""
+    base = name.partition("@")[0].rstrip("0123456789")
+    return next((kind for kind, names in QUANTITIES.items() if base in names), base)
 
 
 @dataclass

@@ -7,16 +7,12 @@ from matplotlib.ticker import MaxNLocator
 from .. import style
 from ..style import plt
 from ..units import Units
+from .judge import kind_of
 from .report import quantities
 
 MOST_PANELS = 9
 
-UNITS = {
-    "temperature": ("NT", "slave_temperature", "master_temperature"),
-    "length": ("U1", "U2", "gap", "slip", "edge_contact", "edge_stick"),
-    "stress": ("pressure", "shear", "S11", "S22", "S33", "S12", "MISES"),
-    "flux": ("heat_flux", "HFL1", "HFL2"),
-}
+LENGTHS = ("displacement", "place")
 
 
 def draw(a, compared, options):
@@ -29,11 +25,13 @@ def draw(a, compared, options):
         rows, columns, squeeze=False, layout="constrained", figsize=(width, 0.4 + 2.3 * rows)
     )
     drawn = Drawn()
-    for k, (place, (quantity, contact)) in enumerate(zip(axes.flat, panels)):
+    for k, (place, (quantity, contact, only)) in enumerate(zip(axes.flat, panels)):
         panel = Panel(place, a, quantity, contact, options, drawn)
         for number, (label, blocks) in enumerate(compared):
-            panel.add(number, label, [b for b in blocks if b.quantity == quantity and b.rows])
-        panel.finish("abcdefghi"[k] if len(panels) > 1 else "")
+            if only in (None, number):
+                panel.add(number, label, [b for b in blocks if b.quantity == quantity and b.rows])
+        shown = "" if only is None else short(compared[only][0])
+        panel.finish("abcdefghi"[k] if len(panels) > 1 else "", shown)
     for place in axes.flat[len(panels) :]:
         place.set_axis_off()
     add_legend(figure, a, compared)
@@ -41,9 +39,10 @@ def draw(a, compared, options):
 
 
 def panels_of(compared, options):
-    """Return [(quantity, contact or None)]: those of --draw, else what differs most."""
+    """Return [(quantity, contact or None, number of the only B or None)]: those of --draw, else what
+    differs most. Of several B, each has a map of its own."""
     panels = []
-    for _, blocks in compared:
+    for number, (_, blocks) in enumerate(compared):
         groups = quantities(blocks)
         if len(groups) > MOST_PANELS:
             groups = dict(sorted(groups.items(), key=lambda each: agreement(each[1])))
@@ -54,10 +53,21 @@ def panels_of(compared, options):
             if "contact" in group[0].columns:
                 found = np.unique(np.concatenate([b.columns["contact"] for b in group]))
                 contacts = list(found) if len(found) > 1 else [None]
-            panels += [(quantity, c) for c in contacts if (quantity, c) not in panels]
-    if options.draw:
-        panels.sort(key=lambda each: options.draw.index(each[0]))
+            only = number if len(compared) > 1 and is_map(group[0]) else None
+            panels += [(quantity, c, only) for c in contacts if (quantity, c, only) not in panels]
+    order = options.draw or list(dict.fromkeys(quantity for quantity, _, _ in panels))
+    panels.sort(key=lambda each: order.index(each[0]))
     return panels[:MOST_PANELS]
+
+
+def is_history(block):
+    """Whether a block is drawn over its axis, which is time or load."""
+    return block.at is None and block.axis in block.columns
+
+
+def is_map(block):
+    """Whether a block is drawn as differences over the plane."""
+    return not (is_history(block) or "s" in block.columns or block.by == "curve")
 
 
 def agreement(group):
@@ -96,15 +106,15 @@ class Panel:
         """Draw the blocks of one B."""
         if not blocks:
             return
-        if blocks[0].at is None and blocks[0].axis in blocks[0].columns:
+        if is_history(blocks[0]):
             self.draw_history(number, label, blocks[0])
             return
         times = self.options.at or [self.worst(blocks).at]
         chosen = [b for t in times for b in blocks if b.at is None or near(b.at, t)] or blocks[-1:]
-        if "s" in blocks[0].columns or blocks[0].by == "curve":
-            self.draw_profiles(number, label, chosen)
-        else:
+        if is_map(blocks[0]):
             self.draw_differences(label, self.worst(chosen))
+        else:
+            self.draw_profiles(number, label, chosen)
 
     def worst(self, blocks):
         """Return the block with the largest difference."""
@@ -198,9 +208,9 @@ class Panel:
         """Name the time of what is shown."""
         self.at = f"{block.axis} {block.at:g}"
 
-    def finish(self, letter):
-        """Label the ordinate, name quantity and times."""
-        words = [" ".join([self.quantity, self.contact or ""]).strip(), self.at]
+    def finish(self, letter, only):
+        """Label the ordinate, name quantity, times and the only B that is shown, if it is one."""
+        words = [" ".join([self.quantity, self.contact or ""]).strip(), self.at, only]
         style.panel_title(self.axes, style.plain(", ".join(filter(None, words))), letter)
         if not self.axes.get_ylabel():
             self.axes.set_ylabel(self.units.label(style.plain(self.quantity), unit(self.quantity)))
@@ -216,9 +226,8 @@ def near(first, second):
 
 def unit(quantity):
     """Return the kind of unit of a quantity, None where it has none here."""
-    return next(
-        (kind for kind, names in UNITS.items() if quantity.partition("@")[0] in names), None
-    )
+    kind = kind_of(quantity)
+    return "length" if kind in LENGTHS else kind
 
 
 def add_legend(figure, a, compared):
