@@ -75,7 +75,8 @@ def parser():
         metavar="QUANTITY",
         help="of /contact/NAME, or peak_pressure (default: heat_rate)",
     )
-    added["courses"].add_argument("--log", action="store_true", help="logarithmic time")
+    for name, axis in (("zones", "load, or of the time where it turns"), ("courses", "time")):
+        added[name].add_argument("--log", action="store_true", help=f"logarithmic axis of the {axis}")
     return top
 
 
@@ -98,7 +99,8 @@ def add_loads(picture):
         action="append",
         type=float,
         metavar="LOAD ...",
-        help="load level, or several, on the axis of /history/load (default: the last)",
+        help="load level, or several, on the axis of /history/load (default: the last); where no "
+        "increment has it, the nearest is drawn and named",
     )
     picture.add_argument(
         "--increment",
@@ -216,13 +218,22 @@ def run(arguments):
     with ExitStack() as stack:
         results = [stack.enter_context(Result(path)) for path in options.results]
         options.note = "\n".join(filter(None, map(changed, results)))
-        for line in options.note.splitlines():
-            print(f"plot: note: {line}", file=sys.stderr)
-        if options.picture in ("convergence", "zones"):
-            return {"convergence": convergence, "zones": zones}[options.picture].draw(results, options)
-        picture = {"mesh": mesh, "profiles": profiles, "fields": fields}
-        picture |= {"accuracy": accuracy, "courses": courses, "branch": branch}
-        return picture[options.picture].draw(results[0], options)
+        say(options.note.splitlines())
+        of_several = {"convergence": convergence, "zones": zones}
+        of_one = {"mesh": mesh, "profiles": profiles, "fields": fields}
+        of_one |= {"accuracy": accuracy, "courses": courses, "branch": branch}
+        if options.picture in of_several:
+            written = of_several[options.picture].draw(results, options)
+        else:
+            written = of_one[options.picture].draw(results[0], options)
+        say(chain(*(result.notes for result in results)))
+        return written
+
+
+def say(notes):
+    """Print notes on stderr."""
+    for note in notes:
+        print(f"plot: note: {note}", file=sys.stderr)
 
 
 @program("plot")

@@ -71,9 +71,10 @@ class Picture:
             figsize=(style.DOUBLE_COLUMN * 0.5 * columns, 0.4 + 2.1 * rows),
         )
         for axes, (name, curves), letter in zip(grid.flat, self.panels.items(), "abcd"):
-            self.draw_panel(axes, curves)
             if name == "heat" and self.log:
+                curves = sizes(curves)
                 self.spread(axes, curves)
+            self.draw_panel(axes, curves)
             words, quantity = LABELS[name]
             axes.set_ylabel(self.result.units.label(words, quantity))
             style.mark_judged(axes, self.time, self.result.judged)
@@ -86,15 +87,14 @@ class Picture:
             grid[lowest, column].tick_params(labelbottom=True)
         first = self.time[self.time > 0.0].min(initial=self.time[-1])
         if self.log and first < self.time[-1]:
-            grid[0, 0].set(xscale="log", xlim=(first, self.time[-1]))
-            style.log_ticks(grid[0, 0].xaxis, first, self.time[-1])
+            style.log_abscissa(grid[0, 0], first, self.time[-1])
         figure.supxlabel(BANDS if self.result.judged.all() else f"{BANDS}\n{MARKED}", fontsize=8.5)
         return figure
 
     def draw_panel(self, axes, curves):
         """Draw curves: the mean over the face and a band of its range."""
         for words, values in curves:
-            colour, line = LOOKS[ORDER.get(words, 0)]
+            colour, line = LOOKS[ORDER.get(words.strip("|\N{MINUS SIGN}"), 0)]
             if values.ndim == 2:
                 axes.fill_between(self.time, values.min(axis=1), values.max(axis=1), color=colour,
                                   alpha=0.15, linewidth=0)
@@ -109,9 +109,8 @@ class Picture:
     def spread(axes, curves):
         """Show rates by their logarithm: a shock begins with a power of time."""
         high = max(np.nanmax(values) for _, values in curves)
-        if high > 0.0:
-            axes.set(yscale="log", ylim=(DECADES * high, 1.5 * high))
-            style.log_ticks(axes.yaxis, DECADES * high, 1.5 * high)
+        axes.set(yscale="log", ylim=(DECADES * high, 1.5 * high))
+        style.log_ticks(axes.yaxis, DECADES * high, 1.5 * high)
 
     def mean(self, values):
         """Return the mean of values over the face, by the areas of its contact points."""
@@ -139,3 +138,16 @@ def seen(curves):
     sizes = [np.nanmax(np.abs(values)) for _, values in curves]
     least = NOTHING * max(sizes, default=0.0)
     return [curve for curve, size in zip(curves, sizes) if size > least]
+
+
+def sizes(curves):
+    """Return the sizes of rates for a logarithmic axis, which their labels tell, without those that
+    lie below it."""
+    found, least = [], DECADES * max(np.nanmax(np.abs(values)) for _, values in curves)
+    for words, values in curves:
+        is_negative, is_positive = np.nanmin(values) < -least, np.nanmax(values) > least
+        if is_negative:
+            words = f"|{words}|" if is_positive else f"\N{MINUS SIGN}{words}"
+        if is_negative or is_positive:
+            found.append((words, np.abs(values)))
+    return found

@@ -53,7 +53,7 @@ FINE_CELLS = 60000  # about as many parts as a page can show
 def draw(result, options):
     """Draw the fields at every load asked for; return the files written."""
     written = []
-    for row in result.rows(options.load, options.increment):
+    for row in result.rows(options.load, options.increment, with_fields=True):
         written += draw_row(result, row, options)
     return written
 
@@ -111,10 +111,10 @@ def mode_factor(cells, displacement):
 def words_below(result, row, factor, is_mode=False):
     """Return load, time and what a magnification does."""
     words = result.load_words(row)
-    words += ";\nsmall motion, its largest temperature 1" if is_mode else ""
+    words += "\nsmall motion, its largest temperature 1" if is_mode else ""
     words += f"; displacements $\\times$ {factor:g}" if factor != 1.0 else ""
     if result.given_gaps:
-        return f"{words};\n{apart_words(result, factor)}"
+        return f"{words}\n{apart_words(result, factor)}"
     if factor > 1.0 and touches_after_a_gap(result):
         words += ",\ninitial gaps are not magnified:\nbodies that touch seem to overlap"
     return words

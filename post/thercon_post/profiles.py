@@ -40,7 +40,7 @@ class Picture:
     def __init__(self, result, contact, rows, options):
         self.result, self.contact, self.rows = result, contact, rows
         self.along, self.coordinate = contact.axis(options.along)
-        self.window = options.range or contact.window(self.coordinate, rows)
+        self.window = options.range or contact.window(self.coordinate, rows, with_heat=True)
         self.colours = style.shades(len(rows))
         self.sign = friction_sign(contact, rows)
 

@@ -13,7 +13,7 @@ from .cells import Cells
 from .checked_file import need, numbers, open_checked
 from .errors import UserError, nearest_name
 from .units import UNIT_NAMES, Units
-from .words import printable
+from .words import place_words, printable
 
 OPEN, SLIP, STICK = 0, 1, 2
 
@@ -46,6 +46,9 @@ GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "weight")
 # Those that every contact has of its points at the increments, and of its edges.
 STATES = ("pressure", "status")
 EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
+NOISE = 1e-9  # of what it is beside: smaller values are rounding
+LOADS_TO = 1e-12  # of the largest load: loads are sums of at most some thousand increments
+LEFT_OUT = 0.01  # of the heat that crosses: as much may be outside of pictures that show heat
 UNJUDGED = "inside a step: the mesh is not refined for this time"
 MARKED = "dotted lines are ends of steps; the mesh is refined for these alone"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
@@ -109,27 +112,46 @@ class Contact:
         moved = np.interp(edge, self.data["s"], coordinate)
         return np.where(np.isnan(edge), np.nan, moved)
 
-    def window(self, coordinate, rows=slice(None)):
-        """Return the range that pictures show: the pairs that close at these increments and
-        somewhat more; the whole face where none does."""
+    def window(self, coordinate, rows=slice(None), with_heat=False):
+        """Return the range that pictures show: the pairs that close at these increments, with those
+        that carry the heat if that is drawn, and somewhat more; the whole face where none does."""
         low, high = map(float, coordinate[[0, -1]])
-        closed = (self.data["status"][rows] != OPEN).any(axis=0)
-        if not closed.any():
+        shown = (self.data["status"][rows] != OPEN).any(axis=0)
+        if with_heat:
+            shares = self.heat_shares(rows)
+            before, behind = shares.cumsum(axis=1), shares[:, ::-1].cumsum(axis=1)[:, ::-1]
+            shown |= (np.minimum(before, behind) > 0.5 * LEFT_OUT).any(axis=0)
+        if not shown.any():
             return low, high
-        first, last = map(float, coordinate[closed][[0, -1]])
+        first, last = map(float, coordinate[shown][[0, -1]])
         room = 0.3 * max(last - first, 2.0 * np.min(np.diff(coordinate), initial=high - low))
         return max(low, first - room), min(high, last + room)
 
+    def heat_shares(self, rows):
+        """Return the share of each pair in the heat that crosses, (increments, pairs); zero where
+        there is none."""
+        flux, conductance, temperature = (
+            np.abs(np.nan_to_num(self.data.get(key, np.zeros(self.data["status"].shape))[rows]))
+            for key in ("heat_flux", "conductance", "slave_temperature")
+        )
+        heat = np.where(flux > NOISE * conductance * temperature, flux, 0.0) * self.data["weight"]
+        whole = heat.sum(axis=1, keepdims=True)
+        return np.divide(heat, whole, out=np.zeros_like(heat), where=whole > 0.0)
+
     def part_words(self, coordinate, window, unit, rows=slice(None)):
         """Return what a window leaves out of the face, in words; nothing where it shows all."""
-        low, high = coordinate[[0, -1]]
         outside = (coordinate < window[0]) | (coordinate > window[1])
         if not outside.any():
             return ""
         is_open = np.all(self.data["status"][rows][:, outside] == OPEN)
-        face = f"{low:.4g} to {high:.4g} {unit}".rstrip().replace("-", "\N{MINUS SIGN}")
-        left_out = "the part not shown is open" if is_open else "part of it is not shown"
-        return f"The face runs from {face}; {left_out}"
+        ends = " to ".join(place_words(end, coordinate) for end in coordinate[[0, -1]])
+        face = f"{ends} {unit}".rstrip().replace("-", "\N{MINUS SIGN}")
+        words = f"The face runs from {face}; "
+        if not is_open:
+            return f"{words}part of it is not shown"
+        heat = float(self.heat_shares(rows)[:, outside].sum(axis=1).max())
+        crosses = f",\nand up to {100.0 * heat:.2g} % of the heat crosses it" * (heat > LEFT_OUT)
+        return f"{words}the part not shown is open{crosses}"
 
 
 class Result:
@@ -151,6 +173,7 @@ class Result:
             self.file.close()
             raise UserError(f"{path}: is HDF5 but not a thercon result: it has no /{missing[0]}")
         self.name = self.path.stem
+        self.notes = []  # what pictures of it say on the terminal
 
     def __enter__(self):
         return self
@@ -326,11 +349,14 @@ class Result:
             raise UserError(f"{self.path}: the deck has no contact")
         return [self.contact(each) for each in ([name] if name else self.contact_names)]
 
-    def rows(self, loads=None, increments=None):
-        """Return rows of /history for loads, increments (from 1) or, with neither, the last."""
+    def rows(self, loads=None, increments=None, with_fields=False):
+        """Return rows of /history for loads, increments (from 1) or, with neither, the last. A load
+        that no increment has, or none with fields, gives the nearest one, and a note of that."""
         if self.increments == 0:
             raise UserError(f"{self.path}: holds no accepted increment")
-        rows = [nearest_row(self, load) for load in loads or ()]
+        times = self.history["time"]
+        there = np.isin(times, self.field_times) if with_fields else np.ones(len(times), bool)
+        rows = [self.row_of(load, np.flatnonzero(there)) for load in loads or ()]
         for number in increments or ():
             if not 1 <= number <= self.increments:
                 raise UserError(
@@ -338,6 +364,22 @@ class Result:
                 )
             rows.append(number - 1)
         return rows or [self.increments - 1]
+
+    def row_of(self, load, there):
+        """Return the row, of those that are `there`, whose load is nearest; the last one where
+        several are."""
+        loads = self.history["load"]
+        low, high = loads.min(), loads.max()
+        room = LOADS_TO * max(abs(low), abs(high))
+        if not low - room <= load <= high + room:
+            raise UserError(f"{self.path}: no increment has load {load:g}: there are {low:g} to {high:g}")
+        if not there.size:
+            raise UserError(f"{self.path}: holds no fields (thinned by FREQUENCY)")
+        nearest = loads[there][np.argmin(np.abs(loads[there] - load))]
+        if f"{nearest:g}" != f"{load:g}":
+            self.notes.append(f"{self.path}: no increment{' with fields' * (there.size < loads.size)} "
+                              f"has load {load:g}; the nearest, {nearest:g}, is drawn")
+        return int(there[np.abs(loads[there] - nearest) <= room][-1])
 
     def load_words(self, row):
         """Return load and time of a row of /history in words, and what is not known there."""
@@ -385,18 +427,16 @@ class Result:
 
     def field_row(self, row):
         """Return the index of the VTKHDF time step that holds the increment in `row`."""
-        times = self.field_times
+        times, time = self.field_times, self.history["time"][row]
         if len(times) == 0:
             raise UserError(f"{self.path}: holds no fields (thinned by FREQUENCY)")
-        time = self.history["time"][row]
-        step = int(np.argmin(np.abs(times - time)))
-        if abs(times[step] - time) > 1e-9 * max(abs(time), 1.0):
-            load = np.interp(times, self.history["time"], self.history["load"])
+        if time not in times:
+            near = np.searchsorted(self.history["time"], times[np.argmin(np.abs(times - time))])
             raise UserError(
-                f"{self.path}: no fields at load {self.history['load'][row]:g} "
-                f"(thinned by FREQUENCY); nearest with fields: {load[step]:g}"
+                f"{self.path}: no fields at increment {row + 1} (thinned by FREQUENCY); nearest "
+                f"with fields: {near + 1}"
             )
-        return step
+        return int(np.flatnonzero(times == time)[-1])
 
     def point_data(self, name, step):
         """Return a point data array of /VTKHDF at a time step; None where it is absent."""
@@ -454,19 +494,6 @@ class Result:
         _, component = FIELD_SOURCES[quantity]
         values = self.source(quantity, step)
         return values if values is None or component is None else values[:, component]
-
-
-def nearest_row(result, load):
-    """Return the row of /history whose load is `load`; the last one where several are."""
-    loads = result.history["load"]
-    tolerance = 1e-6 * max(float(np.ptp(loads)), float(np.max(np.abs(loads))), 1e-300)
-    found = np.flatnonzero(np.abs(loads - load) <= tolerance)
-    if found.size == 0:
-        near = np.unique(loads)
-        near = np.sort(near[np.argsort(np.abs(near - load))[:2]])
-        names = " and ".join(f"{value:g}" for value in near)
-        raise UserError(f"{result.path}: no increment has load {load:g}; nearest: {names}")
-    return int(found[-1])
 
 
 def text(value):

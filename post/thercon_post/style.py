@@ -127,6 +127,12 @@ def log_ticks(axis, low, high):
     axis.set_minor_formatter(NullFormatter())
 
 
+def log_abscissa(axes, low, high):
+    """Make the abscissa logarithmic, from `low` to `high`."""
+    axes.set(xscale="log", xlim=(low, high))
+    log_ticks(axes.xaxis, low, high)
+
+
 def decade(values):
     """Return a range about values: a decade at least, so that what is equal looks equal."""
     low, high = 0.7 * min(values), 1.4 * max(values)

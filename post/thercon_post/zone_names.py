@@ -18,9 +18,8 @@ def name_regions(picture, axes):
     A region too narrow for its name has it outside, with a line, so that no curve is covered.
     """
     axes.figure.draw_without_rendering()  # so that the size of the axes is known
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     u, v = (np.linspace(0.0, 1.0, n) for n in LABEL_GRID)
-    states = states_at(picture, left + u * (right - left), low + v * (high - low)).ravel()
+    states = states_at(picture, axes, u, v).ravel()
     points = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     room = np.where(states == NO_STATE, 0.0, room_around(points, states))
     middles = {
@@ -52,44 +51,48 @@ def name_regions(picture, axes):
 
 
 def marks_under(picture, axes, words, u, v):
-    """Return how many marks a name covers, by the place of its middle: of contact points, which lie
-    on lines of one load and of one place, and of further edges."""
+    """Return how many marks of contact points, which lie on lines of one load and of one place, a
+    name covers, by the place of its middle."""
     measured, frame = axes.text(0.5, 0.5, words, **LOOKS), axes.get_window_extent()
     box, mark = measured.get_window_extent(), MARK * axes.figure.dpi / 72.0
     measured.remove()
     wide, high = 0.5 * box.width + mark, 0.5 * box.height + mark
-    edges = np.hstack([picture.edges(f"edges_{key[5:]}") for key in CURVES])
-    loads = np.repeat(picture.abscissa, edges.shape[1])[~np.isnan(edges.ravel())]
 
-    def under(values, at, axis):
-        """Return whether marks are near a middle, (middles, marks)."""
-        pixels = axes.transData.transform(np.stack([values, values], axis=1))[:, axis]
-        start, size = ((frame.x0, frame.width), (frame.y0, frame.height))[axis]
-        return np.abs(start + at[:, None] * size - pixels) < (wide, high)[axis]
+    def under(values, at, size, room):
+        """Return at how many values a mark is nearer to each middle than `room` pixels."""
+        return np.sum(np.abs(at[:, None] - values) * size < room, axis=1)
 
-    columns = np.sum(under(picture.abscissa, u, 0), axis=1)
-    rows = np.sum(under(picture.coordinate, v, 1), axis=1)
-    further = under(loads, u, 0).astype(int) @ under(edges[~np.isnan(edges)], v, 1).astype(int).T
-    return (np.outer(columns, rows) + further).ravel()
+    columns = under(shares(axes, picture.abscissa, 0), u, frame.width, wide)
+    rows = under(shares(axes, picture.coordinate, 1), v, frame.height, high)
+    return np.outer(columns, rows).ravel()
 
 
-def states_at(picture, loads, places):
-    """Return the states (loads, places) of the nearest increments and pairs.
+def shares(axes, values, axis):
+    """Return where values of an axis (0: loads, 1: places) are, as shares of its length."""
+    points = np.full((len(values), 2), axes.get_xlim()[0] if axis else axes.get_ylim()[0])
+    points[:, axis] = values
+    return (axes.transData + axes.transAxes.inverted()).transform(points)[:, axis]
 
-    They are NO_STATE on the main curves, before the first increment and pair, and behind the
+
+def states_at(picture, axes, u, v):
+    """Return the states (loads, places) of the nearest increments and pairs, at shares of the axes.
+
+    They are NO_STATE on the curves of edges, before the first increment and pair, and behind the
     last.
     """
-    row = np.argmin(np.abs(loads[:, None] - picture.abscissa[None, :]), axis=1)
-    pair = np.argmin(np.abs(places[:, None] - picture.coordinate[None, :]), axis=1)
+    loads, places = shares(axes, picture.abscissa, 0), shares(axes, picture.coordinate, 1)
+    row = np.argmin(np.abs(u[:, None] - loads), axis=1)
+    pair = np.argmin(np.abs(v[:, None] - places), axis=1)
     states = picture.status[np.ix_(row, pair)].astype(int)
-    states[:, is_outside(places, picture.coordinate)] = NO_STATE
-    if len(picture.abscissa) == 1:  # its names stand beside its marks
+    states[:, is_outside(v, places)] = NO_STATE
+    if len(loads) == 1:  # its names stand beside its marks
         return states
-    states[is_outside(loads, picture.abscissa)] = NO_STATE
-    order, near = np.argsort(picture.abscissa), np.ptp(places) / len(places)
-    for key in CURVES:
-        edge = np.interp(loads, picture.abscissa[order], picture.edges(key)[order])
-        states[np.abs(places - edge[:, None]) < near] = NO_STATE
+    states[is_outside(u, loads)] = NO_STATE
+    for rows, edge in (curve for key in CURVES for curve in picture.curves[key]):
+        order = np.argsort(loads[rows])
+        at, edge = loads[rows][order], shares(axes, edge, 1)[order]
+        edge = np.interp(u, at, edge, left=np.nan, right=np.nan)
+        states[np.abs(v - edge[:, None]) < 1.0 / len(v)] = NO_STATE
     return states
 
 

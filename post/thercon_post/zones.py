@@ -8,6 +8,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.lines import Line2D
 
 from . import style
+from .edge_curves import edge_curves
 from .errors import UserError
 from .overlay import axis_words, file_parts, read_overlays
 from .result import MARKED, OPEN, SLIP, STICK
@@ -20,8 +21,6 @@ NAMES = {OPEN: ("I", "open"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
 CURVE_NAMES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
 LINES = {"edge_contact": "solid", "edge_stick": (0, (3.5, 1.5))}
 WIDTHS = {"edge_contact": 1.0, "edge_stick": 1.8}  # dashes are seen where they lie on the other
-FURTHER = {"color": style.BLACK, "lw": 0.9, "marker": "d", "ms": 3.4, "mew": 0.7}
-FURTHER_FILLS = {"edge_contact": style.BLACK, "edge_stick": "white"}
 TINTS = ("#FFFFFF", "#DCE8F2", "#FBE9C8")  # of open, slip, stick
 
 
@@ -35,7 +34,8 @@ def draw(results, options):
         pictures = [picture_of(result, contact.name, options) for result in results]
         figure = pictures[0].draw(overlays) if not further else draw_beside(pictures, overlays)
         parts = [contact.name] if len(first.contact_names) > 1 else []
-        parts += axis_words(options.along) + file_parts(options.figures) + further
+        parts += ["log"] * options.log + axis_words(options.along)
+        parts += file_parts(options.figures) + further
         name = style.file_name(first, "zones", *parts)
         written += style.write(figure, tables_of(pictures, "table"), options, name)
         if options.csv:
@@ -47,7 +47,7 @@ def draw(results, options):
 def picture_of(result, name, options):
     """Return the diagram of one contact of a result."""
     contact = result.contact(name)
-    return Picture(result, contact, *contact.axis(options.along))
+    return Picture(result, contact, *contact.axis(options.along), options.log)
 
 
 def tables_of(pictures, kind):
@@ -78,7 +78,7 @@ def draw_beside(pictures, overlays):
         axes.label_outer()
         if len(parts) == 1 and axes is not panels[0][len(pictures) // 2]:
             axes.set_xlabel(picture.abscissa_label)  # one panel says for all what they leave out
-        axes.set_xlabel(axes.get_xlabel().replace("; ", ";\n"))
+        axes.set_xlabel(axes.get_xlabel().replace("; ", "\n"))
     figure.legend(handles=list(handles.values()), **style.BELOW, ncols=3,
                   columnspacing=1.4)
     for picture, axes in zip(pictures, panels[0]):
@@ -89,19 +89,29 @@ def draw_beside(pictures, overlays):
 class Picture:
     """The diagram of one contact."""
 
-    def __init__(self, result, contact, along, coordinate):
+    def __init__(self, result, contact, along, coordinate, log=False):
         if result.increments == 0:
             raise UserError(f"{result.path}: holds no accepted increment")
         self.result, self.contact = result, contact
-        self.along, self.coordinate = along, coordinate
+        self.along, self.coordinate, self.log = along, coordinate, log
         load = result.history["load"]
         rising = bool(np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0))
         self.rising = rising
-        self.further = {}  # curve -> whether its further edges have lines or lonely points only
         # A load that turns would draw loading and unloading over each other.
         self.abscissa = load if rising else result.history["time"]
         self.abscissa_label = result.units.load_label(result.load_label) if rising else "Time"
+        least = int(np.argmin(self.abscissa))
+        if log and self.abscissa[least] <= 0.0:
+            raise UserError(
+                f"{result.path}: increment {least + 1} is at {self.abscissa[least]:g}, which a "
+                "logarithmic axis does not have: leave --log out"
+            )
         self.status = contact["status"]
+        self.curves = {
+            key: [(rows, contact.edge_on_axis(places, coordinate)) for rows, places in
+                  edge_curves(contact, key[5:])]
+            for key in CURVES
+        }
         frictionless = contact.friction == 0.0 or contact.get("shear") is None
         self.names = NAMES | ({SLIP: ("II", "contact")} if frictionless else {})
 
@@ -144,7 +154,11 @@ class Picture:
         """Set ranges and labels of the axes; return what the label says of the rest of the face and
         of the increments that are marked."""
         axes.set_ylabel(self.result.units.label(f"${self.along}$", "length"))
-        axes.set_xlim(self.limits(self.abscissa))
+        low, high = limits(np.log10(self.abscissa) if self.log else self.abscissa)
+        if self.log:
+            style.log_abscissa(axes, 10.0**low, 10.0**high)
+        else:
+            axes.set_xlim(0.0 if self.starts_near_zero(low) else low, high)
         if len(self.abscissa) == 1:
             axes.set_xticks(self.abscissa)
         axes.set_ylim(window)
@@ -154,13 +168,10 @@ class Picture:
         axes.set_xlabel(f"{self.abscissa_label}\n{part}".rstrip())
         return part
 
-    @staticmethod
-    def limits(values):
-        """Return the range of the abscissa: from zero where that is next to the first value."""
-        low, high = float(np.min(values)), float(np.max(values))
-        step = (high - low) / max(len(values) - 1, 1)
-        room = 0.02 * (high - low) or 0.5
-        return 0.0 if room < low <= 3.0 * step else low - room, high + room
+    def starts_near_zero(self, low):
+        """Whether zero is next to the first value of the abscissa, and not above the axis' start."""
+        first, last = np.min(self.abscissa), np.max(self.abscissa)
+        return 0.0 < low and first <= 3.0 * (last - first) / max(len(self.abscissa) - 1, 1)
 
     def window(self, drawn):
         """Return the range of the ordinate: what contact has and digitised figures have."""
@@ -174,7 +185,9 @@ class Picture:
         alike = (self.status == self.status[:, :1]).all(axis=1) & (self.status[:, 0] != OPEN)
         if not alike.any():
             return
-        load, place = (between(values) for values in (self.abscissa, self.coordinate))
+        load, place = between(self.abscissa), between(self.coordinate)
+        if self.log:
+            load = 10.0 ** between(np.log10(self.abscissa))
         axes.pcolormesh(
             load,
             place[[0, -1]],
@@ -194,35 +207,20 @@ class Picture:
             axes.plot(load[there], place[there], marker, ls="none", zorder=1, **options)
 
     def draw_edges(self, axes, key):
-        """Draw the main curve of sharpened edges, and the other edges of its kind where present."""
-        main = self.edges(key)
-        looks = {"color": "black", "linestyle": LINES[key], "lw": WIDTHS[key]}
-        axes.plot(self.abscissa, main, zorder=3, **looks)
-        for lonely in np.flatnonzero(is_lonely(main)):
-            axes.plot(self.abscissa[lonely], main[lonely], "k_", ms=4, zorder=3)
-        others = self.edges(key.replace("edge_", "edges_"))
-        count = np.sum(~np.isnan(others), axis=1)
-        others = np.where(np.isclose(others, main[:, None], rtol=1e-12, atol=0.0), np.nan, others)
-        below = np.where(others < main[:, None], others, -np.inf).max(axis=1)  # of the same zone
-        if np.isfinite(below).any():
-            axes.plot(self.abscissa, np.where(np.isfinite(below), below, np.nan), zorder=3, **looks)
-        others = np.where(others == below[:, None], np.nan, others)
-        looks = FURTHER | {"mfc": FURTHER_FILLS[key], "linestyle": LINES[key]}
-        for column in others.T:
-            # Columns belong together only between increments with as many edges.
-            for piece in np.split(np.arange(len(count)), np.flatnonzero(np.diff(count)) + 1):
-                there = ~np.isnan(column[piece])
-                if there.any():
-                    line = bool(np.any(there[1:] & there[:-1]))
-                    self.further[key] = self.further.get(key, False) or line
-                    axes.plot(self.abscissa[piece], column[piece], zorder=4, **looks)
+        """Draw the sharpened edges of a kind: a curve for each, a short line for one that is there
+        at a single increment."""
+        for rows, places in self.curves[key]:
+            looks = {"linestyle": LINES[key], "lw": WIDTHS[key]}
+            if len(rows) == 1:
+                looks = {"marker": "_", "ms": 4, "mew": WIDTHS[key]}
+            axes.plot(self.abscissa[rows], places, color="black", zorder=3, **looks)
 
     def legend_handles(self, overlays):
         """Return the legend's entries: curves, pair states, digitised figures."""
-        shown = [key for key in CURVES if not np.isnan(self.contact[key]).all()]
         handles = [
             Line2D([], [], color="black", ls=LINES[key], lw=WIDTHS[key], label=CURVE_NAMES[key])
-            for key in shown
+            for key in CURVES
+            if self.curves[key]
         ]
         handles += [
             Line2D(
@@ -231,9 +229,6 @@ class Picture:
             for state, marker, options in state_marks()
             if np.any(self.status == state)
         ]
-        for key, line in self.further.items():
-            looks = FURTHER | {"mfc": FURTHER_FILLS[key], "ls": LINES[key] if line else "none"}
-            handles.append(Line2D([], [], label=f"further {CURVE_NAMES[key]}", **looks))
         for overlay in overlays:
             handles += overlay.handles(CURVE_NAMES, LINES)
         return handles
@@ -268,6 +263,13 @@ class Picture:
         }
 
 
+def limits(values):
+    """Return the range of values, and somewhat more at both ends."""
+    low, high = float(np.min(values)), float(np.max(values))
+    room = 0.02 * (high - low) or 0.5
+    return low - room, high + room
+
+
 def between(values):
     """Return the limits half-way between values that rise or fall, and as far beyond both ends."""
     if len(values) == 1:
@@ -284,9 +286,3 @@ def state_marks():
         (SLIP, "o", {"mfc": "white", "mec": style.BLUE, "ms": 2.5, "mew": 0.45}),
         (STICK, "s", {"mfc": style.ORANGE, "mec": style.ORANGE, "ms": 2.0, "mew": 0.3}),
     ]
-
-
-def is_lonely(values):
-    """Return where a value stands between two NaN (or ends), so that no line would show it."""
-    there = np.concatenate(([False], ~np.isnan(values), [False]))
-    return there[1:-1] & ~there[:-2] & ~there[2:]

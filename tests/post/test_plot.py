@@ -262,6 +262,29 @@ def test_courses_are_means_and_ranges_over_the_face_and_the_rates_of_the_model(d
     assert np.isnan(numbers(drawn["heat_stored"])[0])
 
 
+def test_rates_below_zero_are_drawn_on_a_logarithmic_axis_and_told(kept, result):
+    """A body that cools stores less and less; what the axis does not show, the legend does not name."""
+    with h5py.File(result, "r+") as file:
+        history, count = file["history"], len(file["history/time"])
+        history["heat_in"] = np.linspace(5.0, 1.0, count)
+        history["heat_stored"] = stored = np.linspace(-4.0, -1.0, count)
+        history["heat_dilatation"] = np.linspace(-1.0, 1.0, count)
+        history["heat_out"] = np.full(count, 1e-4)  # below the three decades of the axis
+
+    def rates(*options):
+        (figure,) = kept("courses", result, *options)
+        (axes,) = [each for each in figure.axes if each.get_ylabel() == "Heat rate (W)"]
+        return axes, dict(zip([text.get_text() for text in axes.get_legend().get_texts()], axes.lines))
+
+    axes, drawn = rates("--log")
+    assert list(drawn) == ["into the model", "\N{MINUS SIGN}stored", "|taken up by strains|"]
+    np.testing.assert_allclose(drawn["\N{MINUS SIGN}stored"].get_ydata(), -stored)
+    low, high = axes.get_ylim()
+    for line in drawn.values():
+        assert ((low < line.get_ydata()) & (line.get_ydata() < high)).any()
+    np.testing.assert_allclose(rates()[1]["stored"].get_ydata(), stored)
+
+
 def test_of_a_load_that_occurs_twice_the_last_increment_is_drawn(tabulate, tmp_path):
     """Loading and unloading pass it; here unloading has other pressures and temperatures."""
     path = tmp_path / "case.vtkhdf"
@@ -324,16 +347,65 @@ def test_zone_curves_along_s_are_those_of_the_file_and_keep_nan(tabulate, tmp_pa
     np.testing.assert_array_equal(numbers(drawn["edge_stick"]), stick)
 
 
-@pytest.mark.parametrize(("last", "line"), [(6, "None"), (9, "--")])
-def test_the_legend_of_further_edges_has_a_line_where_one_is_drawn(kept, result, last, line):
+def split_contact(path):
+    """Give a result a zone of contact that a gap parts for four increments: its edges are two, four,
+    two. Return what is open, (increments, points)."""
+    with h5py.File(path, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        s, edges = contact["s"][()], np.full((15, 4), np.nan)
+        status = np.zeros((15, len(s)), int)
+        for row in range(15):
+            zones = [(4, 7 - (row > 9)), (9 + (row > 10), 15)] if 8 <= row < 12 else [(4 - (row > 11), 15)]
+            for number, (first, last) in enumerate(zones):
+                status[row, first : last + 1] = 1
+                middles = [0.5 * (s[k] + s[k + 1]) for k in (first - 1, last)]
+                edges[row, 2 * number : 2 * number + 2] = middles
+        contact["status"][...], contact["edges_contact"][...] = status, edges
+        contact["edge_contact"][...] = np.nanmax(edges, axis=1)
+        contact["edge_stick"][...] = contact["edges_stick"][...] = np.nan
+    return status == 0
+
+
+def test_an_edge_goes_on_at_its_zone_where_two_edges_become_four(kept, result):
+    split_contact(result)
+    with h5py.File(result) as file:
+        edges, load = file["contact/CYLINDER/edges_contact"][()], file["history/load"][()]
+    (figure,) = kept("zones", result, "--along", "s")
+    lower, upper = edges[:, 0], np.nanmax(edges, axis=1)
+    expected = [(load, lower), (load, upper), *((load[8:12], edges[8:12, k]) for k in (1, 2))]
+    found = [line.get_xydata() for line in figure.axes[0].lines if line.get_linestyle() == "-"]
+    assert len(found) == len(expected)
+    for line, curve in zip(found, expected):
+        np.testing.assert_allclose(line, np.transpose(curve), rtol=1e-12)
+
+
+def test_an_edge_that_is_there_at_one_increment_is_seen(kept, result):
     with h5py.File(result, "r+") as file:
         edges = file["contact/CYLINDER/edges_stick"]
-        edges[5:last, 1], edges[5:last, 2] = 0.5 * edges[5:last, 0], 0.7 * edges[5:last, 0]
+        edges[6, 1], edges[6, 2] = 0.5 * edges[6, 0], 0.7 * edges[6, 0]
+        edges[6] = np.sort(edges[6])
     (figure,) = kept("zones", result)
-    entries = zip(figure.legends[0].get_texts(), figure.legends[0].legend_handles)
-    found = {text.get_text(): handle.get_linestyle() for text, handle in entries}
-    assert found["further edge of stick"] == line
-    assert "further edge of contact" not in found
+    marks = [line for line in figure.axes[0].lines if line.get_marker() == "_"]
+    assert [len(line.get_xdata()) for line in marks] == [1, 1]
+    assert len({text.get_text() for text in figure.legends[0].get_texts()}) == 5
+
+
+def test_zones_over_the_logarithm_of_the_load_show_the_first_increments(kept, fail, result):
+    loads = np.geomspace(0.01, 300.0, 15)
+    with h5py.File(result, "r+") as file:
+        file["history/load"][...] = loads
+    (figure,) = kept("zones", result, "--log")
+    axes = figure.axes[0]
+    assert axes.get_xscale() == "log"
+    at = (axes.transData + axes.transAxes.inverted()).transform([(load, 0.0) for load in loads])[:, 0]
+    assert (np.diff(at) > 0.05).all() and at[0] > 0.0 and at[-1] < 1.0
+    frame = axes.get_window_extent()
+    for name in axes.texts:
+        box = name.get_window_extent()
+        assert frame.x0 < box.x0 and box.x1 < frame.x1
+    with h5py.File(result, "r+") as file:
+        file["history/load"][0] = 0.0
+    assert "increment 1 is at 0, which a logarithmic axis does not have" in fail("zones", result, "--log")
 
 
 def test_the_left_edge_of_a_symmetric_contact_is_an_edge(kept, result):
@@ -342,7 +414,6 @@ def test_the_left_edge_of_a_symmetric_contact_is_an_edge(kept, result):
         contact["edges_contact"][:, 1] = contact["edge_contact"][()]
         contact["edges_contact"][:, 0] = left = 0.2 * contact["edge_contact"][()]
     (figure,) = kept("zones", result, "--along", "s")
-    assert "further edge of contact" not in [text.get_text() for text in figure.legends[0].get_texts()]
     assert any(len(line.get_ydata()) == 15 and np.allclose(line.get_ydata(), left, rtol=1e-6)
                for line in figure.axes[0].lines)
 
@@ -372,14 +443,13 @@ def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(kept
 
 @pytest.mark.parametrize("count", [5, 60])
 def test_names_of_zones_cover_no_mark_where_there_is_room_between_them(kept, tmp_path, count):
-    """Of a few loads, in whose middle is a column of marks; of many no further edge."""
+    """Of a few loads, in whose middle is a column of marks; of many no edge."""
     path = tmp_path / "slip.vtkhdf"
     write_result(path, loads=tuple(np.linspace(300.0, 900.0, count)))
     with h5py.File(path, "r+") as file:
         contact = file["contact/CYLINDER"]
         contact["status"][...] = 1
         contact["status"][:, -1] = 0
-        contact["edge_contact"][...] = contact["s"][-2]
         for key in ("edge_stick", "edges_contact", "edges_stick"):
             contact[key][...] = np.nan
 
@@ -397,8 +467,11 @@ def test_names_of_zones_cover_no_mark_where_there_is_room_between_them(kept, tmp
     with h5py.File(path, "r+") as file:
         contact = file["contact/CYLINDER"]
         contact["edges_contact"][:, 0], contact["edges_contact"][:, 1] = place, contact["s"][-3]
-    _, marks, box = name_and_marks("d")
-    assert len(marks) == count and box.count_contains(marks) == 0
+    (figure,) = kept("zones", path)
+    (axes,) = figure.axes
+    (box,) = [text.get_window_extent() for text in axes.texts if text.get_text() == "II\nslip"]
+    y = axes.transData.transform((0.0, place))[1]
+    assert not box.y0 < y < box.y1
 
 
 def test_an_edge_of_stick_is_seen_where_it_is_the_edge_of_contact(kept, result):
@@ -451,10 +524,61 @@ def test_a_picture_that_shows_a_part_of_the_face_says_what_it_leaves_out(kept, r
         (figure,) = kept(picture, result)
         return figure.axes[-1].get_xlabel().split("\n")[1:]
 
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        contact["heat_flux"][...] = contact["heat_flux"][()] * (contact["status"][()] > 0)
     assert label() == ["The face runs from 0 to 20 cm; the part not shown is open"]
     with h5py.File(result, "r+") as file:
         file["contact/CYLINDER/status"][14] = 1
     assert label() == []
+
+
+def test_the_open_part_that_carries_heat_is_shown(kept, result):
+    """The profiles leave out 0.5 % of the heat on either side at most; zones, which show none, tell it."""
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        contact["heat_flux"][...] = 2.0 + 0.0 * contact["status"][()]
+        x, weight = contact["x"][()], contact["weight"][()]
+    (figure,) = kept("profiles", result)
+    assert figure.axes[-1].get_xlim()[1] > 20.0
+    assert "The face" not in figure.axes[-1].get_xlabel()
+    (figure,) = kept("zones", result)
+    low, high = figure.axes[0].get_ylim()
+    share = 100.0 * weight[x > high].sum() / weight.sum()
+    label = figure.axes[0].get_xlabel()
+    assert label.endswith(f"is open,\nand up to {share:.2g} % of the heat crosses it")
+    with h5py.File(result, "r+") as file:
+        flux = np.where(x > high, 0.004 * weight[x <= high].sum() / weight[x > high].sum(), 1.0)
+        file["contact/CYLINDER/heat_flux"][...] = flux + np.zeros((15, 1))
+    (figure,) = kept("profiles", result)
+    assert figure.axes[-1].get_xlim()[1] < 20.0
+    assert "%" not in figure.axes[-1].get_xlabel()
+
+
+def test_the_rounding_of_a_coordinate_is_no_place(kept, result):
+    with h5py.File(result, "r+") as file:
+        file["contact/CYLINDER/x"][0] = 1.093e-16
+    (figure,) = kept("profiles", result, "--range", 0, 3)
+    assert "The face runs from 0 to 20 cm" in figure.axes[-1].get_xlabel()
+    with h5py.File(result, "r+") as file:
+        file["contact/CYLINDER/x"][0] = 1.5e-6  # a mesh may begin there
+    (figure,) = kept("profiles", result, "--range", 0, 3)
+    assert "The face runs from 1.5e\N{MINUS SIGN}06 to 20 cm" in figure.axes[-1].get_xlabel()
+
+
+@pytest.mark.parametrize("card", ["*CLEARANCE, MASTER=A, SLAVE=B, VALUE=-0.1", "*HEADING"])
+@pytest.mark.parametrize("scale", [1, 2])
+def test_no_line_below_the_fields_ends_in_a_semicolon(kept, result, card, scale):
+    with h5py.File(result, "r+") as file:
+        del file["deck"]
+        file["deck"] = [card]
+        file["VTKHDF/PointData/mode_temperature"] = file["VTKHDF/PointData/temperature"][()]
+        file["VTKHDF/PointData/mode_displacement"] = file["VTKHDF/PointData/displacement"][()]
+    for quantity in ("yy", "mode_temperature"):
+        (figure,) = kept("fields", result, "--quantity", quantity, "--scale", scale)
+        lines = figure.get_supxlabel().splitlines()
+        assert lines[0].startswith("temperature of node set TOP 900")
+        assert not any(line.rstrip().endswith(";") for line in lines)
 
 
 def test_a_range_of_the_profiles_does_not_call_closed_points_open(kept, result):
@@ -807,9 +931,54 @@ def test_principal_radial_and_hoop_stress_are_the_files_or_made_of_its_stress(ta
                                   np.arange(14.0 * points, 15.0 * points))
 
 
-def test_a_load_without_fields_names_the_nearest_with_fields(fail, tmp_path):
-    write_result(tmp_path / "thin.vtkhdf", fields_every=5)
-    assert "nearest with fields: 600" in fail("fields", tmp_path / "thin.vtkhdf", "--load", 660)
+@pytest.fixture
+def said(unrendered, tmp_path, capsys):
+    """Return a function that calls plot and gives the names of the pictures and the notes."""
+
+    def call(*arguments):
+        assert main([*map(str, arguments), "--out", str(tmp_path / "out")]) == 0
+        captured = capsys.readouterr()
+        return [Path(line).stem for line in captured.out.splitlines()[::2]], captured.err
+
+    return call
+
+
+def test_a_load_that_no_increment_has_gives_the_nearest_and_says_so(said, fail, result):
+    note = f"plot: note: {result}: no increment has load 550; the nearest, 540, is drawn\n"
+    assert said("profiles", result, "--load", 550, 600) == (["case.profiles-540-600"], note)
+    assert said("fields", result, "--load", 550) == (["case.fields-540"], note)
+    assert "no increment has load 950: there are 60 to 900" in fail("profiles", result, "--load", 950)
+    assert "no increment 99: there are 1 to 15" in fail("profiles", result, "--increment", 99)
+
+
+def test_of_loads_that_are_small_beside_the_last_the_one_asked_for_is_drawn(said, result):
+    """Times of a shock begin with less than a millionth of the end."""
+    with h5py.File(result, "r+") as file:
+        times = np.geomspace(1e-5, 1e4, 15)
+        for name in ("history/load", "history/time", "VTKHDF/Steps/Values"):
+            file[name][...] = times
+    for load in times[:3]:
+        for picture in ("profiles", "fields"):
+            assert said(picture, result, "--load", load) == ([f"case.{picture}-{load:g}"], "")
+
+
+def test_a_load_without_fields_gives_the_nearest_with_fields_and_says_so(said, fail, tmp_path):
+    path = tmp_path / "thin.vtkhdf"
+    write_result(path, fields_every=5)
+    assert said("fields", path, "--load", 660) == (
+        ["thin.fields-600"],
+        f"plot: note: {path}: no increment with fields has load 660; the nearest, 600, is drawn\n",
+    )
+    message = fail("fields", path, "--increment", 11)
+    assert "no fields at increment 11 (thinned by FREQUENCY); nearest with fields: 10" in message
+
+
+def test_fields_of_another_increment_are_never_taken(fail, result):
+    """However near its time is: an absolute tolerance is none for times in nanoseconds."""
+    with h5py.File(result, "r+") as file:
+        file["history/time"][...] = 1e-10 * np.arange(1.0, 16.0)
+        file["VTKHDF/Steps/Values"][...] = 1e-10 * np.array([*range(2, 16), 15.0])
+    assert "no fields at increment 1" in fail("fields", result, "--increment", 1)
 
 
 def test_convergence_holds_every_iteration_and_marks_what_failed(draw, tmp_path):
@@ -996,13 +1165,6 @@ def test_what_is_no_result_is_refused(fail, tmp_path):
         file["run"] = 1
     assert "not a thercon result" in fail("mesh", tmp_path / "other.vtkhdf")
     assert "is a folder" in fail("mesh", tmp_path)
-
-
-def test_an_unknown_load_names_the_nearest(fail, result):
-    assert "no increment has load 550; nearest: 540 and 600" in fail(
-        "profiles", result, "--load", 550
-    )
-    assert "no increment 99: there are 1 to 15" in fail("profiles", result, "--increment", 99)
 
 
 def test_mistakes_on_the_command_line_have_status_1(fail, result):

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..words import place_words
 from .match import row_words
 
 HEADING = (
@@ -91,7 +92,9 @@ def place(block, k):
     elif not keys.startswith("row "):
         words.append(keys)
     inside = [
-        f"{name}={block.columns[name][k]:.4g}" for name in ("x", "y") if name in block.columns
+        f"{name}={place_words(block.columns[name][k], block.columns[name])}"
+        for name in ("x", "y")
+        if name in block.columns
     ]
     return " ".join([*words, *inside])
 

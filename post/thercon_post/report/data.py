@@ -6,16 +6,16 @@ import numpy as np
 
 from .. import branch, mesh
 from ..courses import HEAT
+from ..edge_curves import edge_curves
 from ..field_colours import PRINCIPAL, SIGNED
 from ..cells import CORNERS
 from ..fields import TITLES, USUAL, apart_words, touches_after_a_gap
-from ..result import CELL_FIELDS, FIELD_SOURCES, UNJUDGED, words_of
+from ..result import CELL_FIELDS, FIELD_SOURCES, NOISE, UNJUDGED, words_of
 from ..style import matplotlib
 
 FIELD_NUMBERS = 1_400_000  # numbers of all fields together: at most 3.7 MB of text
 FINE = 20_000  # elements: nodes on sides cannot be seen
 DERIVED = (*PRINCIPAL, "radial", "hoop")  # left out of the pages of fine meshes
-NOISE = 1e-9  # of what it is beside: smaller values are rounding
 LEAST = {"gain": 1e-6}  # eigenvalues of the coupling are accurate to this
 PROFILES = ("pressure", "shear", "heat_flux", "gap")
 COLOURS = ("viridis", "inferno", "RdBu_r")
@@ -84,18 +84,26 @@ def loads(result):
 def contact_data(result, contact):
     """Return the profiles, states, edges and totals of one contact."""
     name, coordinate = contact.axis(None)
-    window, unit = contact.window(coordinate), plain(result.units.names.get("length", ""))
+    unit = plain(result.units.names.get("length", ""))
+    windows = [contact.window(coordinate, with_heat=heat) for heat in (False, True)]
     return {
         "name": contact.name,
         "axis": name,
         "at": packed(coordinate),
-        "window": window,
-        "part": contact.part_words(coordinate, window, unit),
+        "windows": dict(zip(("zones", "profiles"), windows)),
+        "parts": {
+            key: contact.part_words(coordinate, window, unit)
+            for key, window in zip(("zones", "profiles"), windows)
+        },
         "friction": contact.friction,
         "status": packed(contact["status"], "u1"),
         "profiles": {key: packed(contact[key]) for key in PROFILES if is_told(result, contact, key)},
         "edges": {
             key: packed(contact.edge_on_axis(contact[f"edges_{key}"], coordinate))
+            for key in ("contact", "stick")
+        },
+        "curves": {
+            key: [packed(values) for values in joined(contact, key, coordinate)]
             for key in ("contact", "stick")
         },
         "main": {
@@ -104,6 +112,13 @@ def contact_data(result, contact):
         },
         "totals": totals(contact),
     }
+
+
+def joined(contact, key, coordinate):
+    """Return increments, from 0, and places of the curves of an edge, with NaN between curves."""
+    curves = [np.append(curve, [[np.nan], [np.nan]], axis=1) for curve in edge_curves(contact, key)]
+    rows, places = np.hstack([np.zeros((2, 0)), *curves])
+    return rows, contact.edge_on_axis(places, coordinate)
 
 
 def is_told(result, contact, key):

@@ -122,7 +122,7 @@ function legend(out, entries, width, left, top) {
 const square = r => (x, y) => `M${(x - r).toFixed(1)} ${(y - r).toFixed(1)}h${2 * r}v${2 * r}h${-2 * r}z`;
 const disc = r => (x, y) => `M${(x - r).toFixed(1)} ${y.toFixed(1)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
 
-const diamond = (x, y) => `M${(x - 3).toFixed(1)} ${y.toFixed(1)}l3 -4l3 4l-3 4z`;
+const dash = (x, y) => `M${(x - 4).toFixed(1)} ${y.toFixed(1)}h8`;
 
 // ---- loads ----
 const times = data.load.times, count = times.length;
@@ -139,65 +139,59 @@ function tellLoad() {
 
 // ---- contact ----
 const contacts = data.contacts.map(each => {
-   const decoded = {...each, at: floats(each.at), status: bytes(each.status), profiles: {}, edges: {}, main: {}};
+   const decoded = {...each, at: floats(each.at), status: bytes(each.status), profiles: {}, edges: {}, curves: {}, main: {}};
    for (const key in each.profiles) decoded.profiles[key] = floats(each.profiles[key]);
    for (const key in each.edges) decoded.edges[key] = floats(each.edges[key]);
+   for (const key in each.curves) decoded.curves[key] = each.curves[key].map(floats);
    for (const key in each.main) decoded.main[key] = floats(each.main[key]);
    return decoded;
 });
 const contact = () => contacts[$('interface') ? Number($('interface').value) : 0];
-const part = () => contact().part && `${contact().part}.`;
+const part = chart => contact().parts[chart] && `${contact().parts[chart]}.`;
 const rowOf = (values, width, k = row) => values.subarray(k * width, (k + 1) * width);
-// The other edge of the zone that the main edge ends, and points of the edges of other zones.
-function others(key) {
-   const c = contact(), other = new Float32Array(count).fill(NaN), further = [];
-   for (let k = 0; k < count; k++) {
-      const main = c.main[key][k], edges = finite(rowOf(c.edges[key], 4, k));
-      const below = edges.filter(edge => edge < main - 1e-6 * Math.abs(main));
-      if (below.length) other[k] = Math.max(...below);
-      for (const edge of edges)
-         if (edge !== other[k] && !(Math.abs(edge - main) <= 1e-6 * Math.abs(edge))) further.push([abscissa[k], edge]);
-   }
-   return {other, further};
+// Curves of edges over the load, one behind the other, and points of those that have one alone.
+function edgeCurves(key) {
+   const [rows, y] = contact().curves[key], x = Array.from(rows, k => abscissa[k]), alone = [];
+   y.forEach((place, k) => {
+      if (Number.isFinite(place) && ![y[k - 1], y[k + 1]].some(Number.isFinite)) alone.push([x[k], place]);
+   });
+   return {x, y, alone};
 }
 function drawZones() {
    const c = contact(), m = c.at.length, states = [[], [], []];
    for (let k = 0; k < count; k++)
       for (let i = 0; i < m; i++) states[c.status[k * m + i]].push([abscissa[k], c.at[i]]);
    const frictionless = !c.profiles.shear || c.friction === 0;
-   const contactEdges = others('contact'), stickEdges = others('stick');
+   const contactEdges = edgeCurves('contact'), stickEdges = edgeCurves('stick'), window = c.windows.zones;
    const room = 0.03 * (Math.max(...abscissa) - Math.min(...abscissa)) || 0.5;
-   const margin = 0.04 * (c.window[1] - c.window[0]) || 0.5;
+   const margin = 0.04 * (window[1] - window[0]) || 0.5;
    const small = Math.min(3, Math.max(0.8, 130 / Math.max(count, 1)));
    chart($('zones'), {
       title: `Zones of interface ${c.name}: open, slip and stick over the load; the upright line is the load chosen`,
       xLabel: data.load.axis, yLabel: withUnit(c.axis, unit('length')),
       xRange: [Math.min(...abscissa) - room, Math.max(...abscissa) + room],
-      yRange: [c.window[0] - margin, c.window[1] + margin],
+      yRange: [window[0] - margin, window[1] + margin],
       uprights: [abscissa[row]],
       clouds: [
          {points: states[0], shape: disc(0.4 * small), fill: GREY, colour: GREY, name: 'open'},
          {points: states[1], shape: disc(small), fill: PAPER, colour: BLUE, name: frictionless ? 'closed' : 'slip'},
          {points: states[2], shape: square(0.9 * small), fill: '#e69f00', colour: '#e69f00', name: 'stick'},
-         {points: contactEdges.further, shape: diamond, fill: INK, colour: INK, name: 'further edge of contact'},
-         {points: stickEdges.further, shape: diamond, fill: PAPER, colour: INK, name: 'further edge of stick'},
+         {points: [...contactEdges.alone, ...stickEdges.alone], shape: dash, fill: INK, colour: INK},
       ].filter(cloud => cloud.points.length),
       lines: [
-         {x: abscissa, y: c.main.contact, colour: INK, name: 'edge of contact'},
-         {x: abscissa, y: contactEdges.other, colour: INK},
-         {x: abscissa, y: c.main.stick, colour: INK, dash: '6 3', width: 2.6, name: 'edge of stick'},
-         {x: abscissa, y: stickEdges.other, colour: INK, dash: '6 3', width: 2.6},
+         {...contactEdges, colour: INK, name: 'edge of contact'},
+         {...stickEdges, colour: INK, dash: '6 3', width: 2.6, name: 'edge of stick'},
       ].filter(line => finite(line.y).length),
-      caption: `Zones. Each symbol is a contact point at one increment, except diamonds. ${part()}`,
+      caption: `Zones. Each symbol is a contact point at one increment. ${part('zones')}`,
    });
 }
 function profile(id, title, quantities, label, zero, caption) {
-   const c = contact(), m = c.at.length, lines = [], all = [], now = [], uprights = [];
+   const c = contact(), m = c.at.length, window = c.windows.profiles, lines = [], all = [], now = [], uprights = [];
    for (const [key, name, colour, dash, factor = 1] of quantities) {
       const whole = c.profiles[key];
       if (!whole) continue;
       for (let i = 0; i < whole.length; i++)
-         if (c.at[i % m] >= c.window[0] && c.at[i % m] <= c.window[1]) {
+         if (c.at[i % m] >= window[0] && c.at[i % m] <= window[1]) {
             all.push(factor * whole[i]);
             if (Math.floor(i / m) === row) now.push(factor * whole[i]);
          }
@@ -213,11 +207,11 @@ function profile(id, title, quantities, label, zero, caption) {
    put($(id), html``);
    if (!lines.length) return;
    for (const key of ['contact', 'stick']) uprights.push(...finite(rowOf(c.edges[key], 4)));
-   const room = 0.02 * (c.window[1] - c.window[0]) || 0.5;
+   const room = 0.02 * (window[1] - window[0]) || 0.5;
    const isRounding = peak(now) <= 1e-6 * peak(all);
    chart($(id), {title: `${title} along interface ${c.name}, ${loadWords(row)}`, lines, uprights,
       xLabel: withUnit(c.axis, unit('length')), yLabel: label, caption,
-      xRange: [c.window[0] - room, c.window[1] + room], yRange: rangeOf($('same').checked || isRounding ? all : now, true)});
+      xRange: [window[0] - room, window[1] + room], yRange: rangeOf($('same').checked || isRounding ? all : now, true)});
 }
 function drawProfiles() {
    const c = contact(), said = loadWords(row), mu = c.friction;
@@ -232,7 +226,7 @@ function drawProfiles() {
    if (shear && mu) tractions.push(['pressure', bothSigns ? '±μp' : 'μp', GREY, '3 3', mu]);
    if (shear && mu && bothSigns) tractions.push(['pressure', '', GREY, '3 3', -mu]);
    profile('tractions', 'Contact tractions', tractions, withUnit('traction', unit('stress')), true,
-      `Tractions, ${said}. Dotted lines are the edges of contact and stick. ${part()}`);
+      `Tractions, ${said}. Dotted lines are the edges of contact and stick. ${part('profiles')}`);
    profile('flux', 'Heat flux', [['heat_flux', 'heat flux q', INK, '']], withUnit('heat flux q', unit('flux')), false,
       `Heat flux from slave to master, ${said}.`);
    profile('gap', 'Gap', [['gap', 'gap', BLUE, '']], withUnit('gap', unit('length')), false, `Gap, ${said}.`);
