@@ -520,7 +520,7 @@ contains
          reasons(i)%value = words_of_reason(i)
       end do
       call file%write('/errors/reasons', reasons, &
-         'why there is no bound, in the order of the numbers in `no_estimate`, from 0 on')
+         'words of the reasons for which there is no bound, from 0 on')
       call file%set('/errors', 'inside_step', words_of_reason(reason_inside_step(model)))
    end subroutine write_reasons
 

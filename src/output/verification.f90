@@ -139,7 +139,7 @@ contains
       where = to_upper(model%verifications(c)%where)
       call read_integer(where, number, is_node)
       why = reason_of_run(model)
-      if (.not. record%last_of_step) why = reason_inside_step(model)
+      if (.not. allocated(record%errors)) why = reason_inside_step(model)
       q = 0
       if (quantity == 'NT') q = find_quantity(maxima, 'temperature')
       if (quantity == 'MISES' .or. is_node .and. any(quantity == ['S11', 'S22', 'S33', 'S12'])) then
@@ -147,12 +147,15 @@ contains
       end if
       if (q > 0 .and. (is_node .or. where == 'MAX')) then
          outcome%no_estimate = why
-         do i = 1, merge(size(record%body_errors), 0, why == no_reason)
-            associate (errors => record%body_errors(i))
-               if (is_node) outcome%no_estimate = max(outcome%no_estimate, errors%no_estimate(q))
-               if (.not. is_node .and. errors%value(q) >= outcome%found) call take(errors, q)
-            end associate
-         end do
+         if (why == no_reason) then
+            do i = 1, size(record%body_errors)
+               associate (errors => record%body_errors(i))
+                  if (is_node) outcome%no_estimate = max(outcome%no_estimate, &
+                     errors%no_estimate(q))
+                  if (.not. is_node .and. errors%value(q) >= outcome%found) call take(errors, q)
+               end associate
+            end do
+         end if
          if (is_node .and. allocated(record%check_bounds)) then
             if (.not. ieee_is_nan(record%check_bounds(c))) outcome%bound = record%check_bounds(c)
          end if
