@@ -159,7 +159,7 @@ contains
          call sum_up_interface(self%doubled, no_mesh == '', self%is_mixed(i), points, &
             record%contacts(i), record%errors(i))
       end do
-      slides = any(record%contacts%slides_far)
+      slides = any(record%contacts%slide%point > 0)
       do i = 1, size(record%body_errors)
          call sum_up_body(self%doubled, no_mesh == '', is_steady(model, record), slides, &
             record%body_errors(i))

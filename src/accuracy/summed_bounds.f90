@@ -28,7 +28,7 @@ contains
       logical :: holds(reason_count), of_peak(reason_count)
 
       holds = .false.
-      holds(slides_far) = contact%slides_far
+      holds(slides_far) = contact%slide%point > 0
       of_peak = holds
       of_peak(at_corner) = peaks_at_corner(points, contact)
       of_peak(turns_round) = is_mixed .and. turns_at_peak(contact)

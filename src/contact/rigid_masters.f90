@@ -60,8 +60,9 @@ contains
       associate (from => mesh%coordinates(:, slave%nodes))
          do k = 1, size(slave%nodes)
             ! Where a face reaches the axis, its mirror image leans the other way.
-            if (about_axis .and. abs(from(1, k)) <= no_radius*maxval(abs(from(1, :)))) &
+            if (about_axis .and. abs(from(1, k)) <= no_radius*maxval(abs(from(1, :)))) then
                normal(:, k) = [0.0_dp, sign(1.0_dp, normal(2, k))]
+            end if
             call drawing%find_met(from(:, k), normal(:, k), piece, t, ahead(k))
             is_met(k) = piece > 0
             if (is_met(k)) then

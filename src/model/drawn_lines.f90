@@ -1,5 +1,5 @@
-!> The lines and arcs of a drawing, which a rigid body carries: points, tangents, the nearest point of
-!> a drawn line, and the one that a normal meets.
+!> The lines and arcs of a drawing, which a rigid body carries: points, tangents, the nearest point
+!> of a drawn line, and the one that a normal meets.
 module drawn_lines
    use kinds, only: dp
    implicit none
@@ -163,7 +163,7 @@ contains
       end do
    end subroutine find_met
 
-   !> The two points at which a line meets a piece or what it is part of, a straight line or a circle.
+   !> The two points at which a line meets a piece or what it is part of, a straight line or circle.
    pure subroutine meet_piece(self, i, x, direction, t, ahead)
       class(drawn_line_type), intent(in) :: self
       integer, intent(in) :: i             ! the piece

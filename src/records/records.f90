@@ -59,7 +59,6 @@ module records
       real(dp) :: edge_stick = 0.0_dp                  !! outer edge, widest stick zone; or NaN
       real(dp) :: edges_contact(edges_kept) = 0.0_dp   !! all edges as s, ascending, padded with NaN
       real(dp) :: edges_stick(edges_kept) = 0.0_dp     !! alike
-      logical :: slides_far = .false.  !! beyond its contact points: no number of it has a bound
    end type contact_record_type
 
    !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the

@@ -18,6 +18,9 @@ def told(path):
     said = process.stderr
     found = re.findall(r"slides by ([^,]*), " + TOO_FAR + r": slave node (\d+) (.*)", said)
     assert len(found) <= 1, said
+    unsure = "(no estimate: slides beyond its contact points)"
+    assert (unsure in process.stdout) == bool(found), process.stdout
+    assert not (found and "+-" in process.stdout), process.stdout
     return (float(found[0][0]), int(found[0][1]), found[0][2]) if found else None
 
 
