@@ -321,7 +321,8 @@ void *__wrap_calloc(size_t count, size_t bytes)
    return checked(__real_calloc(count, bytes), (double)count * (double)bytes);
 }
 
+/* gfortran asks for no bytes where an array is empty; what that frees, C leaves open. */
 void *__wrap_realloc(void *former, size_t bytes)
 {
-   return checked(__real_realloc(former, bytes), (double)bytes);
+   return checked(__real_realloc(former, bytes > 0 ? bytes : 1), (double)bytes);
 }
