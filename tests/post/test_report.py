@@ -278,6 +278,21 @@ def test_an_edge_goes_on_at_its_zone_where_two_edges_become_four(synthetic, brow
     assert [len(height) for height in heights] == [1, 1, 1, 1], "no curve leaves its place"
 
 
+def test_the_open_part_that_carries_heat_is_shown(synthetic, browser):
+    """By tractions, flux and gap; the zones say how much of the heat crosses what they leave out."""
+
+    def change(file):
+        file["contact/CYLINDER/heat_flux"][...] = 2.0
+
+    browser.open(synthetic(change))
+    ticks = """return [...document.querySelectorAll('#' + arguments[0] + ' text.tick')].map(
+        each => each.textContent)"""
+    for chart in ("tractions", "flux", "gap"):
+        assert "20" in browser.run(ticks, chart)
+    words = browser.run("return document.getElementById('zones').textContent")
+    assert re.search(r"the part not shown is open,\s+and up to \d+ % of the heat crosses it", words)
+
+
 def test_a_symmetric_contact_has_two_edges_and_no_chart_is_of_rounding(synthetic, browser):
     def change(file):
         contact = file["contact/CYLINDER"]
