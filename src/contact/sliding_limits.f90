@@ -5,7 +5,8 @@
 !> matters where
 !>
 !> - no master is there any more;
-!> - a master that deforms and conducts is another one: s exceeds the spacing of nodes;
+!> - a master that deforms and conducts is another one: s exceeds the spacing of nodes, and is no
+!>   small part of the length in contact, within which fields change;
 !> - the gap of the mesh is another one, h(s_k + s), because slopes or curvatures of the faces
 !>   differ: to the second order it changes by s h' + s^2 h''/2. Half of the first term is in the
 !>   linear theory, whose normals are midway between those of both faces. For a cylinder of radius R
@@ -21,7 +22,8 @@ module sliding_limits
    !> Part of the gaps that the contact closes by which sliding may change them. A cylinder on a
    !> plane may so slide by a twentieth of half the width of its contact.
    real(dp), parameter :: small_change = 0.1_dp
-   !> Part of the length in contact that may slide past the end of the master.
+   !> Part of the length in contact that may slide past the end of the master, or farther than the
+   !> spacing of nodes.
    real(dp), parameter :: small_part = 0.05_dp
 
    !> The contact point that slides farthest beyond a limit.
@@ -47,23 +49,26 @@ contains
       length = max(points%edge, maxval(points%arc_length, mask=closed) - &
          minval(points%arc_length, mask=closed))
       past = past_end(points, movement)
-      call take(past/(small_part*length), 'slides past the end of the master surface by ', past, &
-         ', more than a twentieth of the length in contact; extend the master, or exchange '// &
-         'slave and master')
+      call take(slide, past/(small_part*length), 'slides past the end of the master surface by ', &
+         past, ', more than a twentieth of the length in contact; extend the master, or '// &
+         'exchange slave and master')
       if (.not. points%is_rigid) then
          spacing = points%edge/((points%side_nodes - 1)*points%node_spacings)
-         call take(abs(movement)/spacing, 'slides farther than the spacing of its nodes, ', &
-            spacing, '; draw the bodies where they slide to')
+         spacing = max(spacing, small_part*length)
+         call take(slide, abs(movement)/spacing, 'slides farther than the spacing of its nodes '// &
+            'and a twentieth of the length in contact, ', spacing, &
+            '; draw the bodies where they slide to')
       end if
       change = abs(gap_at(points, points%arc_length + movement) - points%initial_gap)
       closes = closed_gap(points, closed)
-      call take(change/(small_change*closes), 'slides to where the gap of the mesh differs by ', &
-         change, ', more than a tenth of what the contact closes, '//to_text(closes)// &
+      call take(slide, change/(small_change*closes), 'slides to where the gap of the mesh '// &
+         'differs by ', change, ', more than a tenth of what the contact closes, '//to_text(closes)// &
          '; draw the bodies where they slide to')
 
    contains
       !> Takes the contact point that exceeds a limit most, if it does so more than the one before.
-      pure subroutine take(over_limit, before, value, behind)
+      pure subroutine take(slide, over_limit, before, value, behind)
+         type(slide_type), intent(inout) :: slide
          real(dp), intent(in) :: over_limit(:), value(:)   ! (m)
          character(*), intent(in) :: before, behind
          integer :: k

@@ -101,6 +101,7 @@ contains
       type(trade_type) :: trade
       type(error_type), allocatable :: error
       character(:), allocatable :: table
+      type(string_type) :: tables(1)
       integer :: i
 
       status = 0
@@ -111,7 +112,8 @@ contains
       call simulation%release()
       table = results_of(path, command)//'.trade.csv'
       call inputs%add(path, deck%cards%files)
-      call inputs%check([string_type(table)], error)
+      tables(1)%value = table   ! gfortran leaks components of an array constructor
+      call inputs%check(tables, error)
       if (.not. allocated(error)) call make_folder(command%folder, error)
       if (.not. allocated(error)) call try_file(table, error)
       do i = 1, size(runs)

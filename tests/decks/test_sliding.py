@@ -81,12 +81,15 @@ def test_a_slave_that_leaves_the_end_of_the_master(tmp_path, kind, columns, pair
                        kind)) is None
 
 
-@pytest.mark.parametrize(("slide", "warns"), [(0.2, False), (0.3, True)])
-def test_a_slip_of_more_than_the_spacing_of_nodes(tmp_path, slide, warns):
-    found = told(blocks(tmp_path / "d.inp", (4, 1, 2), (16, 0, 4), slide))
-    assert (found is not None) == warns
-    if warns:
-        assert "slides farther than the spacing of its nodes, 0.25" in found[2]
+@pytest.mark.parametrize(("columns", "slide", "limit"), [
+    (4, 0.2, None), (4, 0.3, "0.25"), (40, 0.04, None), (40, 0.06, "5E-2")])
+def test_a_slip_of_more_than_the_spacing_of_nodes(tmp_path, columns, slide, limit):
+    """And of more than a twentieth of the length in contact, 1, however fine the mesh is."""
+    found = told(blocks(tmp_path / "d.inp", (columns, 1, 2), (4 * columns, 0, 4), slide))
+    assert (found is not None) == (limit is not None)
+    if limit:
+        assert "slides farther than the spacing of its nodes and a twentieth of the length in " \
+            f"contact, {limit}" in found[2]
 
 
 def test_a_rigid_plane_is_the_same_everywhere(tmp_path):
