@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 from functools import cache
+from itertools import chain
 
 import h5py
 import numpy as np
@@ -30,18 +31,19 @@ def types():
 
 @cache
 def sources():
-    """Return texts of decks, each with the folder of the files that it includes."""
-    paths = [*INPUT.glob("*/*.inp"), *(DECKS / "foreign").glob("*.inp"), *(DECKS / "refused").glob("*.inp")]
-    texts = [(path.read_text(errors="replace"), path.parent) for path in sorted(paths)]
-    own = [plain(deck) + "*END STEP\n" for decks in CARDS.values() for deck in decks]
-    return texts + [(deck, None) for deck in [MESH + MODEL + STEP, plain(ASSEMBLY), *own]]
+    """Return groups of decks, as texts, each with the folder of the files that it includes."""
+    right = [*INPUT.glob("*/*.inp"), *(DECKS / "foreign").glob("*.inp")]
+    groups = [[(path.read_text(errors="replace"), path.parent) for path in sorted(paths)]
+              for paths in (right, (DECKS / "refused").glob("*.inp"))]
+    own = [MESH + MODEL + STEP, ASSEMBLY, *(deck for decks in CARDS.values() for deck in decks)]
+    return [*groups, [(plain(deck) + "*END STEP\n", None) for deck in own]]
 
 
 @cache
 def cards():
     """Return cards of all decks, each with its first lines of data."""
     found = []
-    for text, _ in sources():
+    for text, _ in chain(*sources()):
         found += [card[:300] for card in re.findall(r"^\*[^*].*\n(?:[^*\n].*\n){0,3}", text, re.M)]
     return found + ignored("11").splitlines(keepends=True)
 
@@ -103,7 +105,7 @@ def change(lines, chance):
 def mutated(folder, seed):
     """Write a deck that is changed in one to four places; return its path."""
     chance = random.Random(seed)
-    text, beside = chance.choice(sources())
+    text, beside = chance.choice(chance.choice(sources()))
     lines = text.splitlines() or ["*NODE"]
     for _ in range(chance.choice((1, 1, 2, 4))):
         change(lines, chance)

@@ -2,6 +2,7 @@
 cards that are ignored."""
 
 import re
+import resource
 
 import pytest
 from deck_runs import DECKS, run
@@ -316,3 +317,12 @@ def test_an_ignored_card_does_not_stand_for_another(tmp_path):
     status, said = checked(tmp_path, deck + "*END STEP\n")
     assert status == 1
     assert "*KINEMATIC is missing" in said
+
+
+def test_sets_that_hold_a_set_twice_do_not_double(tmp_path):
+    """27 levels of a set of two nodes would have 1 GB of members."""
+    sets = "".join(f"*NSET, NSET=S{k}\nS{k - 1}, S{k - 1}\n" for k in range(1, 28))
+    deck = model("*NSET, NSET=S0\n1, 2\n" + sets + "*BOUNDARY\nS27, 1\n")
+    status, said = checked(tmp_path, deck + "*END STEP\n")
+    assert status == 0, said
+    assert resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss < 500_000, "kB"

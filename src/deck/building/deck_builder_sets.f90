@@ -170,8 +170,9 @@ contains
             call read_target(cards%data(j), i, draft%numbers, draft%items(:known), report, &
                other, valid)
             if (other%item > 0) call add_members(draft, set, [other%item])
-            if (other%set > 0) call add_members(draft, set, &
-               (draft%items(other%set)%members(:draft%counts(other%set))))
+            ! Each member once, lest sets that hold a set twice double.
+            if (other%set > 0) call add_members(draft, set, unique_sorted( &
+               draft%items(other%set)%members(:draft%counts(other%set))))
          end do
       end do
    end subroutine build_set
