@@ -241,7 +241,9 @@ contains
 
       motion%company = ''
       if (maxval(abs(vector)) <= nothing*maxval(abs([vector, lone]))) then
-         associate (dof => bodies%lone(maxloc(abs(lone), dim=1)))
+         ! The first of those that move most: which one rounding makes the largest is chance.
+         associate (dof => bodies%lone(findloc(abs(lone) >= (1.0_dp - nothing)* &
+            maxval(abs(lone)), .true., dim=1)))
             motion%node = (dof + 1)/2
             motion%way = 'along '//merge('x', 'y', modulo(dof, 2) == 1)
          end associate
