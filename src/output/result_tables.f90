@@ -136,27 +136,24 @@ contains
    !> Quantities with estimated errors, as they are in `/errors/<name>`, and why there are none.
    pure function bounded(estimated) result(quantities)
       type(quantity_type), intent(in) :: estimated(:)
-      type(quantity_type) :: quantities(size(estimated) + 1)
+      type(quantity_type) :: quantities(size(estimated) + 1), reason
       integer :: i
 
-      ! Every table has one row a step, whatever it is of.
-      quantities = [estimated, quantity_type('no_estimate', of_history, '-', is_integer=.true., &
-         description='reason for which a quantity has no bound, a row of /errors/reasons from 0')]
-      quantities%kind = of_history
-      quantities%values = 5
-      quantities%components = 'value bound mesh increments iteration'
+      reason = quantity_type('no_estimate', of_history, '-', is_integer=.true., &
+         description='reason for which a quantity has no bound, a row of /errors/reasons from 0')
+      reason%components = ''
       do i = 1, size(estimated)
+         quantities(i) = estimated(i)
+         quantities(i)%values = 5
+         quantities(i)%components = 'value bound mesh increments iteration'
          quantities(i)%description = 'value and the bound of its error, with its parts: '// &
             trim(estimated(i)%description)
+         reason%components = trim(reason%components)//' '//estimated(i)%name
       end do
-      associate (reason => quantities(size(quantities)))
-         reason%values = size(estimated)
-         reason%components = ''
-         do i = 1, size(estimated)
-            reason%components = trim(reason%components)//' '//estimated(i)%name
-         end do
-         reason%components = adjustl(reason%components)
-      end associate
+      reason%components = adjustl(reason%components)
+      reason%values = size(estimated)
+      quantities(size(quantities)) = reason
+      quantities%kind = of_history   ! every table has one row a step, whatever it is of
    end function bounded
 
    !> Writes the geometry of contact points, those of some interfaces one behind the other.

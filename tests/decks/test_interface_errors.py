@@ -199,7 +199,7 @@ def test_friction_that_a_held_contact_point_lacks_is_in_the_bound(tmp_path, pair
     mu times the normal force. The contact point in that plane is held, and its friction is missing."""
     lines = np.linspace(0.0, 3.0, sides + 1)
     cards = [*block("A", lines, [1.0, 1.5, 2.0]), *block("B", lines, [0.0, 0.5, 1.0], first=1001),
-             *solid("A", 1000.0, 0.0, 1e-3), *solid("B", 1000.0, 0.0),
+             *solid("A", 1000.0, 0.0, 1e-4), *solid("B", 1000.0, 0.0),
              "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.1",
              f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}", "A.BOTTOM, B.TOP",
              "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "A, 0.", "B, 0.",

@@ -10,6 +10,7 @@ set -euo pipefail
 
 tree=$1
 base=$2
+certificates=/etc/ssl/certs/ca-certificates.crt
 
 skip() {
    printf 'skipped: %s\n' "$*"
@@ -28,22 +29,25 @@ fi
 # Runs a command in the base system, in the copy of the source tree there.
 inside() {
    env --unset TMPDIR HOME=/root LC_ALL=C.UTF-8 CMAKE_BUILD_PARALLEL_LEVEL=1 \
+      ${pip_cert:+PIP_CERT="$pip_cert"} \
       PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
       chroot "$base" /bin/bash -c 'cd /thercon && exec "$@"' bash "$@"
 }
 
 # The mirror and the settings of the network are those of this machine.
 make_base() {
-   local mirror file
+   local mirror
    mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Label: Debian' | head -n 1)
    debootstrap --variant=minbase trixie "$base" ${mirror:+"$mirror"} >"$base.log" 2>&1 ||
       skip "debootstrap: $(tail -n 1 "$base.log")"
    mount -t proc proc "$base/proc"
    apt-config dump | grep '^Acquire::' >"$base/etc/apt/apt.conf.d/host"
    printf 'force-unsafe-io\n' >"$base/etc/dpkg/dpkg.cfg.d/host"
-   for file in /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do
-      [[ ! -e $file ]] || install -D --mode 644 "$file" "$base$file"
-   done
+   [[ ! -e /etc/pip.conf ]] || cp /etc/pip.conf "$base/etc"
+   if [[ -e $certificates ]]; then
+      pip_cert=/etc/certificates.crt # its own name is that of a package's file
+      cp "$certificates" "$base$pip_cert"
+   fi
    mkdir "$base/thercon"
    tar --directory "$tree" --exclude ./build --exclude ./.git --create . |
       tar --directory "$base/thercon" --extract --no-same-owner
