@@ -62,8 +62,8 @@ contains
       change = abs(gap_at(points, points%arc_length + movement) - points%initial_gap)
       closes = closed_gap(points, closed)
       call take(slide, change/(small_change*closes), 'slides to where the gap of the mesh '// &
-         'differs by ', change, ', more than a tenth of what the contact closes, '//to_text(closes)// &
-         '; draw the bodies where they slide to')
+         'differs by ', change, ', more than a tenth of what the contact closes, '// &
+         to_text(closes)//'; draw the bodies where they slide to')
 
    contains
       !> Takes the contact point that exceeds a limit most, if it does so more than the one before.
