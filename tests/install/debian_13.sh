@@ -29,7 +29,7 @@ fi
 # Runs a command in the base system, in the copy of the source tree there.
 inside() {
    env --unset TMPDIR HOME=/root LC_ALL=C.UTF-8 CMAKE_BUILD_PARALLEL_LEVEL=1 \
-      ${pip_cert:+PIP_CERT="$pip_cert"} \
+      ${trusted:+PIP_CERT="$trusted" REQUESTS_CA_BUNDLE="$trusted"} \
       PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
       chroot "$base" /bin/bash -c 'cd /thercon && exec "$@"' bash "$@"
 }
@@ -45,8 +45,8 @@ make_base() {
    printf 'force-unsafe-io\n' >"$base/etc/dpkg/dpkg.cfg.d/host"
    [[ ! -e /etc/pip.conf ]] || cp /etc/pip.conf "$base/etc"
    if [[ -e $certificates ]]; then
-      pip_cert=/etc/certificates.crt # its own name is that of a package's file
-      cp "$certificates" "$base$pip_cert"
+      trusted=/etc/certificates.crt # its own name is that of a package's file
+      cp "$certificates" "$base$trusted"
    fi
    mkdir "$base/thercon"
    tar --directory "$tree" --exclude ./build --exclude ./.git --create . |
