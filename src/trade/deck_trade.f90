@@ -124,10 +124,12 @@ contains
       if (.not. allocated(error)) call measure(model, &
          simulation%bodies%interfaces%pairing, runs, trade, error)
       if (allocated(error)) status = error%status
-      if (status == status_interrupted .and. size(trade%rows) > 0) then
-         trade%ended_early = error%message//': the table contains only the '// &
-            counted(size(trade%rows), 'row')//' measured before'
-         deallocate (error)
+      if (status == status_interrupted .and. allocated(trade%rows)) then
+         if (size(trade%rows) > 0) then
+            trade%ended_early = error%message//': the table contains only the '// &
+               counted(size(trade%rows), 'row')//' measured before'
+            deallocate (error)
+         end if
       end if
       if (.not. allocated(error)) then
          call state_errors(model%initial_temperature, trade)
