@@ -150,9 +150,11 @@ contains
          if (why == no_reason) then
             do i = 1, size(record%body_errors)
                associate (errors => record%body_errors(i))
-                  if (is_node) outcome%no_estimate = max(outcome%no_estimate, &
-                     errors%no_estimate(q))
-                  if (.not. is_node .and. errors%value(q) >= outcome%found) call take(errors, q)
+                  if (is_node) then
+                     outcome%no_estimate = max(outcome%no_estimate, errors%no_estimate(q))
+                  else if (.not. ieee_is_nan(errors%value(q))) then
+                     if (errors%value(q) >= outcome%found) call take(errors, q)
+                  end if
                end associate
             end do
          end if

@@ -150,7 +150,7 @@ contains
       real(dp) :: diffusivity(size(model%sections)), extent(2)
       integer :: body, e
 
-      diffusivity = huge(rate)
+      diffusivity = sqrt(huge(rate))   ! nothing stored; squares of lengths divide it
       do e = 1, size(diffusivity)
          associate (material => model%materials(model%sections(e)%material))
             if (heat_capacity(material) > 0.0_dp) diffusivity(e) = &
