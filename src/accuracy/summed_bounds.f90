@@ -1,4 +1,4 @@
-!> The bound of each number from its parts, or why it has none.
+!> The bound of each number from its parts, or the reason why it has none.
 module summed_bounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
@@ -51,7 +51,7 @@ contains
       call sum_up(doubled, has_fine, holds, errors, 0, holds)
    end subroutine sum_up_body
 
-   !> Bounds, where nothing that holds takes them.
+   !> Adds up the parts of each bound. A quantity with a reason that holds has NaN and that reason.
    subroutine sum_up(doubled, has_fine, holds, errors, peak, of_peak)
       type(doubled_increments_type), intent(in) :: doubled
       logical, intent(in) :: has_fine

@@ -8,7 +8,7 @@
 !> the first set of many is factored; the next ones cost a few solutions with it.
 module contact_factors
    use contact_system, only: contact_rows_type, contact_system_type
-   use dense, only: lu_type, product_of
+   use dense, only: lu_type, product_of, transposed_product
    use kinds, only: dp
    implicit none
    private
@@ -149,7 +149,7 @@ contains
             changed(j), was_free)
       end do
       self%difference = columns
-      matrix = product_of(transpose(self%difference), self%response)
+      matrix = transposed_product(self%difference, self%response)
       do j = 1, size(changed)
          matrix(j, j) = matrix(j, j) + 1.0_dp
       end do
@@ -238,7 +238,7 @@ contains
       taken(self%free, :) = x(self%free, :)
       call solve_base(self, taken, unbalanced)
       if (allocated(self%difference)) then
-         heads = product_of(transpose(self%difference), taken)
+         heads = transposed_product(self%difference, taken)
          call self%correction%solve(heads)
          taken = taken - product_of(self%response, heads)
       end if

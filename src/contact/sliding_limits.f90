@@ -12,6 +12,7 @@
 !>   linear theory, whose normals are midway between those of both faces. For a cylinder of radius R
 !>   on a plane the edge a of contact has h = a^2/(2R), and the change there over that is 2s/a.
 module sliding_limits
+   use conductance_laws, only: line_value
    use contact_points, only: contact_points_type
    use kinds, only: dp
    use text, only: to_text
@@ -44,6 +45,7 @@ contains
       type(slide_type) :: slide
       real(dp), dimension(size(closed)) :: change, length, past, spacing
       real(dp) :: closes
+      integer :: k
 
       if (.not. any(closed)) return
       length = max(points%edge, maxval(points%arc_length, mask=closed) - &
@@ -59,7 +61,8 @@ contains
             'and a twentieth of the length in contact, ', spacing, &
             '; draw the bodies where they slide to')
       end if
-      change = abs(gap_at(points, points%arc_length + movement) - points%initial_gap)
+      change = [(abs(line_value(points%arc_length, points%initial_gap, points%arc_length(k) + &
+         movement(k)) - points%initial_gap(k)), k=1, size(closed))]
       closes = closed_gap(points, closed)
       call take(slide, change/(small_change*closes), 'slides to where the gap of the mesh '// &
          'differs by ', change, ', more than a tenth of what the contact closes, '// &
@@ -94,30 +97,6 @@ contains
             movement + s - s(size(s)) - points%to_end(2))
       end associate
    end function past_end
-
-   !> Gaps of the mesh at arc lengths, linear between the contact points; beyond them that of the
-   !> last one.
-   pure function gap_at(points, s) result(gap)
-      type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: s(:)
-      real(dp) :: gap(size(s))
-      real(dp) :: part
-      integer :: i, k
-
-      associate (at => points%arc_length, h => points%initial_gap)
-         do k = 1, size(s)
-            i = count(at <= s(k))
-            if (i == 0) then
-               gap(k) = h(1)
-            else if (i == size(at)) then
-               gap(k) = h(i)
-            else
-               part = (s(k) - at(i))/(at(i + 1) - at(i))
-               gap(k) = (1 - part)*h(i) + part*h(i + 1)
-            end if
-         end do
-      end associate
-   end function gap_at
 
    !> How different the gaps are that the contact closes, with those of its open neighbours, for a
    !> zone may end anywhere before them; or the largest overlap that it presses apart. At least what

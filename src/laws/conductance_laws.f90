@@ -236,7 +236,7 @@ contains
       if (allocated(law%view_gap)) view_at = line_value(law%view_gap, law%view_factor, gap)
    end function view_at
 
-   !> Ordinate of a curve.
+   !> Ordinate of a curve of straight lines; beyond its ends that of the end.
    pure function line_value(abscissas, ordinates, at) result(value)
       real(dp), intent(in) :: abscissas(:)   !! (points) ascending, at least one
       real(dp), intent(in) :: ordinates(:)   !! (points)

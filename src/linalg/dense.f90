@@ -15,7 +15,7 @@ module dense
    implicit none
    private
    public :: lu_type, null_space, column_space, eigenvalues, energy_basis, &
-      least_squares, product_of, tail_factors_type, tail_flops
+      least_squares, product_of, tail_factors_type, tail_flops, transposed_product
 
    !> Pivot, relative to its column, below which it is rounding.
    real(dp), parameter :: lost = 1.0e-14_dp
@@ -209,6 +209,25 @@ contains
             product, m)
       end if
    end function product_of
+
+   !> matrix^T columns, without a copy of either.
+   pure function transposed_product(matrix, columns) result(product)
+      real(dp), intent(in) :: matrix(:, :)     !! (n, m)
+      real(dp), intent(in) :: columns(:, :)    !! (n, columns)
+      real(dp) :: product(size(matrix, 2), size(columns, 2))
+      integer :: m, n
+
+      n = size(matrix, 1)
+      m = size(matrix, 2)
+      product = 0.0_dp
+      if (size(product) == 0 .or. n == 0) return
+      if (size(columns, 2) == 1) then
+         call dgemv('T', n, m, 1.0_dp, matrix, n, columns, 1, 0.0_dp, product, 1)
+      else
+         call dgemm('T', 'N', m, size(columns, 2), n, 1.0_dp, matrix, n, columns, n, 0.0_dp, &
+            product, m)
+      end if
+   end function transposed_product
 
    !> The shortest x for which |matrix x - rhs| is least; columns that depend on others to rounding
    !> do not count. 0 where matrix or right-hand side overflowed.

@@ -41,7 +41,7 @@ contains
 
       associate (a => self%start(:, piece) - self%centre(:, piece), &
          b => self%finish(:, piece) - self%centre(:, piece))
-         sweep = atan2(a(1)*b(2) - a(2)*b(1), dot_product(a, b))
+         sweep = atan2(cross(a, b), dot_product(a, b))
       end associate
    end function sweep
 
@@ -124,8 +124,8 @@ contains
       if (self%is_arc(i)) then
          middle = self%point(i, 0.5_dp) - self%centre(:, i)
          associate (arm => x - self%centre(:, i))
-            coordinate_of = 0.5_dp + atan2(middle(1)*arm(2) - middle(2)*arm(1), &
-               dot_product(middle, arm))/self%sweep(i)
+            coordinate_of = 0.5_dp + atan2(cross(middle, arm), dot_product(middle, arm))/ &
+               self%sweep(i)
          end associate
       else
          associate (along => self%finish(:, i) - self%start(:, i))

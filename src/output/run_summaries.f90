@@ -11,7 +11,7 @@ module run_summaries
    implicit none
    private
    public :: run_summary_type, accuracy_words_type, run_entry_type, run_entries, write_run, or_blank
-   public :: in_listing, in_check, in_times
+   public :: in_listing, in_check, in_times, stages
 
    ! Where an entry is told.
    integer, parameter :: nowhere = 0      !! not in words
@@ -21,6 +21,12 @@ module run_summaries
    integer, parameter :: in_times = 4     !! in the listing's section SECONDS
 
    integer, parameter :: format_version = 1   !! of the result file; grows where old readers fail
+
+   !> Stages of a run, whose elapsed seconds are attributes of `/run`: seconds_read ...
+   character(*), parameter :: stages(6) = [character(8) :: 'read', 'assemble', 'reduce', &
+      'iterate', 'recover', 'write']
+   character(*), parameter :: stage_labels(6) = [character(10) :: 'reading', 'assembling', &
+      'reducing', 'iterating', 'recovering', 'writing']
 
    !> A requested accuracy, as listing and terminal tell it.
    type :: accuracy_words_type
@@ -139,13 +145,16 @@ contains
       type(run_entry_type), allocatable, intent(inout) :: entries(:)
       type(run_summary_type), intent(in) :: run
       type(model_type), intent(in) :: model
+      real(dp) :: times(size(stages))
+      integer :: i
 
-      call add(entries, in_times, 'reading', run%seconds_read, 'seconds_read')
-      call add(entries, in_times, 'assembling', run%seconds%assemble, 'seconds_assemble')
-      call add(entries, in_times, 'reducing', run%seconds%reduce, 'seconds_reduce')
-      call add(entries, in_times, 'iterating', run%seconds%iterate, 'seconds_iterate')
-      call add(entries, in_times, 'recovering', run%seconds%recover, 'seconds_recover')
-      call add(entries, in_times, 'writing', run%seconds_write, 'seconds_write')
+      associate (seconds => run%seconds)
+         times = [run%seconds_read, seconds%assemble, seconds%reduce, seconds%iterate, &
+            seconds%recover, run%seconds_write]
+      end associate
+      do i = 1, size(stages)
+         call add(entries, in_times, trim(stage_labels(i)), times(i), 'seconds_'//trim(stages(i)))
+      end do
       call add(entries, nowhere, '', format_version, 'format_version')
       call add(entries, nowhere, '', or_blank(run%version), 'version')
       call add(entries, nowhere, '', or_blank(model%heading), 'heading')

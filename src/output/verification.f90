@@ -10,7 +10,8 @@ module verification
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type, verify_type
-   use no_estimates, only: mark_of, no_reason, reason_inside_step, reason_of_run
+   use no_estimates, only: first_reason, mark_of, no_reason, reason_count, reason_inside_step, &
+      reason_of_run
    use quantity_types, only: find_quantity, of_history, of_nodes, of_sections, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: verifiable
@@ -133,7 +134,7 @@ contains
       type(outcome_type), intent(inout) :: outcome
       character(:), allocatable :: quantity, where
       integer :: i, number, q, why
-      logical :: is_node
+      logical :: holds(reason_count), is_node
 
       quantity = to_upper(model%verifications(c)%quantity)
       where = to_upper(model%verifications(c)%where)
@@ -147,17 +148,17 @@ contains
       end if
       if (q > 0 .and. (is_node .or. where == 'MAX')) then
          outcome%no_estimate = why
-         if (why == no_reason) then
-            do i = 1, size(record%body_errors)
-               associate (errors => record%body_errors(i))
-                  if (is_node) then
-                     outcome%no_estimate = max(outcome%no_estimate, errors%no_estimate(q))
-                  else if (.not. ieee_is_nan(errors%value(q))) then
-                     if (errors%value(q) >= outcome%found) call take(errors, q)
-                  end if
-               end associate
-            end do
-         end if
+         holds = .false.
+         do i = 1, merge(size(record%body_errors), 0, why == no_reason)
+            associate (errors => record%body_errors(i))
+               if (is_node) then
+                  if (errors%no_estimate(q) /= no_reason) holds(errors%no_estimate(q)) = .true.
+                  outcome%no_estimate = first_reason(holds)
+               else if (.not. ieee_is_nan(errors%value(q))) then
+                  if (errors%value(q) >= outcome%found) call take(errors, q)
+               end if
+            end associate
+         end do
          if (is_node .and. allocated(record%check_bounds)) then
             if (.not. ieee_is_nan(record%check_bounds(c))) outcome%bound = record%check_bounds(c)
          end if

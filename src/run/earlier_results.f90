@@ -10,6 +10,7 @@ module earlier_results
    use kinds, only: dp
    use restart_results, only: at_count, at_increment, at_increment_in_step, at_step, at_time, &
       names_set, place_columns, place_set, restart_group, value_set
+   use run_summaries, only: stages
    use state_tables, only: state_table_type
    use text, only: string_type, to_text
    implicit none
@@ -17,9 +18,6 @@ module earlier_results
    public :: earlier_result_type, origin_type
 
    real(dp), parameter :: printed = 5.0e-6_dp   !! what six digits leave out of a time, relative
-   !> Stages of a run whose elapsed seconds the result has.
-   character(*), parameter :: stages(6) = [character(8) :: 'read', 'assemble', 'reduce', &
-      'iterate', 'recover', 'write']
 
    !> Where a run goes on from.
    type :: origin_type

@@ -9,7 +9,7 @@
 !> N taken at the rate sigma.
 module fastest_motion
    use arnoldi, only: arnoldi_type
-   use dense, only: lu_type, product_of
+   use dense, only: lu_type, product_of, transposed_product
    use kinds, only: dp
    use motion_responses, only: motion_response_type
    use records, only: increment_record_type
@@ -142,8 +142,8 @@ contains
          columns = reshape(bodies%capacity%multiply(vector), [size(vector), 1])
          columns = response%conduction%solve(bodies, columns)
          changes = motion%answers(columns, response%sigma)
-         if (motion%takes_rates) changes = changes - product_of(transpose(motion%reads_rate), &
-            reshape(vector, [size(vector), 1]))
+         if (motion%takes_rates) changes = changes - transposed_product( &
+            motion%reads_rate, reshape(vector, [size(vector), 1]))
          call coupling%solve(changes)
          columns = columns + product_of(response%temperature, changes)
       end associate

@@ -1,7 +1,7 @@
 !> Responses of the bodies to unit changes at the contact points that grow at a rate, and the
 !> answers of the contact to them.
 module motion_responses
-   use dense, only: eigenvalues, product_of
+   use dense, only: eigenvalues, product_of, transposed_product
    use errors, only: error_type
    use kinds, only: dp
    use model, only: model_type
@@ -76,9 +76,9 @@ contains
       real(dp), allocatable :: read(:, :), real_part(:), imaginary_part(:)
       logical :: found
 
-      read = product_of(transpose(motion%reads), self%conduction%solve(bodies, motion%reads))
-      if (motion%takes_rates) read = 2*(read + self%sigma**2*product_of(transpose( &
-         motion%reads_rate), self%conduction%solve(bodies, motion%reads_rate)))
+      read = transposed_product(motion%reads, self%conduction%solve(bodies, motion%reads))
+      if (motion%takes_rates) read = 2*(read + self%sigma**2*transposed_product( &
+         motion%reads_rate, self%conduction%solve(bodies, motion%reads_rate)))
       call eigenvalues(product_of(self%exchange, read), real_part, imaginary_part, found)
       bound = huge(bound)
       if (found) bound = sqrt(2*maxval(hypot(real_part, imaginary_part)))
@@ -93,7 +93,7 @@ contains
 
       allocate (content, mold=self%temperature)
       call simulation%bodies%capacity%multiply_columns(self%temperature, content)
-      stored = product_of(transpose(self%temperature), content)
+      stored = transposed_product(self%temperature, content)
    end function stored
 
 end module motion_responses

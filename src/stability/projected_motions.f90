@@ -16,7 +16,7 @@
 !> K. Gallivan, E. Grimme, P. Van Dooren, Numer. Algorithms 12 (1996) 33; A. C. Antoulas,
 !> Approximation of Large-Scale Dynamical Systems, SIAM 2005.
 module projected_motions
-   use dense, only: eigenvalues, energy_basis, lu_type, product_of
+   use dense, only: eigenvalues, energy_basis, lu_type, product_of, transposed_product
    use kinds, only: dp
    implicit none
    private
@@ -200,9 +200,9 @@ contains
       call energy_basis(bodies%conduction/minval(self%sigma, mask=self%is_in) + bodies%capacity, &
          rounding, vectors, found)
       if (.not. found) return
-      bodies%conduction = product_of(transpose(vectors), product_of(bodies%conduction, vectors))
-      bodies%capacity = product_of(transpose(vectors), product_of(bodies%capacity, vectors))
-      bodies%heats = product_of(transpose(vectors), bodies%heats)
+      bodies%conduction = transposed_product(vectors, product_of(bodies%conduction, vectors))
+      bodies%capacity = transposed_product(vectors, product_of(bodies%capacity, vectors))
+      bodies%heats = transposed_product(vectors, bodies%heats)
       bodies%answers = product_of(reshape(self%answer(:, :, which), [n, r]), vectors)
       bodies%by_rate = product_of(reshape(self%by_rate(:, :, which), [n, r]), vectors)
    end subroutine project

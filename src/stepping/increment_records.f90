@@ -5,7 +5,7 @@ module increment_records
    use conductance_laws, only: conductance, conductance_law_type
    use contact_operator, only: touches
    use contact_points, only: contact_points_type
-   use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick
+   use contact_system, only: contact_open, contact_slip, contact_stick
    use contact_tractions, only: in_contact, no_gap, pressures, shears
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery, table_is_due
@@ -80,15 +80,7 @@ contains
                record%stress_error)
          end if
          call warn_of_floor(step, record)
-         do i = 1, size(record%contacts)
-            associate (points => bodies%interfaces(i), slide => record%contacts(i)%slide)
-               if (slide%point == 0) cycle
-               call record%warn('contact pair '//points%name//' slides by ', slide%slip, &
-                  ', too far for contact points of the undeformed mesh: slave node '//to_text( &
-                  model%mesh%node_number(bodies%points%slave(bodies%points%interface_start(i) - &
-                  1 + slide%point)))//' '//slide%words, slide%excess)
-            end associate
-         end do
+         call warn_of_slides(model, bodies, record)
          if (solves_heat(step%analysis)) then
             if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
                record%fields%heat_flux, record%heat_flux_error)
@@ -122,6 +114,25 @@ contains
          'far larger displacements, whose rounding changes it')
    end subroutine warn_of_floor
 
+   !> Warns of interfaces that slide farther than their contact points allow.
+   pure subroutine warn_of_slides(model, bodies, record)
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_record_type), intent(inout) :: record   ! with its contacts
+      integer :: i
+
+      do i = 1, size(record%contacts)
+         associate (slide => record%contacts(i)%slide)
+            if (slide%point == 0) cycle
+            call record%warn('contact pair '//bodies%interfaces(i)%name//' slides by ', &
+               slide%slip, ', too far for contact points of the undeformed mesh: slave node '// &
+               to_text(model%mesh%node_number(bodies%points%slave( &
+               bodies%points%interface_start(i) - 1 + slide%point)))//' '//slide%words, &
+               slide%excess)
+         end associate
+      end do
+   end subroutine warn_of_slides
+
    !> Contact state of one interface.
    pure function contact_record(bodies, with_heat, i, next) result(record)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -129,37 +140,36 @@ contains
       integer, intent(in) :: i
       type(solution_state_type), intent(in) :: next
       type(contact_record_type) :: record
-      type(contact_state_type) :: contact
-      type(conductance_law_type) :: law
       type(contact_points_type) :: points
       logical, allocatable :: closed(:), rests(:)
-      integer :: beside, first, k, last
-      real(dp) :: rounding
+      integer :: first, last
 
       first = bodies%points%interface_start(i)
       last = bodies%points%interface_start(i + 1) - 1
-      contact = next%contact
-      where (touches(contact%contact_state, contact%gap) .and. .not. bodies%laws%removed) &
-         contact%contact_state = max(contact%contact_state, contact_slip)
       call bodies%view(i, points)
-      record%contact_state = contact%contact_state(first:last)
-      where (next%idle(first:last)) record%contact_state = merge(contact_slip, contact_open, &
-         next%resting(first:last))
-      record%gap = contact%gap(first:last)
-      record%smallest_gap = next%smallest_gap(first:last)
-      closed = record%contact_state /= contact_open
-      if (next%has_mechanics) closed = in_contact(points, closed, record%gap, &
-         contact%force(first:last), bodies%equilibrium%contact%alone(first:last))
-      rests = closed .and. record%contact_state == contact_open
-      where (rests)
-         record%contact_state = merge(contact_stick, contact_slip, &
-            bodies%laws%friction(first:last)%coefficient > 0.0_dp)
-         record%gap = 0.0_dp
-      end where
-      call measure_contact(points, bodies%laws%friction(first), closed, &
-         contact%force(first:last), contact%shear_force(first:last), record)
-      record%movement = contact%tangential(first:last)
-      record%slip = record%movement - contact%slip_origin(first:last)
+      associate (contact => next%contact)
+         record%contact_state = contact%contact_state(first:last)
+         record%gap = contact%gap(first:last)
+         where (touches(record%contact_state, record%gap) .and. .not. &
+            bodies%laws%removed(first:last)) record%contact_state = max(record%contact_state, &
+            contact_slip)
+         where (next%idle(first:last)) record%contact_state = merge(contact_slip, contact_open, &
+            next%resting(first:last))
+         record%smallest_gap = next%smallest_gap(first:last)
+         closed = record%contact_state /= contact_open
+         if (next%has_mechanics) closed = in_contact(points, closed, record%gap, &
+            contact%force(first:last), bodies%equilibrium%contact%alone(first:last))
+         rests = closed .and. record%contact_state == contact_open
+         where (rests)
+            record%contact_state = merge(contact_stick, contact_slip, &
+               bodies%laws%friction(first:last)%coefficient > 0.0_dp)
+            record%gap = 0.0_dp
+         end where
+         call measure_contact(points, bodies%laws%friction(first), closed, &
+            contact%force(first:last), contact%shear_force(first:last), record)
+         record%movement = contact%tangential(first:last)
+         record%slip = record%movement - contact%slip_origin(first:last)
+      end associate
       record%slide = worst_slide(points, closed, record%movement)
       if (allocated(bodies%thermal%matrix%value)) then
          allocate (record%slave_temperature(size(closed)), record%master_temperature( &
@@ -169,14 +179,35 @@ contains
       end if
       if (.not. with_heat) return
       record%conductance = next%carrying(first:last)
-      do k = 1, merge(size(rests), 0, next%has_mechanics)
+      if (next%has_mechanics) call conduct_on_axis(bodies, points, next, first, closed, rests, &
+         record)
+      associate (jump => next%jump(first:last))
+         record%heat_flux = heat_across(1.0_dp, record%conductance, jump)
+         record%heat_rate = sum(heat_across(points%weight, record%conductance, jump))
+      end associate
+   end function contact_record
+
+   !> Conductance of closed contact points without weight, which carry no heat: that of a resting
+   !> one beside it, or the closed law's.
+   pure subroutine conduct_on_axis(bodies, points, next, first, closed, rests, record)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(contact_points_type), intent(in) :: points      ! of the interface
+      type(solution_state_type), intent(in) :: next
+      integer, intent(in) :: first                         ! its first contact point
+      logical, intent(in) :: closed(:), rests(:)           ! (m) closed at all; only by its gap
+      type(contact_record_type), intent(inout) :: record   ! with the conductances of the others
+      type(conductance_law_type) :: law
+      real(dp) :: rounding
+      integer :: beside, k
+
+      do k = 1, size(rests)
          if (points%weight(k) > 0.0_dp .or. .not. closed(k)) cycle
          beside = 0
          associate (row => first - 1 + k)
             ! A force that a gap of rounding takes away is none.
             rounding = no_gap*points%edge(k)*bodies%equilibrium%contact%alone(row)
-            if (contact%force(row) <= rounding) beside = &
-               resting_beside(next%resting(first:last), record%pressure, k)
+            if (next%contact%force(row) <= rounding) beside = resting_beside( &
+               next%resting(first:first - 1 + size(rests)), record%pressure, k)
             if (beside > 0) then
                record%conductance(k) = record%conductance(beside)
             else if (rests(k)) then
@@ -187,11 +218,7 @@ contains
             end if
          end associate
       end do
-      associate (jump => next%jump(first:last))
-         record%heat_flux = heat_across(1.0_dp, record%conductance, jump)
-         record%heat_rate = sum(heat_across(points%weight, record%conductance, jump))
-      end associate
-   end function contact_record
+   end subroutine conduct_on_axis
 
    !> A contact point beside another one that rests while none beside it presses; 0 for none. Where
    !> the law jumps, both conduct the same, between the values of the open and the closed law.

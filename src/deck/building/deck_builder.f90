@@ -55,7 +55,7 @@ contains
       type(model_type), intent(out) :: model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
       type(deck_context_type) :: context
-      integer :: i
+      integer :: i, why
 
       if (size(cards%keywords) == 0) return
       context%verifiable = verifiable
@@ -84,9 +84,9 @@ contains
       call build_pre_tensions(cards, context, model, report)
       call build_transforms(cards, model, report)
       call build_steps(cards, context, model, report)
-      if (reason_of_deck(model) /= no_reason .and. model%estimates_errors) then
-         call context%note('no bounds of errors: they do not know '// &
-            words_of_reason(reason_of_deck(model)))
+      why = reason_of_deck(model)
+      if (why /= no_reason .and. model%estimates_errors) then
+         call context%note('no bounds of errors: they do not know '//words_of_reason(why))
          model%estimates_errors = .false.
       end if
       call build_verifications(cards, context, model, report)

@@ -270,29 +270,24 @@ contains
          start = 0.0_dp
          if (model%amplitudes(a)%total_time) start = sum(model%steps(:s - 1)%period)
          associate (curve => model%amplitudes(a), period => model%steps(s)%period)
+            message = ''
+            last = curve%times(size(curve%times))
             if (is_idle(curve, start, merge(sum(model%steps(s:)%period), period, &
                curve%total_time))) then
-               told(a) = .true.
                message = 'amplitude '//curve%name//' is 0 throughout step '//to_text(s)// &
                   ', which begins to use it'
                if (.not. curve%total_time) message = message//'; without TIME=TOTAL TIME its '// &
                   'times count from the start of the step'
-               call report%warning(cards%keywords(card_of(cards, a))%place, message)
-               cycle
             end if
-            message = missed_peak(curve, model, s)
-            if (len(message) > 0) then
-               told(a) = .true.
-               call report%warning(cards%keywords(card_of(cards, a))%place, message)
-               cycle
-            end if
-            last = curve%times(size(curve%times))
-            if (last - start >= long_before*period .or. is_level(curve)) cycle
+            if (message == '') message = missed_peak(curve, model, s)
+            if (message == '' .and. last - start < long_before*period .and. &
+               .not. is_level(curve)) message = 'amplitude '//curve%name//' ends at '// &
+               to_text(last)//', long before the end of step '//to_text(s)//' at '// &
+               to_text(start + period)//': its last factor, '// &
+               to_text(curve%values(size(curve%values)))//', is kept'
+            if (message == '') cycle
             told(a) = .true.
-            call report%warning(cards%keywords(card_of(cards, a))%place, 'amplitude '// &
-               curve%name//' ends at '//to_text(last)//', long before the end of step '// &
-               to_text(s)//' at '//to_text(start + period)//': its last factor, '// &
-               to_text(curve%values(size(curve%values)))//', is kept')
+            call report%warning(cards%keywords(card_of(cards, a))%place, message)
          end associate
       end do
    end subroutine check_amplitudes
