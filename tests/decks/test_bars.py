@@ -69,14 +69,16 @@ def test_a_spring_at_a_node_that_drops_out_pulls_its_neighbours(tmp_path, option
           [("U2", "BODY.TOP", "LAST", 50.0 * 0.01 / (STIFFNESS + 50.0), EXACT), BALANCED])
 
 
-def test_a_warm_truss_pushes(tmp_path):
-    """E A/L = 100; both become longer by alpha T."""
+@pytest.mark.parametrize("anchor_at", [HEATED, 0.0])
+def test_a_warm_truss_pushes(tmp_path, anchor_at):
+    """E A/L = 100; both become longer by alpha T, the truss by that of the mean of its ends."""
     truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", "51, 100, 101",
              "*SOLID SECTION, ELSET=BAR, MATERIAL=BODY", "0.2"]
-    free = 1e-4 * HEATED
+    free, longer = 1e-4 * HEATED, 2.0 * 1e-4 * (HEATED + anchor_at) / 2
     judge(tmp_path, [*BLOCK, *HANDLE, *anchor(1.0, 4.0), *truss, *COLD, *HELD, "ANCHOR, 2",
-                     "*TEMPERATURE", "BODY, 30.", "HANDLE, 30.", "ANCHOR, 30.", "*END STEP"],
-          [("U2", "100", "LAST", (STIFFNESS * free - 100.0 * 2.0 * free) / (STIFFNESS + 100.0), EXACT),
+                     "*TEMPERATURE", "BODY, 30.", "HANDLE, 30.", f"ANCHOR, {anchor_at!r}",
+                     "*END STEP"],
+          [("U2", "100", "LAST", (STIFFNESS * free - 100.0 * longer) / (STIFFNESS + 100.0), EXACT),
            BALANCED])
 
 

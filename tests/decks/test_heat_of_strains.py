@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from blocks import write
 from deck_runs import run
-from physics import material, mesh
+from physics import judge, material, mesh
 
 START, ABSOLUTE, POWER, TIME = 20.0, 293.0, 3.0, 0.5
 ALPHA = np.array([1e-3, 2e-3, 0.5e-3])
@@ -70,3 +70,20 @@ def test_a_capacity_at_constant_strain_that_is_not_positive_is_refused(tmp_path,
     assert process.returncode == 1
     told = re.search(r"rho c_p - T0 beta:alpha, is (\S+), not positive", process.stderr)
     assert float(told[1]) == pytest.approx(-capacity / 999, rel=1e-4)
+
+
+def test_bodies_cool_by_the_strain_times_their_own_initial_temperature(tmp_path):
+    """Stretched at once without heat from outside: (rho c - T0 beta:alpha) dT = -T0 beta e, with
+    beta = E alpha/(1 - 2 nu) of an isotropic body."""
+    strain, expansion, capacity = 1e-2, 1e-3, 4.0
+    beta = YOUNG[0] * expansion / (1 - 2 * POISSON[0])
+    deck, held, checks = ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0."], ["*BOUNDARY"], []
+    for name, first, start in (("COOL", 1, 100.0), ("WARM", 101, 200.0)):
+        deck += [*mesh(name, [0.0, 1.0], [first, first + 1.0], "CPE4", first=first),
+                 *material(name, (YOUNG[0], POISSON[0]), expansion, 1.0, 1.0, capacity),
+                 "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"{name}, {start!r}"]
+        held += [f"{name}, 2", f"{name}.LEFT, 1", f"{name}.RIGHT, 1, 1, {strain!r}"]
+        change = -start * beta * strain / (capacity - 3 * start * expansion * beta)
+        checks += [("NT", name, "LAST", start + change, 1e-9)]
+    judge(tmp_path, [*deck, "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, DILATATION=YES",
+                     "1., 1.", *held, "*END STEP"], checks)

@@ -106,6 +106,15 @@ def test_a_bar_held_at_both_ends_keeps_its_stress_until_one_is_released(tmp_path
     judge(tmp_path, *make(20.0, 0), name="coarse")
 
 
+def test_a_stress_stays_where_the_modulus_falls_with_the_temperature(tmp_path):
+    """A free bar gives way by -sigma0 L/E(T)."""
+    deck = [*mesh("BODY", [0.0, 2.0, 5.0], [0.0, 1.0], "CPS8"),
+            *material("BODY", [(1000.0, 0.0, 0.0), (500.0, 0.0, 100.0)]), *stressed(("BODY", [20.0])),
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", *static(
+                "*BOUNDARY", "BODY.LEFT, 1", "1, 2", "*TEMPERATURE", "BODY, 100.")]
+    judge(tmp_path, deck, [("U1", "BODY.RIGHT", "LAST", -20.0 * 5.0 / 500.0, 1e-8)])
+
+
 @pytest.mark.changes("INITIAL CONDITIONS, TYPE")
 def test_initial_stresses_are_no_initial_temperatures(tmp_path):
     def make(kind):

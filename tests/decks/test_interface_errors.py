@@ -8,7 +8,7 @@ import pytest
 from blocks import block, solid, without_unused_surfaces, write
 from changes import note_changes
 from deck_runs import CYLINDER, HERTZ, INPUT, copy_deck, run, solve
-from physics import DECKS  # noqa: F401  puts tests/reference on the path
+from physics import material, mesh   # puts tests/reference on the path, too
 
 import rods
 
@@ -177,6 +177,59 @@ def test_the_summary_says_that_a_peak_at_an_end_may_have_no_limit(tmp_path, pair
     words = ", at an end, where it may have no limit\n"
     assert re.search(rf"peak pressure +\S+ \+- .+{words}", said["unlike"])
     assert "no limit" not in said["alike"] + summary(bare(HERTZ, tmp_path, "hertz.inp"))
+
+
+def punched(name, first, shift=0.0, scale=1.0, side=1):
+    """Return the cards of a punch on a wider block, named after the joint, and their supports: the
+    edge of the punch is at its right or, mirrored (side=-1), at its left."""
+    def xs(*places):
+        return sorted(shift + side * x for x in places)
+
+    top, base, middle = f"{name}P", f"{name}B", "LEFT" if side > 0 else "RIGHT"
+    cards = [*mesh(top, xs(0.0, 0.4, 0.7, 1.0), [0.0, 0.5, 1.0], "CPE4", first=first),
+             *mesh(base, xs(0.0, 0.4, 0.7, 1.0, 1.5, 3.0), [-2.0, -1.0, -0.4, 0.0], "CPE4",
+                   first=first + 100),
+             *material(top, (100.0 * scale, 0.3)), *material(base, (50.0 * scale, 0.3)),
+             f"*CONTACT PAIR, INTERACTION=I, NAME={name}", f"{top}.BOTTOM, {base}.TOP"]
+    return cards, [f"{base}.BOTTOM, 1, 2", f"{top}.{middle}, 1", f"{base}.{middle}, 1",
+                   f"{top}.TOP, 2, 2, -0.01"]
+
+
+def punches(path, *joints):
+    """Solve a deck of joints; return the bounds of each."""
+    cards, held = (sum(parts, []) for parts in zip(*(punched(*joint) for joint in joints), strict=True))
+    result = solve(write(path, without_unused_surfaces(["*SURFACE INTERACTION, NAME=I", *cards]), [
+        "*STEP", "*STATIC", "0.25, 1.", "*BOUNDARY", *held, "*END STEP"]))
+    return {name: errors(result, name) for name, *_ in joints}
+
+
+def test_every_joint_of_a_model_has_bounds_of_its_own(tmp_path):
+    """Beside one of four times its modulus, whose forces and their errors are four times as large, it
+    has no smaller ones than alone."""
+    alone = punches(tmp_path / "alone.inp", ("B", 1))["B"]
+    both = punches(tmp_path / "both.inp", ("A", 1001, 10.0, 4.0), ("B", 1))
+    for name, scale in ("normal_force", 4.0), ("edge_contact", 1.0):
+        np.testing.assert_allclose(both["A"][name][:2], scale * both["B"][name][:2], rtol=1e-6)
+        assert both["B"][name][1] >= (1 - 1e-6) * alone[name][1] > 0.0, name
+
+
+def test_a_mirrored_punch_has_the_same_bounds(tmp_path):
+    punch = punches(tmp_path / "punch.inp", ("B", 1))["B"]
+    mirrored = punches(tmp_path / "mirrored.inp", ("B", 1, 0.0, 1.0, -1))["B"]
+    np.testing.assert_allclose(mirrored["normal_force"][:2], punch["normal_force"][:2], rtol=1e-6)
+
+
+def test_the_bound_of_a_temperature_holds_the_error_of_elements_far_away(tmp_path):
+    """A ring heated within, T = q r ln(R/r)/k: its side towards the middle is fine, the others are
+    not."""
+    inner, outer, flux = 1.0, 9.0, 5.0
+    radii = [inner, 1.02, 1.04, 1.06, 1.08, 3.0, outer]
+    result = solve(write(tmp_path / "ring.inp", mesh("RING", radii, [0.0, 0.02], "CAX4"),
+                         material("RING", conductivity=2.0), [
+        "*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "RING.RIGHT, 11, 11, 0.",
+        "*DSFLUX", f"RING.LEFT, S, {flux!r}", "*END STEP"]))
+    value, bound = errors(result, "body 1")["temperature"][:2]
+    assert 0.0 < abs(value - flux * inner * np.log(outer / inner) / 2.0) <= bound
 
 
 def test_error_of_increments(tmp_path):

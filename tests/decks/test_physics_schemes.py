@@ -89,6 +89,21 @@ def test_every_scheme_follows_a_ramp_from_equilibrium_exactly(tmp_path, scheme):
         rows)
 
 
+def test_sources_of_a_step_without_heat_are_of_the_past_of_the_next_one(tmp_path):
+    """A flux of 10, 30 and 20 at the ends of three steps, the second without heat: under
+    CRANK-NICOLSON, with K (T_i + T_i+1) = Q_i + Q_i+1, the third ends at (20 + 30 - 10)/K."""
+    conductance = 4.0
+    flux = ["*DFLUX, AMPLITUDE=COURSE", "1, S2, 1."]
+    deck = [*mesh("BAR", [0.0, 1.0], [0.0, 1.0], "CPE4"),
+            *material("BAR", (YOUNG, 0.0), conductivity=conductance),
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BAR, 0.", "*THERMAL SCHEME, TYPE=CRANK-NICOLSON",
+            "*AMPLITUDE, NAME=COURSE, TIME=TOTAL TIME", "0., 0., 1., 10., 2., 30., 3., 20.",
+            "*BOUNDARY", "BAR, 1, 2", "BAR.LEFT, 11, 11, 0.",
+            *step("heat", *flux), *step("static"), *step("heat")]
+    judge(tmp_path, deck, [("NT", "BAR.RIGHT", time, value, 1e-12)
+                           for time, value in ((1, 10 / 4), (2, 10 / 4), (3, 40 / 4))])
+
+
 HEATED = ["*BOUNDARY", f"UPPER.TOP, 11, 11, {HOT}", "LOWER.BOTTOM, 11"]
 GAS = ("*GAP LAW, TYPE=GAS", "0.01, 0.02")
 

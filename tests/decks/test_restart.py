@@ -13,8 +13,11 @@ import h5py
 import numpy as np
 import pytest
 import test_rods as rods
+import transients as two
+from blocks import write
 from changes import note_changes
 from deck_runs import COUPLED, INPUT, PATIENCE, PROGRAM, copy_deck, run, solve
+from physics import material, mesh, verify
 
 EXAMPLES = INPUT / "examples"
 WRITE = "*RESTART, WRITE"
@@ -113,6 +116,14 @@ def test_properties_over_temperature_go_on_to_the_last_bit(tmp_path):
     times = kept(whole)
     for i in sorted({again[0] - 2, again[0] - 1, again[-1], len(times) - 2}):
         assert_same(whole, go_on(deck, whole, tmp_path / f"from{i}", float(times[i])))
+
+
+def test_films_of_the_past_go_on_to_the_last_bit(tmp_path):
+    """A scheme with a past takes those at the start of the increment, too."""
+    deck = two.two_blocks(tmp_path / "deck.inp", "*THERMAL SCHEME, TYPE=CRANK-NICOLSON", WRITE,
+                          times="0.1, 0.3")
+    whole = solve(deck)
+    assert_same(whole, go_on(deck, whole, tmp_path / "again", float(kept(whole)[1])))
 
 
 def test_it_goes_on_within_increments_that_are_cut_back(tmp_path):
@@ -228,6 +239,19 @@ def test_a_deck_adds_steps_behind_those_of_a_result(cycling, tmp_path):
     own = tmp_path / "new2" / "in_one.vtkhdf"
     new.write_text(NEW_STEPS.format(place=", STEP=3"))
     assert_same(own, go_on(new, own, tmp_path / "own", float(kept(own)[-2])))
+
+
+def test_the_increment_named_is_that_of_the_step_named(tmp_path):
+    """Both steps have four increments: the second of step 2 is the sixth, at time 1.5."""
+    heated = ["*STEP", "*HEAT TRANSFER, STEADY STATE", "0.25, 1.", "*BOUNDARY"]
+    old = write(tmp_path / "old.inp", mesh("BAR", [0.0, 1.0], [0.0, 1.0], "CPE4"),
+                material("BAR", conductivity=1.0), [
+        WRITE, *heated, "BAR, 11, 11, 10.", "*END STEP", *heated, "BAR, 11, 11, 30.", "*END STEP"])
+    new = write(tmp_path / "new.inp", ["*RESTART, READ, STEP=2, INC=2", *heated[:-1], "*END STEP"],
+                verify(*(("NT", "BAR", time, value, 1e-12)
+                         for time, value in ((1.75, 25), (2, 30), (3, 30)))))
+    result = solve(new, "--restart", solve(old))
+    assert "increment 6 (time 1.5)" in result.with_suffix(".lst").read_text()
 
 
 def refused(*arguments):

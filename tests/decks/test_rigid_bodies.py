@@ -144,6 +144,30 @@ def test_rigid_bodies_are_as_one_of_a_far_larger_modulus(tmp_path, pairing):
     assert found[2] == pytest.approx(found[0], rel=1e-5)
 
 
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_a_ring_turns_with_the_rigid_shaft_that_it_sticks_to(tmp_path, pairing):
+    """About a reference node beside the axis: every node moves by theta x r."""
+    turn, at = 1e-3, np.array([0.4, -0.3])
+    ring = mesh("RING", np.linspace(0.0, 2 * pi, 25), [1.0, 1.5], closed=True,
+                to=lambda angle, r: (r * np.cos(-angle), r * np.sin(-angle)))
+    shaft = ["*NODE", f"9001, {at[0]}, {at[1]}", "*SURFACE, NAME=SHAFT, TYPE=SEGMENTS",
+             "START, 1., 0.", *(f"CIRCL, {x}, {y}, 0., 0." for x, y in (
+                 ("0.", "-1."), ("-1.", "0."), ("0.", "1."), ("1.", "0."))),
+             "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=SHAFT"]
+    deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO"], ring, shaft,
+                 material("RING", (YOUNG, POISSON)), [
+        "*SURFACE INTERACTION, NAME=ROUGH", "*FRICTION", "1.",
+        f"*CONTACT PAIR, INTERACTION=ROUGH, NAME=FACE, PAIRING={pairing}", "RING.BOTTOM, SHAFT",
+        *STATIC, "*BOUNDARY", "9001, 1, 2", "9001, 6", "*DSLOAD", "RING.TOP, P, 10.", "*END STEP",
+        *STATIC, "*BOUNDARY", f"9001, 6, 6, {turn!r}", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        places = file["VTKHDF/Points"][:, :2]
+        pressed, turned = file["VTKHDF/PointData/displacement"][()].reshape(2, -1, 3)[:, :, :2]
+    arm = (places - at)[:, ::-1] * [-1.0, 1.0]
+    on_ring = np.hypot(*places.T) > 0.9
+    np.testing.assert_allclose((turned - pressed)[on_ring], turn * arm[on_ring], atol=1e-5 * turn)
+
+
 @pytest.mark.parametrize("kind", ["CPE8", "CAX8"])
 def test_drawings_serve_any_mesh(tmp_path, kind):
     """Linear elements of meshes that are refined everywhere and once more at the face."""

@@ -112,6 +112,29 @@ def test_faces_press_and_part_along_the_law(tmp_path, law):
         ("gap", "FACE", 2.0, gap - reach, 1e-9), ("pressure", "FACE", 2.0, 0.0, 1e-12, "ABS")])
 
 
+@pytest.mark.parametrize("count", [1, 100])
+@pytest.mark.parametrize("law", LAWS)
+def test_faces_that_close_while_they_slide_stick_from_where_they_begin_to_press(tmp_path, law, count):
+    """Down by 0.02 and aside by 0.01 at once: what was left of the way when the gap was the reach of
+    the law shears the block. Equations keep it from bending and warping."""
+    behavior, overlap = LAWS[law]
+    way, aside, gap = 0.02, 0.01, 0.006
+    reach = {"table": 0.0, "exponential": CLEARANCE * (1.0 + 1.0 / log(100.0))}[law]
+    pressure = root(lambda p: p / YOUNG + gap + overlap(p) - way, 1e-12, 50.0)
+    shear = YOUNG / 2 * aside * (1 - (gap - reach) / way)
+    judge(tmp_path, [
+        *mesh("UP", [0.0, 1.0], [gap, 1.0 + gap], "CPS4"),
+        *mesh("LOW", [0.0, 1.0], [-1.0, 0.0], "CPS4", first=101),
+        *material("UP", (YOUNG, 0.0)), *material("LOW", (YOUNG, 0.0)),
+        "*EQUATION", "2", "1, 1, 1., 2, 1, -1.", "2", "1, 2, 1., 2, 2, -1.",
+        "*SURFACE INTERACTION, NAME=I", *behavior, "*FRICTION", "100.",
+        "*CONTACT PAIR, INTERACTION=I, NAME=FACE", "UP.BOTTOM, LOW.TOP", "*STEP, INC=1000",
+        "*STATIC, DIRECT", f"{1.0 / count!r}, 1.", "*BOUNDARY", "LOW, 1, 2",
+        f"UP.TOP, 2, 2, {-way!r}", f"UP.TOP, 1, 1, {aside!r}", "*END STEP"], [
+        ("pressure", "FACE", "LAST", pressure, 1e-8),
+        ("S12", "UP", "LAST", shear, 1e-6)])
+
+
 def test_the_exponential_law_ends_in_its_tangent(tmp_path):
     """From the gap c0 on, where the pressure is a hundredth of p0, it falls linearly to 0 at
     1.217 c0; it pushes the faces apart by 3 p/E."""

@@ -9,6 +9,8 @@ import pytest
 from changes import note_changes
 from deck_runs import run
 from physics import mesh, material
+from scipy.optimize import brentq
+from test_values_friction_heat import bar_on_a_wall
 
 import rod_modes
 import rods
@@ -210,6 +212,87 @@ def test_motions_grow_alike_however_slow_a_body_is(ratio, depth, slow, tmp_path)
     assert found["unstable_modes"] == sum(rate > 0.0 for rate in rates)
     if ratio > 1.0:
         assert found["growth_rate"] == pytest.approx(max(rates), rel=2e-3)
+
+
+def test_heat_of_a_largest_shear_follows_no_pressure(tmp_path):
+    """A bar on an insulating wall, at 0 at its other end, cools with exp(-(pi/2)^2 t)."""
+    cards = bar_on_a_wall(2.0, analysis="STEADY STATE, DIRECT")
+    cards[cards.index("*FRICTION")] = "*FRICTION, TAUMAX=0.1"
+    cards.insert(cards.index("*END STEP"), "*STABILITY")
+    found = stability_of(solved(tmp_path, cards)[0])
+    assert found["growth_rate"] == pytest.approx(-(np.pi / 2)**2, rel=1e-4)
+
+
+def test_films_hold_the_ends_of_rods(tmp_path):
+    """At 1e5 times the conductance of a rod, as prescribed temperatures do."""
+    cards = middle()
+    for name in "HOT.TOP", "COLD.BOTTOM":
+        at = next(i for i, card in enumerate(cards) if card.startswith(f"{name}, 11, 11"))
+        sink = cards.pop(at).rsplit(",", 1)[1]
+        cards[-1:] = ["*SFILM", f"{name}, F, {sink}, 2e7", "*END STEP"]
+    found = stability_of(solved(tmp_path, cards)[0])
+    rate = float(rod_modes.rates(MIDDLE, (3.6e6, 3.6e6), BRANCHES[1])[0].real)
+    assert found["growth_rate"] == pytest.approx(rate, rel=1e-3)
+
+
+@pytest.mark.parametrize("across", [0.0, 5e-4])
+def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across):
+    """A block of one temperature T expands along a wall, one side held, and against it: the other
+    side slips by s = alpha T - mu p/(2 E), p = p0 + E beta T, and makes q = mu p s'/2 of heat. With
+    a film H, C T' = -H (T - 20) + q. Equations keep the block from bending and warping."""
+    friction, given, expansion, capacity, film, young = 0.5, 100.0, 1e-2, 1.0, 3.0, 1e4
+
+    def pressure(warmth):
+        return given + young * across * warmth
+
+    def slip(warmth):
+        return expansion * warmth - friction * pressure(warmth) / 2 / young
+
+    # The increment of the steady state has the duration 1.
+    warmth = brentq(lambda t: film * (t - 20.0) - friction / 2 * pressure(t) * slip(t), 0.0, 30.0)
+    alike = [f"{node}, 11, 1., 1, 11, -1." for node in (2, 3, 4)] + ["3, 1, 1., 2, 1, -1."]
+    cards = [*mesh("BLOCK", [0.0, 1.0], [0.0, 1.0], "CPS4"),
+             *material("BLOCK", (young, 0.0), (expansion, across, 0.0), 1.0, 1.0, capacity,
+                       expansion_type="ORTHO"),
+             *mesh("WALL", [0.0, 1.0], [-1.0, 0.0], "CPS4", first=101),
+             *material("WALL", (young, 0.0), None, 1.0, 1.0, 1.0),
+             "*EQUATION", *(line for card in alike for line in ("2", card)),
+             "*SURFACE INTERACTION, NAME=FACE", "*FRICTION", f"{friction!r}",
+             "*GAP HEAT GENERATION", "1., 1.", "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE",
+             "BLOCK.BOTTOM, WALL.TOP", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BLOCK, 0.",
+             "WALL, 0.", "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT",
+             "1., 1.", "*STABILITY", "*BOUNDARY", "WALL, 1, 2, 0.", "WALL, 11, 11, 0.",
+             "BLOCK.LEFT, 1, 1, 0.", f"BLOCK.TOP, 2, 2, {-given / young!r}", "*SFILM",
+             f"BLOCK.TOP, F, 20., {film!r}", "*END STEP"]
+    found = stability_of(solved(tmp_path, cards)[0])
+    by_slip = friction / 2 * pressure(warmth) * (slip(1.0) - slip(0.0))
+    by_pressure = friction / 2 * (pressure(1.0) - pressure(0.0)) * slip(warmth)
+    rate = (by_pressure - film) / (capacity - by_slip)
+    assert found["growth_rate"] == pytest.approx(rate, rel=1e-6)
+
+
+def test_radiation_follows_the_temperature_of_either_face(tmp_path):
+    """A body of one temperature T and a film H of it below a hotter one that keeps its own: C s =
+    -H - 4 sigma T^3, for black faces."""
+    sigma, hot, warm, cold, capacity = 5.67e-8, 1000.0, 600.0, 300.0, 3.0
+    film = sigma * (hot**4 - warm**4) / (warm - cold)
+    cards = [f"*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0., STEFAN BOLTZMANN={sigma!r}",
+             *mesh("HOT", [0.0, 1.0], [0.1, 1.1], "CPE4"),
+             *mesh("WARM", [0.0, 1.0], [-1.0, 0.0], "CPE4", first=101),
+             *(card for name in ("HOT", "WARM") for card in material(
+                 name, conductivity=1.0, density=1.0, specific_heat=capacity)),
+             "*EQUATION", *(line for node in (102, 103, 104) for line in (
+                 "2", f"{node}, 11, 1., 101, 11, -1.")),
+             "*SURFACE INTERACTION, NAME=FACE", "*GAP RADIATION", "1., 1.", "1., 0.", "1., 1.",
+             "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE", "HOT.BOTTOM, WARM.TOP",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"HOT, {hot!r}", f"WARM, {warm!r}", "*STEP",
+             "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*STABILITY",
+             "*BOUNDARY", "HOT, 1", "WARM, 1", "HOT.TOP, 2", "WARM.BOTTOM, 2",
+             f"HOT, 11, 11, {hot!r}", "*SFILM",
+             f"WARM.BOTTOM, F, {cold!r}, {film!r}", "*END STEP"]
+    found = stability_of(solved(tmp_path, cards)[0])
+    rate = -(film + 4 * sigma * warm**3) / capacity
+    assert found["growth_rate"] == pytest.approx(rate, rel=1e-6)
 
 
 def test_an_expansion_without_heat_capacity_leaves_doubt(tmp_path):

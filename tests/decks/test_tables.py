@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from blocks import write
 from deck_runs import assert_alike, datasets, run, solve
-from physics import material, mesh, nodes_of, outer_nodes
+from physics import material, mesh, nodes_of, outer_nodes, verify
 from scipy.optimize import brentq
 
 import tables
@@ -336,6 +336,24 @@ def test_heat_is_stored_or_leaves(tmp_path, scheme, joint, free):
     assert np.abs(off[1:]).max() < 1e-10 * size
     assert course["heat_imbalance"].max() < 1e-10
     assert course["force_imbalance"].max() < 1e-9
+
+
+def test_a_past_counts_with_the_conductivity_that_it_had(tmp_path):
+    """A bar of one linear element, k = 1 - 0.007 T, conducts the integral of k. Operators are formed
+    again on the way; CRANK-NICOLSON keeps a flux that follows straight lines in equilibrium."""
+    falling, course = [(1.0, 0.0), (0.3, 100.0)], {1: 40.0, 2: 90.0, 3: 60.0}
+    flux = {time: tables.integral(falling, t) - tables.integral(falling, 0.0)
+            for time, t in course.items()}
+    solved(tmp_path, ["*THERMAL SCHEME, TYPE=CRANK-NICOLSON",
+                      *mesh("BAR", [0.0, 1.0], [0.0, 1.0], "CPE4"),
+                      *material("BAR", (1000.0, 0.3), conductivity=falling), "*INITIAL CONDITIONS, "
+                      "TYPE=TEMPERATURE", "BAR, 0.", "*AMPLITUDE, NAME=COURSE", ", ".join(
+                          ["0., 0.", *(f"{time}., {float(q)!r}" for time, q in flux.items())]),
+                      *step("*BOUNDARY", "BAR.LEFT, 11, 11, 0.", "*DFLUX, AMPLITUDE=COURSE",
+                            "1, S2, 1.", analysis="*HEAT TRANSFER, STEADY STATE, DIRECT",
+                            times="1., 3."), *verify(*(("NT", "BAR.RIGHT", float(time), t, EXACT)
+                                                       for time, t in course.items()))])
+    assert "operators formed again" in (tmp_path / "deck.lst").read_text()
 
 
 @pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN", "L-STABLE"])

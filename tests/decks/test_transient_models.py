@@ -7,9 +7,10 @@ import h5py
 import numpy as np
 import pytest
 import transients as two
+from blocks import write
 from calculix import thercon
 from deck_runs import assert_alike, datasets, solve
-from physics import nodes_of
+from physics import material, mesh, nodes_of, verify
 from transients import HIGH, LOW, XS
 
 OTHER = [0.0, 0.25, 0.7, 1.0]
@@ -169,6 +170,26 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
     at_once = beside * two.CAPACITY["UPPER"] * (two.HOT - two.START)
     np.testing.assert_allclose(at_once + np.cumsum(stored * np.diff(times, prepend=0.0)), heat,
                                rtol=1e-9)
+
+
+@pytest.mark.parametrize(("scheme", "part"), [("CRANK-NICOLSON", 0.5), ("IMPLICIT", 1.0)])
+def test_a_face_that_is_set_to_a_temperature_heats_the_other_one_from_the_start(tmp_path, scheme,
+                                                                                part):
+    """A body of one temperature T across a conductance from one at 100 on: with r = G dt/C of an
+    increment, T = 100 r/(1 + a r), a being the part of the heat at the end."""
+    ratio, even = 0.7, ["*EQUATION"]
+    for node in 102, 103, 104:
+        even += ["2", f"101, 11, 1., {node}, 11, -1."]
+    solve(write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO", f"*THERMAL SCHEME, TYPE={scheme}"],
+                mesh("UPPER", [0.0, 1.0], [0.0, 1.0], "CPE4"),
+                mesh("LOWER", [0.0, 1.0], [-1.0, 0.0], "CPE4", first=101),
+                *(material(name, conductivity=1.0, density=1.0, specific_heat=1.0)
+                  for name in ("UPPER", "LOWER")), even, [
+        "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", f"{ratio!r}, 0., 1.",
+        "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "UPPER.BOTTOM, LOWER.TOP",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UPPER, 0.", "LOWER, 0.",
+        "*STEP", "*HEAT TRANSFER, DIRECT", "1., 1.", "*BOUNDARY", "UPPER, 11, 11, 100.",
+        "*END STEP", *verify(("NT", "LOWER", "LAST", 100.0 * ratio / (1 + part * ratio), 1e-9))]))
 
 
 # Steps and methods

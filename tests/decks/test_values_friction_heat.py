@@ -180,6 +180,30 @@ def test_bodies_that_do_not_expand_slide_at_a_rate(tmp_path, scheme):
     assert courses["heat_friction"][at_rest] == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.parametrize(("scheme", "part"), [("CRANK-NICOLSON", 0.5), ("GALERKIN", 2 / 3),
+                                              ("IMPLICIT", 1.0)])
+def test_both_faces_have_the_heat_of_both_ends_of_an_increment(tmp_path, scheme, part):
+    """Faces that slide at a given speed, on insulated bodies that conduct so well that they have one
+    temperature: pressure rises from 10 to 30 in the one increment, which has parts of both heats."""
+    speed, share, capacity, mean = 7.0, 0.2, 2.0, (1 - part) * 10.0 + part * 30.0
+    deck = [*mesh("UPPER", [0.0, 1.0, 2.0], [0.0, 1.0], "CPE4"),
+            *mesh("LOWER", [0.0, 1.0, 2.0], [-1.0, 0.0], "CPE4", first=101)]
+    for name in ("UPPER", "LOWER"):
+        deck += material(name, (1000.0, 0.0), 0.0, 1e8, 1.0, capacity)
+    pressing = ["*DSLOAD, AMPLITUDE=COURSE", "UPPER.TOP, P, 1."]
+    judge(tmp_path, [
+        *deck, "*SURFACE INTERACTION, NAME=FACES", "*FRICTION", f"{MU!r}", "*GAP HEAT GENERATION",
+        f"1., {share!r}, {speed!r}", "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE",
+        "UPPER.BOTTOM, LOWER.TOP", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UPPER, 0.",
+        "LOWER, 0.", "*AMPLITUDE, NAME=COURSE, TIME=TOTAL TIME", "0., 0., 1., 10., 2., 30.",
+        "*BOUNDARY", "UPPER, 1", "LOWER, 1", "LOWER.BOTTOM, 2",
+        "*STEP", "*STATIC", "1., 1.", *pressing, "*END STEP",
+        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "1., 1.",
+        f"*THERMAL SCHEME, TYPE={scheme}", *pressing, "*END STEP"], [
+        ("NT", "UPPER", "LAST", share * MU * mean * speed / capacity, 1e-6),
+        ("NT", "LOWER", "LAST", (1 - share) * MU * mean * speed / capacity, 1e-6)])
+
+
 def bar_on_a_wall(number, pressure=1.0, analysis="STEADY STATE", times="1., 1."):
     """Return a bar on an insulating wall that slides, S = mu V E alpha L/k, pressed and cold at its
     other end."""
