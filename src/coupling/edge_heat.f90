@@ -11,10 +11,11 @@
 !> so that the heat enters the bodies where it crosses, by the same sum. On the other side of a
 !> point omega is that of the point itself.
 module edge_heat
+   use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance_law_type
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip
-   use heat_equation, only: heat_rates_type
+   use heat_equation, only: heat_across, heat_rates_type
    use mortar_segments, only: edge_profile_type, edge_segment_type, hat_geometry_type, support
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
@@ -23,7 +24,7 @@ module edge_heat
    implicit none
    private
    public :: edge_integral_type, edge_heat_type, find_edge_integrals, edge_heat_at
-   public :: joined_conductance, supplied_heat
+   public :: find_heat_by_opening, joined_conductance, supplied_heat
 
    !> Integrals of a hat function with an edge below it, for openings of the contact points: over
    !> the sides without an edge, which the conductance of the point multiplies, and over those with
@@ -53,6 +54,9 @@ module edge_heat
    end type side_edge_type
 
    real(dp), parameter :: least_length = 1.0e-6_dp   !! of a closed part that has a profile [t]
+   integer, parameter :: farthest = 4   !! contact points from an end of a side that its edge reads
+   !> Difference of openings for derivatives, as a part of those beside them: half of the digits.
+   real(dp), parameter :: small_part = sqrt(epsilon(1.0_dp))
 
 contains
 
@@ -188,6 +192,57 @@ contains
          end associate
       end do
    end function edge_heat_at
+
+   !> How the heat that enters the nodes by the hats at edges follows the openings, at given
+   !> temperatures: differences with each opening that moves an edge or changes what is beside it, away
+   !> from zero. Contact points at rest keep theirs.
+   pure subroutine find_heat_by_opening(bodies, graph, opening, resting, temperature, point, heat)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(conductance_graph_type), intent(in) :: graph(:)   !! (m)
+      real(dp), intent(in) :: opening(:)                     !! (m) openings [length]
+      logical, intent(in) :: resting(:)                      !! (m) points at rest
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      integer, allocatable, intent(out) :: point(:)          !! (n) whose opening counts
+      real(dp), allocatable, intent(out) :: heat(:, :)       !! (nodes, n) [power/length]
+      type(edge_integral_type), allocatable :: hats(:)
+      real(dp), dimension(size(temperature)) :: unmoved, moved
+      real(dp) :: beside(size(opening)), step
+      integer :: k, m
+
+      m = size(opening)
+      call find_edge_integrals(bodies, graph%modulus, opening, hats)
+      point = pack([(k, k=1, m)], [(any(abs(hats%point - k) <= farthest), k=1, m)] .and. &
+         .not. resting)
+      allocate (heat(size(temperature), size(point)))
+      unmoved = entering(opening)
+      do k = 1, size(point)
+         associate (j => point(k))
+            step = small_part*sum(abs(opening(max(j - 1, 1):min(j + 1, m))))
+            beside = opening
+            beside(j) = opening(j) + merge(step, -step, opening(j) > 0.0_dp)
+            moved = entering(beside)
+            heat(:, k) = (moved - unmoved)/(beside(j) - opening(j))
+         end associate
+      end do
+   contains
+      !> Heat that enters the nodes by the hats at edges.
+      pure function entering(at) result(sums)
+         real(dp), intent(in) :: at(:)                       ! (m) openings
+         real(dp) :: sums(size(temperature))
+         type(edge_integral_type), allocatable :: integrals(:)
+         type(edge_heat_type) :: at_edge
+         real(dp), allocatable :: jump(:)
+
+         call find_edge_integrals(bodies, graph%modulus, at, integrals)
+         at_edge = edge_heat_at(integrals, bodies%points%weight, &
+            graph%omega(graph%coordinate_of_opening(at)))
+         allocate (jump(size(integrals)), source=0.0_dp)
+         call at_edge%jump%add_totals(temperature, jump)
+         sums = 0.0_dp
+         call at_edge%jump%add_shares(-heat_across(bodies%points%weight(at_edge%point), &
+            at_edge%conductance, jump), sums)
+      end function entering
+   end subroutine find_heat_by_opening
 
    !> The conductances along the sides with an edge, each between a contact point and the next.
    pure function edges_of(points, law, opening, modulus) result(edges)

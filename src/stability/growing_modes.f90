@@ -83,7 +83,7 @@ contains
       rates = [complex(dp) ::]
       is_known = .true.
       bound = 0.0_dp
-      if (size(motion%active) + motion%heated > 0) then
+      if (size(motion%reads, 2) > 0) then
          call project(model, simulation, motion, response, projection, bound, error)
          if (allocated(error)) return
          call projection%rates(rates, is_known)

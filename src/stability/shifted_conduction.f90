@@ -88,7 +88,7 @@ contains
       call motion%heat_loads(bodies, on_tail, nodal)
       call self%tail%solve_columns(on_tail)
       associate (a => size(motion%active), nodes => size(nodal, 1))
-         allocate (temperature(nodes, a + motion%heated))
+         allocate (temperature(nodes, a + size(nodal, 2)))
          temperature(:, :a) = self%heat%extended(bodies%thermal, on_tail)
          temperature(:, a + 1:) = self%solve(bodies, nodal)
       end associate

@@ -6,14 +6,16 @@
 !> y being the changes of the conductances, and of the heats that friction makes, at the contact
 !> points whose changes carry heat; F has the nodal heats of unit changes, and N says how the
 !> contact answers temperatures: with its strains, its gaps and pressures, and the laws. Open,
-!> slipping and stuck contact points keep their states, points at rest their conductance.
+!> slipping and stuck contact points keep their states, points at rest their conductance. At edges
+!> inside a side of mortar points heat follows the openings themselves, which move the edges.
 module small_motions
    use closing_instant, only: contact_change_type, contact_response
    use contact_heat, only: changes_by_faces
    use contact_operator, only: make_graph, opening_changes, openings
    use contact_system, only: closing_law_type
    use contact_workspace, only: contact_workspace_type
-   use dense, only: product_of
+   use dense, only: transposed_product
+   use edge_heat, only: find_heat_by_opening
    use errors, only: error_type
    use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type, loads_of_temperatures, temperatures_in_loads
@@ -28,12 +30,15 @@ module small_motions
    !> How the contact answers temperatures.
    type :: small_motion_type
       integer, allocatable :: active(:)        !! (a) contact points whose conductance counts
-      integer :: heated = 0                    !! heats of friction behind these
       logical :: takes_rates = .false.         !! whether y depends on dT/dt: by slip that goes on
       real(dp), allocatable :: reads(:, :)     !! (nodes, n) N^T at constant temperatures
       !> (nodes, n) what it has more at unit rate, where that is anything
       real(dp), allocatable :: reads_rate(:, :)
       real(dp), allocatable, private :: heat_rate(:)    !! (a) heat against the jump per conductance
+      integer, private :: heated = 0                    !! heats of friction behind the active
+      !> contact points whose openings come behind these
+      integer, allocatable, private :: at_edge(:)
+      real(dp), allocatable, private :: edge_heat(:, :) !! (nodes, of these) heat per opening
       type(contact_workspace_type), private :: tangent  !! factors of the contact states
    contains
       procedure :: begin
@@ -55,10 +60,11 @@ contains
       type(increment_workspace_type), intent(in) :: solved     !! workspace that it left
       type(error_type), allocatable, intent(out) :: error
       type(increment_workspace_type) :: laws                   ! graphs, faces, heat of friction
-      real(dp), dimension(size(state%jump)) :: coordinate, heat_rate, slope
+      real(dp), dimension(size(state%jump)) :: coordinate, heat_rate, opening, slope
       integer :: k
 
       self%active = [integer ::]
+      self%at_edge = [integer ::]
       self%heat_rate = [real(dp) ::]
       allocate (self%reads(size(state%temperature), 0))
       self%tangent = solved%contact
@@ -69,12 +75,17 @@ contains
       laws%pass%graph%law = solved%pass%graph%law
       if (allocated(solved%faces)) laws%faces = solved%faces
       laws%friction = solved%friction
-      coordinate = laws%pass%graph%coordinate_of_opening(openings(bodies, laws%pass%graph, &
-         state%contact))
+      opening = openings(bodies, laws%pass%graph, state%contact)
+      coordinate = laws%pass%graph%coordinate_of_opening(opening)
       slope = laws%pass%graph%derivative(coordinate)
       heat_rate = -heat_across(bodies%points%weight, 1.0_dp, state%jump)
-      if (allocated(state%edge%point)) heat_rate(state%edge%point) = &
-         heat_rate(state%edge%point)*state%edge%own
+      if (allocated(state%edge%point)) then
+         call find_heat_by_opening(bodies, laws%pass%graph, opening, state%resting, &
+            state%temperature, self%at_edge, self%edge_heat)
+         ! Their laws may follow temperatures, too.
+         slope(state%edge%point) = 0.0_dp
+         heat_rate(state%edge%point) = heat_rate(state%edge%point)*state%edge%own
+      end if
       where (bodies%jump_index == 0 .or. state%resting .or. (.not. abs(slope) > 0.0_dp .and. &
          .not. bodies%points%vary_with_temperature())) heat_rate = 0.0_dp
       self%active = pack([(k, k=1, size(heat_rate))], abs(heat_rate) > 0.0_dp)
@@ -97,7 +108,8 @@ contains
       real(dp), intent(in) :: slope(:)                         ! (m) of omega by the opening
       real(dp), dimension(bodies%mechanical%map%tail, bodies%mechanical%map%tail) :: unit
       real(dp) :: change(size(slope), size(unit, 2))
-      real(dp), dimension(size(unit, 1), size(self%active) + self%heated) :: by_load, by_rate
+      real(dp), dimension(size(unit, 1), size(self%active) + self%heated + size(self%at_edge)) :: &
+         by_load, by_rate
       type(contact_change_type) :: of_contact
       integer :: k
 
@@ -113,11 +125,12 @@ contains
             by_load(:, k) = slope(self%active(k))*change(self%active(k), :)
          end do
          if (self%heated > 0) then
-            by_load(:, a + 1:) = transpose(friction%changes(bodies, state%contact, of_contact, &
-               0.0_dp))
-            by_rate(:, a + 1:) = transpose(friction%changes(bodies, state%contact, of_contact, &
-               1.0_dp)) - by_load(:, a + 1:)
+            by_load(:, a + 1:a + self%heated) = transpose(friction%changes(bodies, &
+               state%contact, of_contact, 0.0_dp))
+            by_rate(:, a + 1:a + self%heated) = transpose(friction%changes(bodies, &
+               state%contact, of_contact, 1.0_dp)) - by_load(:, a + 1:a + self%heated)
          end if
+         by_load(:, a + self%heated + 1:) = transpose(change(self%at_edge, :))
       end associate
       self%reads = temperatures_in_loads(bodies, by_load)
       if (self%takes_rates) self%reads_rate = temperatures_in_loads(bodies, by_rate)
@@ -152,9 +165,9 @@ contains
       real(dp), intent(in) :: growth                           !! [1/time]
       real(dp) :: changes(size(self%reads, 2), size(temperature, 2))
 
-      changes = product_of(transpose(self%reads), temperature)
+      changes = transposed_product(self%reads, temperature)
       if (self%takes_rates) changes = changes + &
-         growth*product_of(transpose(self%reads_rate), temperature)
+         growth*transposed_product(self%reads_rate, temperature)
    end function answers
 
    !> F^T T: the heats of unit changes at the temperatures of a field.
@@ -162,7 +175,7 @@ contains
       class(small_motion_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:, :)                !! (nodes, n)
-      real(dp) :: sums(size(self%active) + self%heated, size(temperature, 2))
+      real(dp) :: sums(size(self%reads, 2), size(temperature, 2))
       real(dp) :: jump(size(bodies%points%slave))
       integer :: k
 
@@ -172,22 +185,24 @@ contains
             jump = bodies%points%jumps(temperature(:, k))
             sums(:a, k) = self%heat_rate*jump(self%active)
             if (self%heated > 0) call bodies%points%heat_shares%add_totals(temperature(:, k), &
-               sums(a + 1:, k))
+               sums(a + 1:a + self%heated, k))
          end do
+         if (size(self%at_edge) > 0) sums(a + self%heated + 1:, :) = &
+            transposed_product(self%edge_heat, temperature)
       end associate
    end function heats
 
-   !> F: loads of the tail, and nodal heats of friction.
+   !> F: loads of the tail, and nodal heats of friction and at edges.
    pure subroutine heat_loads(self, bodies, on_tail, nodal)
       class(small_motion_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), allocatable, intent(out) :: on_tail(:, :)      !! (thermal tail, a)
-      real(dp), allocatable, intent(out) :: nodal(:, :)        !! (nodes, heated)
+      real(dp), allocatable, intent(out) :: nodal(:, :)        !! (nodes, n - a)
       real(dp) :: unit(self%heated)
       integer :: k
 
       allocate (on_tail(bodies%thermal%map%tail, size(self%active)), &
-         nodal(bodies%thermal%matrix%row_count, self%heated), source=0.0_dp)
+         nodal(bodies%thermal%matrix%row_count, self%heated + size(self%at_edge)), source=0.0_dp)
       do k = 1, size(self%active)
          on_tail(bodies%jump_index(self%active(k)), k) = self%heat_rate(k)
       end do
@@ -196,6 +211,7 @@ contains
          unit(k) = 1.0_dp
          call bodies%points%heat_shares%add_shares(unit, nodal(:, k))
       end do
+      if (size(self%at_edge) > 0) nodal(:, self%heated + 1:) = self%edge_heat
    end subroutine heat_loads
 
    !> Displacements that temperatures make.

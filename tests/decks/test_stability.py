@@ -295,6 +295,37 @@ def test_radiation_follows_the_temperature_of_either_face(tmp_path):
     assert found["growth_rate"] == pytest.approx(rate, rel=1e-6)
 
 
+@pytest.mark.parametrize(("columns", "curve"), [(4, 2e-3), (8, 2e-3), (8, 1e-3)])
+def test_an_edge_that_moves_takes_its_heat_along(columns, curve, tmp_path):
+    """A curved face in partial contact: after a small change of the load temperatures decay at the
+    rate of the slowest motion, and the edge of contact moves inside a side of mortar points."""
+    time, count = 0.01, 100
+
+    def bend(x, y):
+        return x, y + curve * x * x * (1 - y)
+
+    cards = [*mesh("UP", np.linspace(0.0, 1.0, columns + 1), [0.0, 0.4, 1.0], to=bend),
+             *mesh("LOW", np.linspace(0.0, 1.0, columns + 3), [-1.0, -0.4, 0.0], first=1001),
+             *material("UP", (1e5, 0.0), 1e-5, 1.0, 1.0, 1.0),
+             *material("LOW", (1e5, 0.0), None, 50.0, 1.0, 1.0),
+             "*SURFACE INTERACTION, NAME=FACE", "*GAP LAW, TYPE=GAS", "1e-6, 1.",
+             "*GAP LAW, TYPE=POWER", "1e-6, 0.05, 1.",
+             "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE, PAIRING=SURFACES", "UP.BOTTOM, LOW.TOP",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UP, 0.", "LOW, 0.", "*OPTIONS, ERRORS=NO",
+             "*FIXED POINT, METHOD=NEWTON, TOL=1e-12", "*STEP",
+             "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "0.25, 1.", "*STABILITY",
+             "*BOUNDARY", "UP.LEFT, 1", "LOW.LEFT, 1", "LOW.BOTTOM, 2", "UP.TOP, 2",
+             "UP.TOP, 11, 11, 100.", "LOW.BOTTOM, 11, 11, 0.", "*END STEP", f"*STEP, INC={count}",
+             "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", f"{time}, {time * count}", "*BOUNDARY",
+             "UP.TOP, 11, 11, 100.001", "*END STEP"]
+    result, _ = solved(tmp_path, cards)
+    with h5py.File(result) as file:
+        heat, states = (file[f"contact/FACE/{name}"][:] for name in ("heat_rate", "status"))
+    assert 0 < np.count_nonzero(states[-1]) < columns + 1
+    rates = np.diff(np.log(abs(np.diff(heat[-count // 4:])))) / time
+    assert stability_of(result)["growth_rate"] == pytest.approx(np.mean(rates), rel=5e-4)
+
+
 def test_an_expansion_without_heat_capacity_leaves_doubt(tmp_path):
     """The bar answers at once, whatever the rate: nothing bounds the rates of motions that grow."""
     cards = [*mesh("BAR", np.linspace(0.0, 1.0, 9), [0.0, 0.125], first=1),
