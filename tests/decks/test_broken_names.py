@@ -326,3 +326,15 @@ def test_sets_that_hold_a_set_twice_do_not_double(tmp_path):
     status, said = checked(tmp_path, deck + "*END STEP\n")
     assert status == 0, said
     assert resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss < 500_000, "kB"
+
+
+def test_sets_that_are_copied_may_hold_a_set_twice_or_each_other(tmp_path):
+    """40 levels name the first set 2^40 times; two sets that hold each other have no last level."""
+    sets = "".join(f"*NSET, NSET=S{k}\nS{k - 1}, S{k - 1}\n" for k in range(1, 41))
+    copy = "*NCOPY, CHANGE NUMBER=100, OLD SET=S40, SHIFT\n9., 0., 0.\n"
+    status, said = checked(tmp_path, model("*NSET, NSET=S0\n1, 2\n" + sets + copy) + "*END STEP\n")
+    assert status == 0, said
+    sets = "*NSET, NSET=X\n1, Y\n*NSET, NSET=Y\n2, X\n"
+    status, said = checked(tmp_path, model(sets + copy.replace("S40", "X")) + "*END STEP\n")
+    assert status == 1
+    assert "unknown node set Y" in said

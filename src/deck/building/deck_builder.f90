@@ -67,11 +67,11 @@ contains
       call check_structure(cards, report)
       call build_options(cards, context, model, report)
       call build_mesh(cards, context, model%mesh, report)
-      call build_regions(cards, model, report)
+      call build_regions(cards, context, model, report)
       call build_materials(cards, context, model, report)
-      call build_orientations(cards, model, report)
+      call build_orientations(cards, context, model, report)
       call build_sections(cards, context, model, report)
-      call build_amplitudes(cards, model, report)
+      call build_amplitudes(cards, context, model, report)
       call build_time_points(cards, context, report)
       call build_temperatures(cards, context, model, report)
       call build_initial_stresses(cards, context, model%mesh, report)
@@ -82,7 +82,7 @@ contains
       call build_equations(cards, context, model, report)
       call build_couplings(cards, context, model, report)
       call build_pre_tensions(cards, context, model, report)
-      call build_transforms(cards, model, report)
+      call build_transforms(cards, context, model, report)
       call build_steps(cards, context, model, report)
       why = reason_of_deck(model)
       if (why /= no_reason .and. model%estimates_errors) then
@@ -90,7 +90,7 @@ contains
          model%estimates_errors = .false.
       end if
       call build_verifications(cards, context, model, report)
-      call build_accuracy(cards, estimated, model, report)
+      call build_accuracy(cards, estimated, context, model, report)
       if (allocated(model%accuracy%targets) .and. any(model%steps%restart_frequency > 0)) then
          call context%note('*RESTART is ignored: each round of *ACCURACY solves the deck anew')
          model%steps%restart_frequency = 0

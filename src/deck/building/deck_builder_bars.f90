@@ -13,7 +13,6 @@ module deck_builder_bars
    use kinds, only: dp
    use materials, only: follows_temperature, isotropic, material_type, of_expansion
    use model, only: model_type
-   use named_items, only: find_named
    use steps, only: dof_temperature
    use text, only: to_text
    implicit none
@@ -63,7 +62,7 @@ contains
       real(dp) :: stiffness
       logical :: has_dofs, valid
 
-      call take_lines(card, context, model, report, members)
+      call take_lines(card, context, report, members)
       if (.not. allocated(members)) return
       valid = size(members) > 0 .and. all(context%line_kind(members) > truss)
       if (.not. valid) call report%error(parameter_place(card, 'ELSET'), &
@@ -124,7 +123,7 @@ contains
       integer :: i
 
       if (report%has_errors()) return
-      call take_lines(card, context, model, report, members)
+      call take_lines(card, context, report, members)
       members = pack(members, context%line_kind(members) == truss)
       if (size(members) == 0) return
       associate (material => model%materials(model%sections(n)%material), &
@@ -150,19 +149,15 @@ contains
    end subroutine take_section
 
    !> The lines of the set that ELSET= names; unallocated where there is no such set.
-   subroutine take_lines(card, context, model, report, members)
+   subroutine take_lines(card, context, report, members)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
-      type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       integer, allocatable, intent(out) :: members(:)
-      integer :: lines, set
+      integer :: set
 
-      call need_named(card, 'ELSET', 'element set', model%mesh%element_sets, report, set)
-      if (set == 0) return
-      allocate (members(0))
-      lines = find_named(context%line_sets, model%mesh%element_sets(set)%name)
-      if (lines > 0) members = context%line_sets(lines)%members
+      call need_named(card, 'ELSET', 'element set', context%element_index%sets, report, set)
+      if (set > 0) members = context%line_sets(set)%members
    end subroutine take_lines
 
    !> Makes the distance of two nodes an elongation.

@@ -17,7 +17,6 @@ module deck_builder_contact
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use named_items, only: find_named
    use text, only: read_real, to_text, to_upper
    implicit none
    private
@@ -43,13 +42,15 @@ contains
       end do
       places = cards_of(cards, 'CLEARANCE')
       do n = 1, size(places)
-         call build_clearance(cards%keywords(places(n)), model%mesh, report, model%contacts)
+         call build_clearance(cards%keywords(places(n)), context, model%mesh, report, &
+            model%contacts)
       end do
    end subroutine build_contacts
 
    !> Reads a clearance, for the interface of the two surfaces that it names.
-   subroutine build_clearance(card, mesh, report, contacts)
+   subroutine build_clearance(card, context, mesh, report, contacts)
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
       type(contact_definition_type), intent(inout) :: contacts(:)
@@ -57,8 +58,8 @@ contains
       real(dp) :: value
       integer :: i, master, slave
 
-      call need_named(card, 'MASTER', 'surface', mesh%surfaces, report, master)
-      call need_named(card, 'SLAVE', 'surface', mesh%surfaces, report, slave)
+      call need_named(card, 'MASTER', 'surface', context%surfaces, report, master)
+      call need_named(card, 'SLAVE', 'surface', context%surfaces, report, slave)
       call need_parameter(card, 'VALUE', report, text)
       value = 0.0_dp
       call take_parameter(card, 'VALUE', report, value)
@@ -98,7 +99,7 @@ contains
       character(:), allocatable :: pairing
       logical :: is_number
 
-      call need_named(card, 'INTERACTION', 'surface interaction', model%interactions, report, &
+      call need_named(card, 'INTERACTION', 'surface interaction', context%interactions, report, &
          contact%interaction)
       call choose(card, 'PAIRING', 'NODES/SURFACES', report, pairing)
       if (allocated(pairing)) contact%pairing = merge(pairing_nodes, pairing_surfaces, &
@@ -107,7 +108,7 @@ contains
       if (contact%adjusts) then   ! a distance, or a node set
          call read_real(parameter_text(card, 'ADJUST'), contact%adjusted, is_number)
          if (.not. is_number) then
-            call need_named(card, 'ADJUST', 'node set', model%mesh%node_sets, report, &
+            call need_named(card, 'ADJUST', 'node set', context%node_index%sets, report, &
                contact%adjusted_set)
          else if (contact%adjusted < 0.0_dp) then
             call report%error(parameter_place(card, 'ADJUST'), &
@@ -131,8 +132,8 @@ contains
       character(*), parameter :: held = 'let it be the master, and the face of the body the slave'
       character(*), parameter :: tied = 'nodes that it holds are TIE NSET= of *RIGID BODY        '
 
-      call read_surface(data, 1, 'slave surface', mesh%surfaces, report, faces%slave)
-      call read_surface(data, 2, 'master surface', mesh%surfaces, report, faces%master)
+      call read_surface(data, 1, 'slave surface', context%surfaces, report, faces%slave)
+      call read_surface(data, 2, 'master surface', context%surfaces, report, faces%master)
       call check_extra(data, 2, 'slave surface, master surface', report)
       if (faces%slave > 0 .and. faces%slave == faces%master) call report%error( &
          field_place(data, 2), 'a surface cannot be '//trim(merge('tied to itself           ', &
@@ -160,15 +161,16 @@ contains
 
       n = size(contacts)
       if (.not. has_parameter(card, 'NAME') .and. contacts(n)%master > 0) then
-         is_taken = find_named(contacts(:n - 1), contacts(n)%name) > 0
+         is_taken = context%contacts%find(contacts(n)%name) > 0
          if (is_taken) contacts(n)%name = contacts(n)%name//'-'// &
             mesh%surfaces(contacts(n)%master)%name
          call context%note('*CONTACT PAIR without NAME=: '//contacts(n)%name//', '//trim(merge( &
             'its surfaces     ', 'the slave surface', is_taken)))
       end if
       associate (place => parameter_place(card, 'NAME'), name => contacts(n)%name)
-         if (find_named(contacts(:n - 1), name) > 0) call report%error(place, &
+         if (context%contacts%find(name) > 0) call report%error(place, &
             'contact pair '//name//' is defined twice')
+         call context%contacts%add(name)
          if (scan(name, '/@') > 0) call report%error(place, &
             'the name of a contact pair must not contain / or @')
          if (name == '.' .or. name == '..') call report%error(place, 'a contact pair must not '// &
@@ -252,7 +254,7 @@ contains
          if (is_keyword(cards, k - 1, 'CHANGE FRICTION')) then
             call build_friction(cards, cards%keywords(k), context, report, change%friction)
             call need_named(cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
-               model%interactions, report, change%interaction)
+               context%interactions, report, change%interaction)
             if (change%interaction == 0) return
             if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
             changes%frictions = [changes%frictions, change]
@@ -261,7 +263,7 @@ contains
                '*FRICTION in a step needs *CHANGE FRICTION, INTERACTION= before it')
          end if
       case ('MODEL CHANGE')
-         call change_pairs(cards, cards%keywords(k), model, report, changes)
+         call change_pairs(cards, cards%keywords(k), context, model, report, changes)
       case default
          call change_interferences(cards, cards%keywords(k), step, model, context, report, changes)
       end select
@@ -269,9 +271,10 @@ contains
    end subroutine build_contact_change
 
    !> The interfaces that *MODEL CHANGE removes or adds.
-   subroutine change_pairs(cards, card, model, report, changes)
+   subroutine change_pairs(cards, card, context, model, report, changes)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(contact_changes_type), intent(inout) :: changes
@@ -292,8 +295,8 @@ contains
       end if
       if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
       do j = card%first_data, card%last_data
-         call read_contact(cards%data(j), 2, 'slave surface, master surface', model, report, &
-            change%contact)
+         call read_contact(cards%data(j), 2, 'slave surface, master surface', context, model, &
+            report, change%contact)
          if (change%contact > 0) changes%pairs = [changes%pairs, change]
       end do
    end subroutine change_pairs
@@ -322,18 +325,19 @@ contains
       if (given%shrinks .and. has_parameter(card, 'AMPLITUDE')) then
          call context%note('*CONTACT INTERFERENCE, SHRINK: AMPLITUDE= is ignored')
       else
-         call take_named(card, 'AMPLITUDE', 'amplitude', model%amplitudes, report, given%amplitude)
+         call take_named(card, 'AMPLITUDE', 'amplitude', context%amplitudes, report, &
+            given%amplitude)
       end if
       if (.not. allocated(changes%interferences)) allocate (changes%interferences(0))
       do j = card%first_data, card%last_data
          valid = .true.
          given%value = 1.0_dp
          if (given%shrinks) then
-            call read_contact(cards%data(j), 2, 'slave surface, master surface', model, report, &
-               given%contact)
+            call read_contact(cards%data(j), 2, 'slave surface, master surface', context, model, &
+               report, given%contact)
          else
             call read_contact(cards%data(j), 3, 'slave surface, master surface, interference', &
-               model, report, given%contact)
+               context, model, report, given%contact)
             call need_field(cards%data(j), 3, 'interference', report, given%value, valid)
          end if
          if (given%contact == 0 .or. .not. valid) cycle
@@ -371,17 +375,18 @@ contains
    end subroutine check_clearance
 
    !> The interface of the two surfaces that a data card names; 0 after an error.
-   subroutine read_contact(data, most, layout, model, report, contact)
+   subroutine read_contact(data, most, layout, context, model, report, contact)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: most                 ! most fields
       character(*), intent(in) :: layout
+      type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: contact
       integer :: master, slave
 
-      call read_surface(data, 1, 'slave surface', model%mesh%surfaces, report, slave)
-      call read_surface(data, 2, 'master surface', model%mesh%surfaces, report, master)
+      call read_surface(data, 1, 'slave surface', context%surfaces, report, slave)
+      call read_surface(data, 2, 'master surface', context%surfaces, report, master)
       call check_extra(data, most, layout, report)
       call find_contact(slave, master, model%contacts, model%mesh, field_place(data, 1), report, &
          contact)

@@ -13,9 +13,9 @@ module deck_builder_controls
    use deck_context, only: deck_context_type, report_unknown, take_named
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use mesh, only: mesh_type, set_type
+   use mesh, only: mesh_type
    use model, only: model_type
-   use named_items, only: find_named
+   use name_index, only: name_index_type
    use steps, only: step_controls_type
    use print_requests, only: print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
@@ -201,9 +201,10 @@ contains
    end subroutine build_continuation
 
    !> Reads one *START; after an error the start stays as it was.
-   subroutine build_start(cards, card, model, report, start)
+   subroutine build_start(cards, card, context, model, report, start)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context     !! names of the interfaces
       type(model_type), intent(in) :: model              !! its interfaces
       type(deck_report_type), intent(inout) :: report    !! receives errors
       type(start_type), intent(inout) :: start           !! receives the start
@@ -211,7 +212,7 @@ contains
 
       call need_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', report, from)
       if (from == 'GIVEN') then
-         call build_given(cards, card, model, report, start)
+         call build_given(cards, card, context, model, report, start)
       else if (card%last_data >= card%first_data .and. from /= '') then
          call report%error(field_place(cards%data(card%first_data), 1), &
             'extra data card; *START has them with FROM=GIVEN only')
@@ -223,9 +224,10 @@ contains
    end subroutine build_start
 
    !> Interface and conductance, a card each.
-   subroutine build_given(cards, card, model, report, start)
+   subroutine build_given(cards, card, context, model, report, start)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(start_type), intent(inout) :: start
@@ -241,9 +243,9 @@ contains
             valid = .true.
             name = ''
             call need_field(data, 1, 'contact pair', report, name, valid)
-            i = find_named(model%contacts, name)
-            if (valid .and. i == 0) call report_unknown('contact pair', name, model%contacts, &
-               field_place(data, 1), report)
+            i = context%contacts%find(name)
+            if (valid .and. i == 0) call report_unknown('contact pair', name, &
+               context%contacts%known(), field_place(data, 1), report)
             valid = valid .and. i > 0
             value = 0.0_dp
             call need_field(data, 2, 'conductance', report, value, valid)
@@ -287,8 +289,8 @@ contains
       keys = element_keys
       if (card%name == 'NODE PRINT') then
          keys = node_keys
-         if (names_set(card, 'NSET', mesh%node_sets, context)) call take_named(card, 'NSET', &
-            'node set', mesh%node_sets, report, request%set)
+         if (names_set(card, 'NSET', context%node_index%sets, context)) call take_named(card, &
+            'NSET', 'node set', context%node_index%sets, report, request%set)
          is_known = request%set > 0 .or. lacks_parameter(card, 'NSET')
          if (is_dropped(card, context, mesh, report, request%set)) is_known = .false.
          call choose(card, 'TOTALS', 'YES/NO/ONLY', report, choice)
@@ -296,8 +298,8 @@ contains
          request%totals = choice /= 'NO'
          choice = 'NO'
       else
-         if (names_set(card, 'ELSET', mesh%element_sets, context)) call take_named(card, 'ELSET', &
-            'element set', mesh%element_sets, report, request%set)
+         if (names_set(card, 'ELSET', context%element_index%sets, context)) call take_named( &
+            card, 'ELSET', 'element set', context%element_index%sets, report, request%set)
          is_known = request%set > 0 .or. lacks_parameter(card, 'ELSET')
          if (request%set > 0) then
             if (mesh%element_sets(request%set)%of_lines) then
@@ -329,10 +331,10 @@ contains
    pure logical function names_set(card, parameter, sets, context)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter
-      type(set_type), intent(in) :: sets(:)
+      type(name_index_type), intent(in) :: sets
       type(deck_context_type), intent(in) :: context
 
-      names_set = context%sets_sound .or. find_named(sets, parameter_text(card, parameter)) > 0
+      names_set = context%sets_sound .or. sets%find(parameter_text(card, parameter)) > 0
    end function names_set
 
    !> Whether ORDER=1 leaves no node of a set, which is warned of: there is nothing to print.
@@ -393,7 +395,7 @@ contains
 
       frequency = 1
       i = 0
-      call take_named(card, 'TIME POINTS', 'time points', context%time_points, report, i)
+      call take_named(card, 'TIME POINTS', 'time points', context%time_point_names, report, i)
       if (i > 0) then
          points = context%time_points(i)
          frequency = huge(frequency)   ! the last increment is written besides

@@ -2,7 +2,7 @@
 !> *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
 module deck_builder_element_loads
    use card_values, only: check_extra, need_field, need_plane_vector, need_vector
-   use cards, only: data_card_type, field_place, field_text
+   use cards, only: data_card_type, field_place, field_text, has_field
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_context_type, read_surface, read_target
    use deck_report, only: deck_report_type
@@ -11,7 +11,6 @@ module deck_builder_element_loads
    use load_requests, only: request_type
    use mesh, only: mesh_type, surface_type
    use model, only: model_type
-   use named_items, only: find_named
    use spelling, only: known_choices
    use steps, only: centrifugal_round, load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_film_sink, load_gravity, load_pressure, &
@@ -39,7 +38,7 @@ contains
       logical :: valid
 
       valid = .true.
-      surface = named_surface(data, model%mesh)
+      surface = named_surface(data, context, model%mesh)
       if (surface == 0) call read_target(data, 1, context%element_index, &
          model%mesh%element_sets, report, request%target_type, valid)
       call need_field(data, 2, 'label of the load', report, label, valid)
@@ -76,17 +75,15 @@ contains
    end subroutine build_element_load
 
    !> Index of the surface that a card names in place of an element or a set; else 0.
-   integer function named_surface(data, mesh)
+   integer function named_surface(data, context, mesh)
       type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
-      character(:), allocatable :: name
       integer :: set
 
-      name = to_upper(field_text(data, 1))
-      do named_surface = size(mesh%surfaces), 1, -1
-         if (mesh%surfaces(named_surface)%name == name .and. len(name) > 0) exit
-      end do
-      set = find_named(mesh%element_sets, name)
+      named_surface = context%surfaces%find(field_text(data, 1))
+      if (.not. has_field(data, 1)) named_surface = 0
+      set = context%element_index%sets%find(field_text(data, 1))
       if (set == 0) return
       if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
    end function named_surface
@@ -338,7 +335,7 @@ contains
       errors = report%error_count()
       advice = 'load its reference node by *CLOAD'
       if (keyword /= 'DSLOAD') advice = 'prescribe the temperature of its reference node'
-      call read_surface(data, 1, 'surface', model%mesh%surfaces, report, surface)
+      call read_surface(data, 1, 'surface', context%surfaces, report, surface)
       call need_faces(model%mesh, field_place(data, 1), advice, report, surface)
       valid = surface > 0
       select case (keyword)

@@ -43,10 +43,12 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(term_type), allocatable :: terms(:)
       integer, allocatable :: places(:)
-      integer :: data, first, k
+      type(equation_type), allocatable :: list(:)   ! (capacity)
+      integer :: count, data, first, k
       logical :: valid
 
-      allocate (model%equations(0))
+      count = 0
+      allocate (list(64))
       places = cards_of(cards, 'EQUATION')
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
@@ -57,11 +59,12 @@ contains
                valid = allocated(terms)
                if (valid) call check_terms(terms, model, report, valid)
                if (valid) call add_equations(terms, field_place(cards%data(first), 1), model, &
-                  report)
+                  report, list, count)
                if (.not. valid) call report%lose('equation')
             end do
          end associate
       end do
+      model%equations = list(:count)
    end subroutine build_equations
 
    !> Reads one equation: the number of its terms, then the terms, any number on a card.
@@ -163,38 +166,45 @@ contains
    end subroutine check_terms
 
    !> Adds the equation, or one for each member of its sets in the order of the node numbers.
-   subroutine add_equations(terms, place, model, report)
+   subroutine add_equations(terms, place, model, report, list, count)
       type(term_type), intent(in) :: terms(:)
       type(place_type), intent(in) :: place        ! where the equation begins
-      type(model_type), intent(inout) :: model
+      type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
-      integer, allocatable :: members(:)
+      type(equation_type), allocatable, intent(inout) :: list(:)   ! (capacity)
+      integer, intent(inout) :: count
+      integer, allocatable :: members(:), nodes(:, :)
+      type(equation_type), allocatable :: longer(:)
       type(equation_type) :: equation
-      integer :: i, k, n, same(size(model%mesh%node_number)), unity(2, 0)
+      integer :: i, k, n
 
-      n = 1
-      same = [(i, i=1, size(same))]
+      n = maxval([(size(terms(i)%members(model%mesh%node_sets)), i=1, size(terms))])
+      allocate (nodes(n, size(terms)))
       do i = 1, size(terms)
-         n = max(n, size(terms(i)%members(model%mesh%node_sets)))
+         members = terms(i)%members(model%mesh%node_sets)
+         members = members(sort_order(model%mesh%node_number(members)))
+         nodes(:, i) = members(min([(k, k=1, n)], size(members)))
       end do
+      equation%title = '*EQUATION, '//report%source%words_of(place)
+      equation%card = place%image
       do k = 1, n
-         equation%title = '*EQUATION, '//report%source%words_of(place)
-         equation%card = place%image
-         equation%dof = terms%dof
-         equation%coefficient = terms%coefficient
-         equation%node = terms%item
+         equation%node = [integer ::]
+         equation%dof = [integer ::]
+         equation%coefficient = [real(dp) ::]
          do i = 1, size(terms)
-            if (terms(i)%set == 0) cycle
-            members = model%mesh%node_sets(terms(i)%set)%members
-            members = members(sort_order(model%mesh%node_number(members)))
-            equation%node(i) = members(min(k, size(members)))
+            call equation%add_term(nodes(k, i), terms(i)%dof, terms(i)%coefficient)
          end do
-         call equation%replace(unity, same)
          if (all(abs(equation%coefficient) <= 0.0_dp)) then
             call report%error(place, 'the terms of the equation cancel')
             return
          end if
-         model%equations = [model%equations, equation]
+         if (count == size(list)) then
+            allocate (longer(2*count))
+            longer(:count) = list
+            call move_alloc(longer, list)
+         end if
+         count = count + 1
+         list(count) = equation
       end do
    end subroutine add_equations
 
@@ -220,7 +230,7 @@ contains
          else if (cards%keywords(k)%name == 'COUPLING') then
             n = n + 1
             call begin_coupling(cards%keywords(k), n, context, model, report)
-            call need_named(cards%keywords(k), 'SURFACE', 'surface', model%mesh%surfaces, report, &
+            call need_named(cards%keywords(k), 'SURFACE', 'surface', context%surfaces, report, &
                model%couplings(n)%surface)
             call need_faces(model%mesh, parameter_place(cards%keywords(k), 'SURFACE'), &
                'it follows the reference node of its *RIGID BODY', report, &
@@ -281,7 +291,7 @@ contains
             if (node == 0) call report%missing(place, 'there is no node '//name, 'node', name)
             return
          end if
-         call need_named(card, parameter, 'node set', sets, report, set)
+         call need_named(card, parameter, 'node set', context%node_index%sets, report, set)
          if (set == 0) return
          if (size(sets(set)%members) /= 1) then
             call report%error(place, 'there is one reference node; node set '//name// &
@@ -347,8 +357,9 @@ contains
    end subroutine read_range
 
    !> Builds all transforms.
-   subroutine build_transforms(cards, model, report)
+   subroutine build_transforms(cards, context, model, report)
       type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(in) :: context       !! names of the node sets
       type(model_type), intent(inout) :: model             !! receives them
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
@@ -357,22 +368,23 @@ contains
       places = cards_of(cards, 'TRANSFORM')
       allocate (model%transforms(size(places)))
       do n = 1, size(places)
-         call build_transform(cards, cards%keywords(places(n)), model, report, model%transforms(n))
+         call build_transform(cards, cards%keywords(places(n)), context, report, &
+            model%transforms(n))
          call check_nodes(cards%keywords(places(n)), n, model, report)
       end do
    end subroutine build_transforms
 
-   subroutine build_transform(cards, card, model, report, transform)
+   subroutine build_transform(cards, card, context, report, transform)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
+      type(deck_context_type), intent(in) :: context
       type(deck_report_type), intent(inout) :: report
       type(transform_type), intent(out) :: transform
       character(:), allocatable :: kind
 
       transform%title = '*TRANSFORM, '//report%source%words_of(card%place)
       transform%card = card%place%image
-      call need_named(card, 'NSET', 'node set', model%mesh%node_sets, report, transform%set)
+      call need_named(card, 'NSET', 'node set', context%node_index%sets, report, transform%set)
       kind = 'R'
       call choose(card, 'TYPE', 'R/C', report, kind)
       transform%cylindrical = kind == 'C'

@@ -7,7 +7,7 @@ module deck_builder_histories
       parameter_text, take_parameter, take_positive
    use card_values, only: check_extra, decimal_comma, need_field, report_decimal_comma, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
-   use deck_context, only: deck_context_type, name_last, read_target
+   use deck_context, only: deck_context_type, read_target, take_name
    use deck_report, only: deck_report_type
    use deck_structure, only: cards_of
    use element_kinds, only: kind_count, plane_stress
@@ -33,8 +33,9 @@ module deck_builder_histories
 contains
 
    !> Builds all amplitudes.
-   subroutine build_amplitudes(cards, model, report)
+   subroutine build_amplitudes(cards, context, model, report)
       type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(inout) :: context    !! receives their names
       type(model_type), intent(inout) :: model             !! receives the amplitudes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
@@ -43,7 +44,8 @@ contains
       places = cards_of(cards, 'AMPLITUDE')
       allocate(model%amplitudes(size(places)))
       do n = 1, size(places)
-         call name_last(cards, places(n), 'amplitude', model%amplitudes(:n), report)
+         call take_name(cards, places(n), 'amplitude', context%amplitudes, &
+            model%amplitudes(n)%name, report)
          call build_amplitude(cards, cards%keywords(places(n)), report, model%amplitudes(n))
       end do
    end subroutine build_amplitudes
@@ -62,7 +64,8 @@ contains
       places = cards_of(cards, 'TIME POINTS')
       allocate (context%time_points(size(places)))
       do n = 1, size(places)
-         call name_last(cards, places(n), 'time points', context%time_points(:n), report)
+         call take_name(cards, places(n), 'time points', context%time_point_names, &
+            context%time_points(n)%name, report)
          associate (card => cards%keywords(places(n)), points => context%time_points(n))
             kind = 'STEP TIME'
             call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)

@@ -11,7 +11,7 @@ module deck_builder_interactions
       join_gap_conductance
    use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
    use deck_builder_gap_laws, only: build_gap_law
-   use deck_context, only: deck_context_type, name_last
+   use deck_context, only: deck_context_type, take_name
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: card_count
@@ -52,7 +52,8 @@ contains
             case ('SURFACE INTERACTION')
                errors = report%error_count()
                n = n + 1
-               call name_last(cards, k, 'surface interaction', model%interactions(:n), report)
+               call take_name(cards, k, 'surface interaction', context%interactions, &
+                  model%interactions(n)%name, report)
                law_place = card%place
                call ignore_thickness(cards, card, context, report)
                interaction = model%interactions(n)

@@ -110,25 +110,17 @@ contains
          to_text(number), 'node', to_text(number))
    end subroutine read_node
 
-   !> Parts sets of elements and lines: sets of elements stay, those that have lines as well are
-   !> kept beside them.
+   !> Parts sets of elements and lines: the elements stay, the lines are kept beside them.
    subroutine split_line_sets(elements, sets, line_sets)
       integer, intent(in) :: elements                             !! number of elements
       type(set_type), intent(inout) :: sets(:)  !! members are elements and, behind them, lines
-      type(set_type), allocatable, intent(out) :: line_sets(:)    !! indexes of lines
-      integer :: i, n
+      type(set_type), allocatable, intent(out) :: line_sets(:)    !! indexes of lines; may be empty
+      integer :: i
 
-      n = 0
+      allocate (line_sets(size(sets)))
       do i = 1, size(sets)
-         if (any(sets(i)%members > elements)) n = n + 1
-      end do
-      allocate(line_sets(n))
-      n = 0
-      do i = 1, size(sets)
-         if (.not. any(sets(i)%members > elements)) cycle
-         n = n + 1
-         line_sets(n)%name = sets(i)%name
-         line_sets(n)%members = pack(sets(i)%members, sets(i)%members > elements) - elements
+         line_sets(i)%members = pack(sets(i)%members, sets(i)%members > elements) - elements
+         if (size(line_sets(i)%members) == 0) cycle
          sets(i)%members = pack(sets(i)%members, sets(i)%members <= elements)
          sets(i)%of_lines = size(sets(i)%members) == 0
       end do

@@ -50,12 +50,13 @@ contains
       kind = 'DISPLACEMENT'
       call choose(card, 'TYPE', 'DISPLACEMENT', report, kind)
       call read_operation(card, step, model, context, report)
-      call take_named(card, 'AMPLITUDE', 'amplitude', model%amplitudes, report, request%amplitude)
+      call take_named(card, 'AMPLITUDE', 'amplitude', context%amplitudes, report, request%amplitude)
       request%keeps = has_parameter(card, 'FIXED')
       if (request%keeps .and. request%amplitude > 0) call report%error(parameter_place(card, &
          'AMPLITUDE'), 'FIXED holds the values at the start of the step, which no amplitude '// &
          'changes; leave one of the two out')
-      call take_named(card, 'FILM AMPLITUDE', 'amplitude', model%amplitudes, report, film_amplitude)
+      call take_named(card, 'FILM AMPLITUDE', 'amplitude', context%amplitudes, report, &
+         film_amplitude)
       if (film_amplitude > 0) then
          associate (film => model%amplitudes(film_amplitude))
             if (any(film%values < 0.0_dp)) call report%error(parameter_place(card, &

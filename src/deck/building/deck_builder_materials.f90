@@ -5,7 +5,8 @@ module deck_builder_materials
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
       take_field
    use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
-   use deck_context, only: deck_context_type, name_last, need_element_set, need_named, take_named
+   use deck_context, only: deck_context_type, need_element_set, need_named, take_name, &
+      take_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: card_count, cards_of, has_stand_in
@@ -18,7 +19,6 @@ module deck_builder_materials
       orthotropic, property_keywords, property_type, set_property
    use mesh, only: mesh_type
    use model, only: model_type
-   use named_items, only: find_named
    use text, only: to_text
    implicit none
    private
@@ -57,7 +57,8 @@ contains
             case ('MATERIAL')
                n = n + 1
                context%material_place(n) = card%place
-               call name_last(cards, k, 'material', model%materials(:n), report)
+               call take_name(cards, k, 'material', context%materials, model%materials(n)%name, &
+                  report)
                if (.not. report%has_lost('material')) cycle
                call report%lose('*ELASTIC')   ! another material may have these
                call report%lose('*CONDUCTIVITY')
@@ -369,8 +370,9 @@ contains
    end subroutine refuse_not_positive
 
    !> Builds all orientations.
-   subroutine build_orientations(cards, model, report)
+   subroutine build_orientations(cards, context, model, report)
       type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(inout) :: context    !! receives their names
       type(model_type), intent(inout) :: model             !! receives the orientations
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
@@ -380,7 +382,8 @@ contains
       allocate(model%orientations(size(places)))
       do n = 1, size(places)
          associate (card => cards%keywords(places(n)))
-            call name_last(cards, places(n), 'orientation', model%orientations(:n), report)
+            call take_name(cards, places(n), 'orientation', context%orientations, &
+               model%orientations(n)%name, report)
             if (card%last_data >= card%first_data) call build_axes(cards, card, &
                model%orientations(n), report)
          end associate
@@ -480,7 +483,7 @@ contains
       type(model_type), intent(inout) :: model             !! receives the sections
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
-      integer :: n
+      integer :: n, set
       logical :: valid
 
       places = cards_of(cards, 'SOLID SECTION')
@@ -490,9 +493,9 @@ contains
       valid = .true.
       do n = 1, size(places)
          associate (card => cards%keywords(places(n)), section => model%sections(n))
-            call need_named(card, 'MATERIAL', 'material', model%materials, report, &
+            call need_named(card, 'MATERIAL', 'material', context%materials, report, &
                section%material)
-            call take_named(card, 'ORIENTATION', 'orientation', model%orientations, report, &
+            call take_named(card, 'ORIENTATION', 'orientation', context%orientations, report, &
                section%orientation)
             if (card%last_data >= card%first_data) then
                associate (data => cards%data(card%first_data))
@@ -506,36 +509,37 @@ contains
                      'the thickness must be positive')
                end associate
             end if
-            call give_section(card, n, context, model%mesh, report)
-            if (card%last_data < card%first_data .and. any(model%mesh%element_section == n .and. &
-               model%mesh%element_plane /= axisymmetric)) call context%note( &
-               '*SOLID SECTION without a thickness: '//to_text(section%thickness))
+            call give_section(card, n, context, model%mesh, report, set)
+            if (card%last_data >= card%first_data .or. set == 0) cycle
+            if (any(model%mesh%element_plane(model%mesh%element_sets(set)%members) /= &
+               axisymmetric)) call context%note('*SOLID SECTION without a thickness: '// &
+               to_text(section%thickness))
          end associate
       end do
    end subroutine build_sections
 
    !> Gives the elements of its set a section; its trusses take it later. Sections are not sound
    !> where that set is not known.
-   subroutine give_section(card, section, context, mesh, report)
+   subroutine give_section(card, section, context, mesh, report, set)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: section
       type(deck_context_type), intent(inout) :: context
       type(mesh_type), intent(inout) :: mesh
       type(deck_report_type), intent(inout) :: report
-      integer :: lines, set
+      integer, intent(out) :: set        ! that of the card; 0 after an error
+      integer, allocatable :: kinds(:)   ! of the lines of the set
 
-      call need_named(card, 'ELSET', 'element set', mesh%element_sets, report, set)
+      call need_named(card, 'ELSET', 'element set', context%element_index%sets, report, set)
       if (set > 0) then
-         lines = find_named(context%line_sets, mesh%element_sets(set)%name)
-         if (lines > 0) then
-            if (all(context%line_kind(context%line_sets(lines)%members) /= truss)) lines = -lines
-         end if
-         if (lines <= 0) call need_element_set(card, mesh%element_sets, report, set)
+         kinds = context%line_kind(context%line_sets(set)%members)
+         if (all(kinds /= truss)) call need_element_set(card, context%element_index%sets, &
+            mesh%element_sets, report, set)
       end if
       context%sections_sound = context%sections_sound .and. set > 0
       if (set == 0) return
-      if (lines < 0) call report%warning(parameter_place(card, 'ELSET'), 'element set '// &
-         mesh%element_sets(set)%name//' also has lines, which are ignored')
+      if (size(kinds) > 0 .and. all(kinds /= truss)) call report%warning( &
+         parameter_place(card, 'ELSET'), 'element set '//mesh%element_sets(set)%name// &
+         ' also has lines, which are ignored')
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
             'this section replaces an earlier one; elements concerned: '// &

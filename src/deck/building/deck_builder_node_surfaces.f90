@@ -11,6 +11,7 @@ module deck_builder_node_surfaces
    use kinds, only: dp
    use load_requests, only: target_type
    use mesh, only: mesh_type
+   use number_lists, only: number_list_type
    use text, only: to_text, to_upper
    implicit none
    private
@@ -82,6 +83,7 @@ contains
       integer, intent(in) :: surface
       type(deck_context_type), intent(inout) :: context
       type(element_sides_type) :: sides
+      type(number_list_type) :: found
       logical :: taken(0:size(named))
       integer :: e, f
 
@@ -95,10 +97,10 @@ contains
                   taken(nodes) = .true.
                end associate
             end associate
-            mesh%surfaces(surface)%faces = reshape([mesh%surfaces(surface)%faces, e, f], &
-               [2, size(mesh%surfaces(surface)%faces, 2) + 1])
+            call found%add([e, f])
          end do
       end do
+      mesh%surfaces(surface)%faces = reshape(found%numbers(), [2, found%count/2])
       context%face_places(surface)%items = spread(card%place, 1, &
          size(mesh%surfaces(surface)%faces, 2))
       e = findloc(named .and. .not. taken(1:), .true., dim=1)

@@ -12,7 +12,6 @@ module deck_builder_options
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use named_items, only: find_named
    use refined_regions, only: refined_region_type
    use steps, only: dof_temperature
    use text, only: read_integer, to_text, to_upper
@@ -190,9 +189,9 @@ contains
             'LOAD= has a node set and a degree of freedom 1, 2 or 11')
          return
       end if
-      set = find_named(model%mesh%node_sets, name)
+      set = context%node_index%sets%find(name)
       if (set == 0) then
-         call report_unknown('node set', name, model%mesh%node_sets, &
+         call report_unknown('node set', name, context%node_index%sets%known(), &
             context%load_place, report)
          return
       end if
@@ -255,8 +254,9 @@ contains
    end function is_prescribed
 
    !> Takes the *REFINE cards that name a surface or a set.
-   subroutine build_regions(cards, model, report)
+   subroutine build_regions(cards, context, model, report)
       type(cards_type), intent(in) :: cards
+      type(deck_context_type), intent(in) :: context
       type(model_type), intent(inout) :: model             !! its mesh; receives the regions
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(refined_region_type) :: region
@@ -267,14 +267,15 @@ contains
          associate (card => cards%keywords(k))
             if (card%name /= 'REFINE') cycle
             if (.not. (has_parameter(card, 'SURFACE') .or. has_parameter(card, 'ELSET'))) cycle
-            call build_region(card, model%mesh, report, region)
+            call build_region(card, context, model%mesh, report, region)
             model%regions = [model%regions, region]
          end associate
       end do
    end subroutine build_regions
 
-   subroutine build_region(card, mesh, report, region)
+   subroutine build_region(card, context, mesh, report, region)
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
       type(refined_region_type), intent(out) :: region
@@ -286,12 +287,13 @@ contains
          call report%error(parameter_place(card, 'ELSET'), '*REFINE takes SURFACE= or ELSET=, '// &
             'not both; give a card for each')
       else if (has_parameter(card, 'SURFACE')) then
-         call need_named(card, 'SURFACE', 'surface', mesh%surfaces, report, surface)
+         call need_named(card, 'SURFACE', 'surface', context%surfaces, report, surface)
          call need_faces(mesh, parameter_place(card, 'SURFACE'), 'name the face that touches it', &
             report, surface)
          region%surfaces = [surface]
       else
-         call need_element_set(card, mesh%element_sets, report, region%set)
+         call need_element_set(card, context%element_index%sets, mesh%element_sets, report, &
+            region%set)
       end if
       if (.not. has_parameter(card, 'DISTANCE')) return
       errors = report%error_count()

@@ -34,17 +34,17 @@ contains
       allocate (coupling%node_sets(0), lines(0))
       do i = 1, size(names)
          set = 0
-         call take_named(card, trim(names(i)), 'node set', model%mesh%node_sets, report, set)
+         call take_named(card, trim(names(i)), 'node set', context%node_index%sets, report, set)
          if (set > 0) coupling%node_sets = [coupling%node_sets, set]
       end do
-      call take_named(card, 'ELSET', 'element set', model%mesh%element_sets, report, &
+      call take_named(card, 'ELSET', 'element set', context%element_index%sets, report, &
          coupling%element_set)
       if (coupling%element_set > 0) then
          lines = lines_of(model%mesh%element_sets(coupling%element_set)%name, context)
          coupling%nodes = pack(context%line_nodes(:, lines), context%line_nodes(:, lines) > 0)
       end if
       surface = 0
-      call take_named(card, 'ANALYTICAL SURFACE', 'surface', model%mesh%surfaces, report, surface)
+      call take_named(card, 'ANALYTICAL SURFACE', 'surface', context%surfaces, report, surface)
       if (surface > 0) then
          if (.not. allocated(model%mesh%surfaces(surface)%drawing)) then
             call report%error(parameter_place(card, 'ANALYTICAL SURFACE'), 'surface '// &

@@ -10,7 +10,6 @@ module deck_builder_rigid_lines
    use element_types, only: rigid_line
    use kinds, only: dp
    use mesh, only: mesh_type, surface_type
-   use named_items, only: find_named
    use text, only: read_integer, to_upper
    implicit none
    private
@@ -43,7 +42,7 @@ contains
          set = findloc(context%line_number, number, dim=1)
          if (set > 0) lines = [set]
       else
-         set = find_named(context%line_sets, to_upper(name))
+         set = context%element_index%sets%find(name)
          if (set > 0) lines = context%line_sets(set)%members
       end if
    end function lines_of

@@ -55,7 +55,7 @@ contains
       section%card = card%place%image
       section%title = '*PRE-TENSION SECTION, '//report%source%words_of(card%place)
       call find_reference('NODE', card, context, model, report, section%reference)
-      call need_named(card, 'SURFACE', 'surface', model%mesh%surfaces, report, section%surface)
+      call need_named(card, 'SURFACE', 'surface', context%surfaces, report, section%surface)
       call need_faces(model%mesh, parameter_place(card, 'SURFACE'), 'a section lies between '// &
          'elements of a body', report, section%surface)
       valid = section%reference > 0 .and. section%surface > 0 .and. all(context%element_valid)

@@ -9,15 +9,15 @@ module deck_builder_sets
    use deck_builder_lines, only: find_line_faces, is_line_card
    use deck_builder_rigid, only: need_faces
    use deck_builder_rigid_lines, only: build_line_surface, is_rigid_side
-   use deck_context, only: deck_context_type, item_index_type, name_last, place_list_type, &
-      read_target, take_named
+   use deck_context, only: deck_context_type, item_index_type, place_list_type, read_target, &
+      take_name, take_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
    use load_requests, only: target_type
    use mesh, only: mesh_type, set_type, surface_type
-   use named_items, only: find_named
+   use number_lists, only: number_list_type
    use sorting, only: sort_order, unique_sorted
    use text, only: read_integer, to_text, to_upper
    implicit none
@@ -26,10 +26,10 @@ module deck_builder_sets
 
    !> Sets of nodes or of elements while they grow.
    type :: draft_type
-      type(item_index_type) :: numbers          !! numbers of nodes or of elements -> indexes
+      type(item_index_type) :: numbers   !! numbers of nodes or of elements, names -> indexes
       integer :: sets = 0                       !! number of sets
-      type(set_type), allocatable :: items(:)   !! (capacity) members with a capacity of their own
-      integer, allocatable :: counts(:)         !! (capacity) members so far
+      type(set_type), allocatable :: items(:)   !! (capacity) their names
+      type(number_list_type), allocatable :: members(:)   !! (capacity) some more than once
    end type draft_type
 
 contains
@@ -39,7 +39,7 @@ contains
    subroutine build_sets(noun, cards, context, mesh, report, sets)
       character(*), intent(in) :: noun                           !! node or element
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context             !! numbers -> indexes
+      type(deck_context_type), intent(inout) :: context   !! numbers -> indexes; receives the names
       type(mesh_type), intent(in) :: mesh  !! for nodes: has the element sets and surfaces
       type(deck_report_type), intent(inout) :: report            !! receives errors
       type(set_type), allocatable, intent(out) :: sets(:)
@@ -50,7 +50,7 @@ contains
       parameter = merge('NSET ', 'ELSET', noun == 'node')
       parameter = trim(parameter)
       definer = to_upper(noun)
-      allocate(draft%items(size(cards%keywords)), draft%counts(size(cards%keywords)))
+      allocate(draft%items(size(cards%keywords)), draft%members(size(cards%keywords)))
       draft%numbers = context%node_index
       if (noun == 'element') draft%numbers = context%member_index
       first = [0, size(mesh%element_number)]
@@ -62,9 +62,9 @@ contains
                if (has_parameter(card, parameter)) then
                   call open_set(card, parameter, report, draft, i)
                   if (noun == 'node') then
-                     call add_members(draft, i, nodes_of(cards, card, draft%numbers))
+                     call draft%members(i)%add(nodes_of(cards, card, draft%numbers))
                   else
-                     call add_members(draft, i, first(kind) + [(j, j=1, count)])
+                     call draft%members(i)%add(first(kind) + [(j, j=1, count)])
                   end if
                end if
                first(kind) = first(kind) + count
@@ -74,9 +74,11 @@ contains
          end associate
       end do
       allocate(sets(draft%sets))
+      if (noun == 'node') context%node_index%sets = draft%numbers%sets
+      if (noun == 'element') context%element_index%sets = draft%numbers%sets
       do i = 1, draft%sets
          call move_alloc(draft%items(i)%name, sets(i)%name)
-         sets(i)%members = unique_sorted(draft%items(i)%members(:draft%counts(i)))
+         sets(i)%members = unique_sorted(draft%members(i)%numbers())
       end do
    end subroutine build_sets
 
@@ -109,34 +111,16 @@ contains
       logical :: is_number
 
       name = to_upper(parameter_text(card, parameter))
-      do set = 1, draft%sets
-         if (draft%items(set)%name == name) return
-      end do
+      set = draft%numbers%sets%find(name)
+      if (set > 0) return
       call read_integer(name, number, is_number)
       if (is_number) call report%error(parameter_place(card, parameter), &
          'the name of a set must not be a number')
-      draft%sets = set
+      call draft%numbers%sets%add(name)
+      draft%sets = draft%sets + 1
+      set = draft%sets
       draft%items(set)%name = name
-      allocate(draft%items(set)%members(16))
-      draft%counts(set) = 0
    end subroutine open_set
-
-   subroutine add_members(draft, set, members)
-      type(draft_type), intent(inout) :: draft
-      integer, intent(in) :: set
-      integer, intent(in) :: members(:)
-      integer, allocatable :: more(:)
-      integer :: n
-
-      n = draft%counts(set)
-      if (n + size(members) > size(draft%items(set)%members)) then
-         allocate(more(2*(n + size(members))))
-         more(:n) = draft%items(set)%members(:n)
-         call move_alloc(more, draft%items(set)%members)
-      end if
-      draft%items(set)%members(n + 1:n + size(members)) = members
-      draft%counts(set) = n + size(members)
-   end subroutine add_members
 
    !> Reads one *NSET or *ELSET card.
    subroutine build_set(cards, card, context, mesh, report, draft)
@@ -158,7 +142,7 @@ contains
       call open_set(card, card%name, report, draft, set)
       if (draft%numbers%noun == 'node') then
          call find_nodes(card, context, mesh, report, nodes)
-         call add_members(draft, set, nodes)
+         call draft%members(set)%add(nodes)
       end if
       do j = card%first_data, card%last_data
          if (has_parameter(card, 'GENERATE')) then
@@ -169,10 +153,10 @@ contains
             valid = .true.
             call read_target(cards%data(j), i, draft%numbers, draft%items(:known), report, &
                other, valid)
-            if (other%item > 0) call add_members(draft, set, [other%item])
+            if (other%item > 0) call draft%members(set)%add([other%item])
             ! Each member once, lest sets that hold a set twice double.
-            if (other%set > 0) call add_members(draft, set, unique_sorted( &
-               draft%items(other%set)%members(:draft%counts(other%set))))
+            if (other%set > 0) call draft%members(set)%add(unique_sorted( &
+               draft%members(other%set)%numbers()))
          end do
       end do
    end subroutine build_set
@@ -184,28 +168,28 @@ contains
       type(mesh_type), intent(in) :: mesh                     ! element sets and surfaces
       type(deck_report_type), intent(inout) :: report
       integer, allocatable, intent(out) :: nodes(:)
-      integer :: i, lines, set, surface
+      type(number_list_type) :: found
+      integer :: i, set, surface
 
-      allocate(nodes(0))
       set = 0
       surface = 0
-      call take_named(card, 'ELSET', 'element set', mesh%element_sets, report, set)
+      call take_named(card, 'ELSET', 'element set', context%element_index%sets, report, set)
       if (set > 0) then
-         nodes = [mesh%element_nodes(:, mesh%element_sets(set)%members)]
-         lines = find_named(context%line_sets, mesh%element_sets(set)%name)
-         if (lines > 0) nodes = [nodes, context%line_nodes(:, context%line_sets(lines)%members)]
+         call found%add([mesh%element_nodes(:, mesh%element_sets(set)%members)])
+         call found%add([context%line_nodes(:, context%line_sets(set)%members)])
       end if
-      call take_named(card, 'SURFACE', 'surface', mesh%surfaces, report, surface)
+      call take_named(card, 'SURFACE', 'surface', context%surfaces, report, surface)
       call need_faces(mesh, parameter_place(card, 'SURFACE'), 'name its reference node', report, &
          surface)
       if (surface > 0) then
          associate (faces => mesh%surfaces(surface)%faces)
             do i = 1, size(faces, 2)
-               nodes = [nodes, mesh%element_nodes(side_nodes(mesh%element_kind(faces(1, i)), &
-                  faces(2, i)), faces(1, i))]
+               call found%add(mesh%element_nodes(side_nodes(mesh%element_kind(faces(1, i)), &
+                  faces(2, i)), faces(1, i)))
             end do
          end associate
       end if
+      nodes = found%numbers()
       nodes = pack(nodes, nodes > 0)
    end subroutine find_nodes
 
@@ -236,13 +220,13 @@ contains
       do k = 0, (min(last, draft%numbers%largest()) - first)/step
          number = draft%numbers%find(first + k*step)
          if (number == 0) cycle
-         call add_members(draft, set, [number])
+         call draft%members(set)%add([number])
          if (first_missing == k) first_missing = k + 1
          found = found + 1
       end do
       range = 'from '//to_text(first)//' to '//to_text(last)
       associate (noun => draft%numbers%noun)
-         if (found == 0 .and. draft%counts(set) == 0) then
+         if (found == 0 .and. draft%members(set)%count == 0) then
             call report%missing(field_place(data, 1), 'there is no '//noun//' '//range, &
                noun)
          else if (found < count .and. .not. report%has_lost(noun)) then
@@ -266,7 +250,8 @@ contains
       places = cards_of(cards, 'SURFACE')
       allocate(mesh%surfaces(size(places)), context%face_places(size(places)))
       do n = 1, size(places)
-         call name_last(cards, places(n), 'surface', mesh%surfaces(:n), report)
+         call take_name(cards, places(n), 'surface', context%surfaces, mesh%surfaces(n)%name, &
+            report)
          call build_surface(cards, cards%keywords(places(n)), context, mesh, report, &
             mesh%surfaces(n), context%face_places(n))
       end do
@@ -282,8 +267,8 @@ contains
       type(surface_type), intent(inout) :: surface
       type(place_list_type), intent(inout) :: places   ! receives where each face is named
       character(:), allocatable :: kind
-      type(place_type), allocatable :: named(:)
-      integer, allocatable :: elements(:), keys(:), order(:)
+      type(number_list_type) :: found, named   ! faces, and the data cards that name them
+      integer, allocatable :: cards_of_faces(:), elements(:), keys(:), order(:)
       type(target_type) :: target
       integer :: face, i, j, errors
       logical :: valid
@@ -307,13 +292,11 @@ contains
          if (.not. allocated(surface%drawing)) call report%lose('surface')
          return
       end if
-      allocate(keys(0), named(0))
       do j = card%first_data, card%last_data
          ! An element set that has lines, without a face.
-         if (.not. has_field(cards%data(j), 2) .and. find_named(context%line_sets, &
-            field_text(cards%data(j), 1)) > 0) then
-            call add_line_faces(cards%data(j), context, mesh, report, keys)
-            named = [named, spread(field_place(cards%data(j), 1), 1, size(keys) - size(named))]
+         if (.not. has_field(cards%data(j), 2) .and. has_lines(cards%data(j), context)) then
+            call add_line_faces(cards%data(j), context, mesh, report, found)
+            call named%add(spread(j, 1, found%count - named%count))
             cycle
          end if
          valid = .true.
@@ -327,34 +310,47 @@ contains
          elements = target%members(mesh%element_sets)
          call check_face(cards%data(j), mesh, elements, face, report, valid)
          if (.not. valid) cycle
-         keys = [keys, 4*elements + face - 1]
-         named = [named, spread(field_place(cards%data(j), 1), 1, size(keys) - size(named))]
+         call found%add(4*elements + face - 1)
+         call named%add(spread(j, 1, size(elements)))
       end do
+      keys = found%numbers()
       order = sort_order(keys)
       order = pack(order, [(i == 1 .or. keys(order(i)) /= keys(order(max(i - 1, 1))), &
          i=1, size(order))])
-      places%items = named(order)
+      cards_of_faces = named%numbers()
+      places%items = [(field_place(cards%data(cards_of_faces(order(i))), 1), i=1, size(order))]
       surface%faces = reshape([keys(order)/4, mod(keys(order), 4) + 1], [2, size(order)], &
          order=[2, 1])
    end subroutine build_surface
 
+   !> Whether the first field names an element set that has lines.
+   pure logical function has_lines(data, context)
+      type(data_card_type), intent(in) :: data
+      type(deck_context_type), intent(in) :: context
+      integer :: set
+
+      set = context%element_index%sets%find(field_text(data, 1))
+      has_lines = set > 0
+      if (has_lines) has_lines = size(context%line_sets(set)%members) > 0
+   end function has_lines
+
    !> Adds the faces under the lines of a set; the first line under which there is none, or one
    !> inside a body, is an error.
-   subroutine add_line_faces(data, context, mesh, report, keys)
+   subroutine add_line_faces(data, context, mesh, report, found)
       type(data_card_type), intent(in) :: data
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
-      integer, allocatable, intent(inout) :: keys(:)
+      type(number_list_type), intent(inout) :: found
       integer, allocatable :: members(:), faces(:, :), uses(:)
       character(:), allocatable :: fault
       integer :: i, bad
 
       call check_extra(data, 1, 'element set of lines', report)
-      members = context%line_sets(find_named(context%line_sets, field_text(data, 1)))%members
+      members = context%line_sets(context%element_index%sets%find(field_text(data, 1)))%members
       allocate(faces(2, size(members)), uses(size(members)))
       call find_line_faces(mesh, context%element_valid, context%line_nodes(:, members), faces, uses)
-      keys = [keys, pack(4*faces(1, :) + faces(2, :) - 1, uses == 1)]
+      call found%add(pack(4*faces(1, :) + faces(2, :) - 1, uses == 1))
       if (all(uses == 1) .or. .not. all(context%element_valid)) return
       bad = findloc(uses == 1, .false., dim=1)
       fault = 'belongs to no side of an element'

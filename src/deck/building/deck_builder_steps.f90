@@ -80,7 +80,7 @@ contains
                   'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT', 'RESTART', 'START', 'THERMAL SCHEME')
                has_scheme = has_scheme .or. card%name == 'THERMAL SCHEME'
-               call build_control(cards, card, model, report, controls)
+               call build_control(cards, card, context, model, report, controls)
             case ('CONTINUATION')
                if (n > 0) call build_continuation(card, report, model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
@@ -105,9 +105,10 @@ contains
    end subroutine build_steps
 
    !> Reads a card that controls this step and later ones.
-   subroutine build_control(cards, card, model, report, controls)
+   subroutine build_control(cards, card, context, model, report, controls)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
+      type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(step_controls_type), intent(inout) :: controls
@@ -118,7 +119,7 @@ contains
       case ('RESTART')
          call build_restart(card, report, controls)
       case ('START')
-         call build_start(cards, card, model, report, controls%start)
+         call build_start(cards, card, context, model, report, controls%start)
       case default
          call build_thermal_scheme(cards, card, report, controls%scheme)
       end select

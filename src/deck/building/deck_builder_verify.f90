@@ -15,7 +15,6 @@ module deck_builder_verify
    use load_requests, only: target_type
    use model, only: model_type, verify_type
    use no_estimates, only: no_reason, reason_of_deck, words_of_reason
-   use named_items, only: find_named
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_contact_points, &
       of_history, of_interface, of_nodes, of_sections, quantity_type
    use spelling, only: known_choices, nearest_known
@@ -185,7 +184,7 @@ contains
       else if (kind == of_interface .and. check%where == '' .and. size(model%contacts) == 1) then
          check%where = model%contacts(1)%name
       else
-         call check_interface(data, kind, model, report)
+         call check_interface(data, kind, context, report)
       end if
    end subroutine check_where
 
@@ -229,10 +228,10 @@ contains
    end subroutine check_nodes
 
    !> name or, for a profile, name@s.
-   subroutine check_interface(data, kind, model, report)
+   subroutine check_interface(data, kind, context, report)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
-      type(model_type), intent(in) :: model
+      type(deck_context_type), intent(in) :: context
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name
       real(dp) :: s
@@ -253,8 +252,8 @@ contains
          end if
          name = trim(name(:at - 1))
       end if
-      if (find_named(model%contacts, name) == 0) call report_unknown('contact pair', name, &
-         model%contacts, field_place(data, 2), report)
+      if (context%contacts%find(name) == 0) call report_unknown('contact pair', name, &
+         context%contacts%known(), field_place(data, 2), report)
    end subroutine check_interface
 
    !> A total time that an increment meets, or LAST.
@@ -296,9 +295,10 @@ contains
    end subroutine read_when
 
    !> Reads the targets of all cards.
-   subroutine build_accuracy(cards, estimated, model, report)
+   subroutine build_accuracy(cards, estimated, context, model, report)
       type(cards_type), intent(in) :: cards
       type(quantity_type), intent(in) :: estimated(:)      !! quantities whose errors are estimated
+      type(deck_context_type), intent(in) :: context       !! names of the contact pairs
       type(model_type), intent(inout) :: model             !! receives the targets
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k, j
@@ -312,7 +312,7 @@ contains
             end if
             call take_from(1, card, 'ROUNDS', report, model%accuracy%rounds)
             do j = card%first_data, card%last_data
-               call build_target(cards%data(j), estimated, model, report)
+               call build_target(cards%data(j), estimated, context, model, report)
             end do
          end associate
       end do
@@ -337,9 +337,10 @@ contains
    end subroutine check_deck
 
    !> quantity, target, REL|ABS, interface.
-   subroutine build_target(data, estimated, model, report)
+   subroutine build_target(data, estimated, context, model, report)
       type(data_card_type), intent(in) :: data
       type(quantity_type), intent(in) :: estimated(:)
+      type(deck_context_type), intent(in) :: context
       type(model_type), intent(inout) :: model
       type(deck_report_type), intent(inout) :: report
       type(accuracy_target_type) :: target
@@ -368,9 +369,9 @@ contains
       end select
       target%interface = 0
       if (has_field(data, 4) .and. size(model%contacts) > 0) then
-         target%interface = find_named(model%contacts, field_text(data, 4))
+         target%interface = context%contacts%find(field_text(data, 4))
          if (target%interface == 0) call report_unknown('contact pair', field_text(data, 4), &
-            model%contacts, field_place(data, 4), report)
+            context%contacts%known(), field_place(data, 4), report)
       end if
       do i = 1, size(model%accuracy%targets)
          associate (other => model%accuracy%targets(i))

@@ -13,6 +13,7 @@ module deck_checks
    use load_requests, only: request_list_type
    use mesh_checks, only: check_jacobians, check_planes, check_sides, check_slenderness
    use model, only: model_type
+   use name_index, only: name_index_type
    use refinement, only: numbering_fault
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text, to_upper
@@ -177,10 +178,14 @@ contains
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: keyword, noun
       type(deck_report_type), intent(inout) :: report
+      type(name_index_type) :: used
       character(:), allocatable :: name, names
-      integer :: count, first, i, k
+      integer :: count, first, k
       logical :: from_library
 
+      do k = 1, size(cards%keywords)
+         call add_references(cards, cards%keywords(k), keyword, used)
+      end do
       from_library = keyword /= 'SURFACE'
       names = ''
       count = 0
@@ -188,8 +193,7 @@ contains
          if (cards%keywords(k)%name /= keyword) cycle
          if (from_library .and. report%source%file(cards%keywords(k)%place%image) > 1) cycle
          name = to_upper(parameter_text(cards%keywords(k), 'NAME'))
-         if (any([(refers(cards, cards%keywords(i), keyword, name), i=1, &
-            size(cards%keywords))])) cycle
+         if (used%find(name) > 0) cycle
          count = count + 1
          if (count == 1) first = k
          if (count <= most_names) names = names//', '//name
@@ -200,55 +204,47 @@ contains
          trim(merge(' ', 's', count == 1))//names(2:))
    end subroutine check_names
 
-   !> Whether a card refers to a name that a keyword defines.
-   pure logical function refers(cards, card, keyword, name)
+   !> Adds the names that a card refers to, of those that a keyword defines.
+   pure subroutine add_references(cards, card, keyword, names)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: keyword, name
+      character(*), intent(in) :: keyword
+      type(name_index_type), intent(inout) :: names
+      integer :: fields, i, j
 
+      fields = 0
       select case (keyword)
       case ('MATERIAL')
-         refers = has_value(card, 'MATERIAL', name)
+         call add_once(names, parameter_text(card, 'MATERIAL'))
       case ('SURFACE INTERACTION')
-         refers = has_value(card, 'INTERACTION', name)
+         call add_once(names, parameter_text(card, 'INTERACTION'))
       case ('AMPLITUDE')
-         refers = card%name /= 'STEP' .and. &
-            (has_value(card, 'AMPLITUDE', name) .or. has_value(card, 'FILM AMPLITUDE', name))
+         if (card%name == 'STEP') return
+         call add_once(names, parameter_text(card, 'AMPLITUDE'))
+         call add_once(names, parameter_text(card, 'FILM AMPLITUDE'))
       case default
          select case (card%name)
          case ('CONTACT PAIR', 'TIE')
-            refers = has_field_value(cards, card, 2, name)
+            fields = 2
          case ('DLOAD', 'DSLOAD', 'DFLUX', 'DSFLUX', 'FILM', 'SFILM')
-            refers = has_field_value(cards, card, 1, name)
+            fields = 1
          case default
-            refers = has_value(card, 'SURFACE', name)
+            call add_once(names, parameter_text(card, 'SURFACE'))
          end select
       end select
-   end function refers
-
-   pure logical function has_value(card, parameter, name)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: parameter, name
-
-      has_value = to_upper(parameter_text(card, parameter)) == name
-   end function has_value
-
-   !> Whether one of the first fields of a data card is a name.
-   pure logical function has_field_value(cards, card, fields, name)
-      type(cards_type), intent(in) :: cards
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: fields
-      character(*), intent(in) :: name
-      integer :: i, j
-
-      has_field_value = .true.
       do j = card%first_data, card%last_data
          do i = 1, fields
-            if (to_upper(field_text(cards%data(j), i)) == name) return
+            call add_once(names, field_text(cards%data(j), i))
          end do
       end do
-      has_field_value = .false.
-   end function has_field_value
+   end subroutine add_references
+
+   pure subroutine add_once(names, name)
+      type(name_index_type), intent(inout) :: names
+      character(*), intent(in) :: name
+
+      if (names%find(name) == 0) call names%add(name)
+   end subroutine add_once
 
    !> Warns of amplitudes that end long before the step in which a request begins to follow them,
    !> begin after it, or have peaks within fixed increments.

@@ -11,7 +11,7 @@ module deck_context
    use kinds, only: dp
    use load_requests, only: request_list_type, target_type
    use mesh, only: set_type
-   use named_items, only: find_named, named_type
+   use name_index, only: name_index_type
    use quantity_types, only: quantity_type
    use sorting, only: number_index_type
    use spelling, only: nearest_known
@@ -20,7 +20,7 @@ module deck_context
    implicit none
    private
    public :: deck_context_type, item_index_type, place_list_type, plane_by_element
-   public :: name_last, need_named, take_named, need_element_set, read_surface, read_target
+   public :: take_name, need_named, take_named, need_element_set, read_surface, read_target
    public :: report_unknown
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
@@ -32,9 +32,10 @@ module deck_context
       type(place_type), allocatable :: items(:)   !! the places
    end type place_list_type
 
-   !> Index of the numbers of nodes or of elements.
+   !> Index of the numbers of nodes or of elements, and of the names of their sets.
    type, extends(number_index_type) :: item_index_type
       character(:), allocatable :: noun           !! node or element
+      type(name_index_type) :: sets
    end type item_index_type
 
    !> State of the builder.
@@ -47,7 +48,7 @@ module deck_context
       integer, allocatable :: line_number(:)              !! (lines) numbers of the lines
       integer, allocatable :: line_nodes(:, :)            !! (3, lines) indexes, 0 behind the last
       integer, allocatable :: line_kind(:)                !! (lines) drawn_line, ...
-      type(set_type), allocatable :: line_sets(:)         !! the lines of the element sets
+      type(set_type), allocatable :: line_sets(:)         !! (element sets) their lines
       type(place_type), allocatable :: element_place(:)   !! (elements) where the element is
       logical, allocatable :: element_valid(:)            !! (elements) whether its nodes are known
       type(place_type), allocatable :: node_place(:)      !! (nodes) where the node is
@@ -57,6 +58,9 @@ module deck_context
       type(place_type), allocatable :: material_place(:)  !! (materials) where the material is
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step is
       type(time_points_type), allocatable :: time_points(:)   !! *TIME POINTS
+      ! Names -> indexes.
+      type(name_index_type) :: surfaces, materials, orientations, amplitudes, interactions
+      type(name_index_type) :: contacts, time_point_names
       type(place_type), allocatable :: analysis_place(:)  !! (steps) where its analysis is
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element
@@ -90,51 +94,51 @@ contains
       call add_note(self%notes, line)
    end subroutine note
 
-   !> Names the last of some items by NAME= of its card. That it has none, or that of an earlier
-   !> one, is an error; another name may have been meant.
-   subroutine name_last(cards, k, noun, items, report)
+   !> Takes the name of an item, NAME= of its card. That it has none, or that of an earlier one, is
+   !> an error; another name may have been meant.
+   subroutine take_name(cards, k, noun, names, name, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k                          !! index of the card
       character(*), intent(in) :: noun                  !! such as material
-      class(named_type), intent(inout) :: items(:)      !! those of the cards up to this one
+      type(name_index_type), intent(inout) :: names     !! those of the cards before; receives it
+      character(:), allocatable, intent(out) :: name
       type(deck_report_type), intent(inout) :: report   !! receives errors
-      integer :: n
       logical :: repeated
 
-      n = size(items)
-      call need_parameter(cards%keywords(k), 'NAME', report, items(n)%name)
-      repeated = len(items(n)%name) > 0 .and. find_named(items(:n - 1), items(n)%name) > 0
-      if (repeated) call report_twice(cards, k, noun//' '//items(n)%name, report)
-      if (repeated .or. len(items(n)%name) == 0) call report%lose(noun)
-   end subroutine name_last
+      call need_parameter(cards%keywords(k), 'NAME', report, name)
+      repeated = len(name) > 0 .and. names%find(name) > 0
+      if (repeated) call report_twice(cards, k, noun//' '//name, report)
+      if (repeated .or. len(name) == 0) call report%lose(noun)
+      call names%add(name)
+   end subroutine take_name
 
    !> Index of the item that a parameter names, which the card must have; 0 after an error.
-   subroutine need_named(card, parameter, noun, items, report, index)
+   subroutine need_named(card, parameter, noun, names, report, index)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter             !! the parameter
       character(*), intent(in) :: noun                  !! what it names, such as material
-      class(named_type), intent(in) :: items(:)
+      type(name_index_type), intent(in) :: names
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: index
       character(:), allocatable :: name
 
       index = 0
       call need_parameter(card, parameter, report, name)
-      if (len(name) > 0) call look_up(noun, name, items, parameter_place(card, parameter), report, &
+      if (len(name) > 0) call look_up(noun, name, names, parameter_place(card, parameter), report, &
          index)
    end subroutine need_named
 
    !> Index of the item that a parameter names, where the card has it; else it stays as it is.
-   subroutine take_named(card, parameter, noun, items, report, index)
+   subroutine take_named(card, parameter, noun, names, report, index)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter             !! the parameter
       character(*), intent(in) :: noun                  !! what it names, such as material
-      class(named_type), intent(in) :: items(:)
+      type(name_index_type), intent(in) :: names
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(inout) :: index                   !! 0 after an error
 
       if (has_parameter(card, parameter)) call look_up(noun, &
-         to_upper(parameter_text(card, parameter)), items, parameter_place(card, parameter), &
+         to_upper(parameter_text(card, parameter)), names, parameter_place(card, parameter), &
          report, index)
    end subroutine take_named
 
@@ -143,7 +147,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! the field
       character(*), intent(in) :: what                  !! what the field holds
-      class(named_type), intent(in) :: surfaces(:)
+      type(name_index_type), intent(in) :: surfaces
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: surface
       character(:), allocatable :: name
@@ -156,43 +160,39 @@ contains
          report, surface)
    end subroutine read_surface
 
-   subroutine look_up(noun, name, items, place, report, index)
+   subroutine look_up(noun, name, names, place, report, index)
       character(*), intent(in) :: noun, name
-      class(named_type), intent(in) :: items(:)
+      type(name_index_type), intent(in) :: names
       type(place_type), intent(in) :: place
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: index
 
-      index = find_named(items, name)
-      if (index == 0) call report_unknown(noun, name, items, place, report)
+      index = names%find(name)
+      if (index == 0) call report_unknown(noun, name, names%known(), place, report)
    end subroutine look_up
 
    !> Reports a name that nothing has.
-   subroutine report_unknown(noun, name, items, place, report)
+   subroutine report_unknown(noun, name, known, place, report)
       character(*), intent(in) :: noun                  !! what is named, such as material
       character(*), intent(in) :: name                  !! the name that is not known
-      class(named_type), intent(in) :: items(:)         !! those that are known
+      type(string_type), intent(in) :: known(:)         !! those that are known
       type(place_type), intent(in) :: place             !! where it is
       type(deck_report_type), intent(inout) :: report   !! receives the error
-      type(string_type) :: names(size(items))
-      integer :: i
 
-      do i = 1, size(items)
-         names(i)%value = items(i)%name
-      end do
-      call report%missing(place, 'unknown '//noun//' '//name//nearest_known(name, names), noun, &
+      call report%missing(place, 'unknown '//noun//' '//name//nearest_known(name, known), noun, &
          name)
    end subroutine report_unknown
 
    !> Index of the element set that ELSET= of a card names; 0 after an error.
-   subroutine need_element_set(card, sets, report, set)
+   subroutine need_element_set(card, names, sets, report, set)
       type(keyword_card_type), intent(in) :: card
+      type(name_index_type), intent(in) :: names        !! of the element sets
       type(set_type), intent(in) :: sets(:)             !! element sets
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: set
       logical :: valid
 
-      call need_named(card, 'ELSET', 'element set', sets, report, set)
+      call need_named(card, 'ELSET', 'element set', names, report, set)
       if (set == 0) return
       if (.not. sets(set)%of_lines) return
       call report_lines(sets(set)%name, parameter_place(card, 'ELSET'), report, valid)
@@ -216,11 +216,12 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
       type(item_index_type), intent(in) :: numbers      !! numbers -> indexes
-      type(set_type), intent(in) :: sets(:)             !! sets that are known
+      type(set_type), intent(in) :: sets(:)             !! sets that are known, the first ones
       type(deck_report_type), intent(inout) :: report   !! receives errors
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
       character(:), allocatable :: name
+      type(string_type), allocatable :: known(:)
       integer :: number
       logical :: is_number
 
@@ -230,7 +231,8 @@ contains
       if (is_number) then
          target%item = numbers%find(number)
       else
-         target%set = find_named(sets, name)
+         target%set = numbers%sets%find(name)
+         if (target%set > size(sets)) target%set = 0
       end if
       if (target%set > 0) then
          if (sets(target%set)%of_lines) call report_lines(sets(target%set)%name, &
@@ -239,7 +241,8 @@ contains
       if (target%item > 0 .or. target%set > 0) return
       valid = .false.
       if (.not. (is_number .or. verify(name, '0123456789') == 0)) then
-         call report_unknown(numbers%noun//' set', to_upper(name), sets, &
+         known = numbers%sets%known()
+         call report_unknown(numbers%noun//' set', to_upper(name), known(:size(sets)), &
             field_place(data, position), report)
       else
          call report%missing(field_place(data, position), 'there is no '//numbers%noun//' '// &

@@ -1,10 +1,11 @@
 !> *PARAMETER: names with values, used as <name> in the deck, and the command line's --set that
 !> overrides them.
 module deck_parameters
-   use card_fields, only: first_text, without_quotes
+   use card_fields, only: first_text, last_text, without_quotes
    use cards, only: add_note, field_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use name_index, only: name_index_type
    use spelling, only: nearest_known
    use text, only: append, string_type, to_text, to_upper
    use utf8, only: as_utf8
@@ -17,9 +18,10 @@ module deck_parameters
    !> The parameters of a deck.
    type :: deck_parameters_type
       private
-      type(string_type), allocatable :: names(:)            !! names in upper case
-      type(string_type), allocatable :: values(:)           !! their values
-      type(string_type), allocatable :: setting_names(:)    !! names that --set gave, as given
+      type(name_index_type) :: names
+      type(string_type), allocatable :: values(:)           !! (capacity) their values
+      type(name_index_type) :: settings                     !! names that --set gives
+      type(string_type), allocatable :: setting_names(:)    !! the same as given
       type(string_type), allocatable :: setting_values(:)   !! their values
    contains
       procedure :: take_settings
@@ -35,21 +37,25 @@ contains
       class(deck_parameters_type), intent(inout) :: self
       type(string_type), intent(in) :: settings(:)         !! each NAME=VALUE
       type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: name, value
       integer :: i, equals
 
-      allocate(self%names(0), self%values(0), self%setting_names(0), self%setting_values(0))
+      allocate (self%values(64), self%setting_names(0), self%setting_values(0))
       do i = 1, size(settings)
          equals = index(settings(i)%value, '=')
-         if (equals < 2) then
+         name = without_blanks_around(settings(i)%value(:equals - 1))
+         value = without_blanks_around(settings(i)%value(equals + 1:))
+         if (len(name) == 0) then
             call report%error(place_type(), '--set '//settings(i)%value//' is not NAME=VALUE')
-            cycle
-         end if
-         if (len_trim(settings(i)%value(equals + 1:)) == 0) then
+         else if (len(value) == 0) then
             call report%error(place_type(), '--set '//settings(i)%value//' has no value')
-            cycle
+         else if (self%settings%find(name) > 0) then
+            call report%error(place_type(), '--set gives '//name//' twice; leave one out')
+         else
+            call self%settings%add(name)
+            call append(self%setting_names, name)
+            call append(self%setting_values, as_utf8(value))
          end if
-         call append(self%setting_names, trim(settings(i)%value(:equals - 1)))
-         call append(self%setting_values, as_utf8(settings(i)%value(equals + 1:)))
       end do
    end subroutine take_settings
 
@@ -60,7 +66,8 @@ contains
       type(string_type), allocatable, intent(inout) :: notes(:)   !! lines for the listing
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, value
-      integer :: equals, setting
+      type(string_type), allocatable :: longer(:)
+      integer :: equals, i, n, setting
 
       equals = index(field%text, '=')
       if (equals < 2 .or. equals == len(field%text)) then
@@ -70,18 +77,26 @@ contains
       name = to_upper(trim(field%text(:equals - 1)))
       value = field%text(equals + 1:)
       value = without_quotes(value(first_text(value):))
-      if (position(self%names, name) > 0) then
+      if (self%names%find(name) > 0) then
          call report%error(field%place, 'parameter '//name//' is defined twice')
          return
       end if
-      setting = position(self%setting_names, name)
+      setting = self%settings%find(name)
       if (setting > 0) then
          call add_note(notes, 'parameter '//trim(field%text(:equals - 1))//' = '// &
             self%setting_values(setting)%value//' by --set, in place of '//value)
          value = self%setting_values(setting)%value
       end if
-      call append(self%names, name)
-      call append(self%values, value)
+      call self%names%add(name)
+      n = self%names%find(name)
+      if (n > size(self%values)) then
+         allocate (longer(2*n))
+         do i = 1, n - 1
+            call move_alloc(self%values(i)%value, longer(i)%value)
+         end do
+         call move_alloc(longer, self%values)
+      end if
+      self%values(n)%value = value
    end subroutine define
 
    !> Replaces each <name> in a field by its value; one that is not known leaves no text.
@@ -107,11 +122,11 @@ contains
             return
          end if
          name = to_upper(trim(adjustl(rest(left + 1:right - 1))))
-         known = position(self%names, name)
+         known = self%names%find(name)
          if (known == 0) then
             call report%missing(place_type(field%place%image, column), &
                'no *PARAMETER before this card defines '//name// &
-               nearest_known(name, self%names), 'parameter', name)
+               nearest_known(name, self%names%known()), 'parameter', name)
             call make_undefined(field)
             return
          end if
@@ -141,23 +156,20 @@ contains
 
       do i = 1, size(self%setting_names)
          associate (name => self%setting_names(i)%value)
-            if (position(self%names, to_upper(name)) > 0) cycle
+            if (self%names%find(name) > 0) cycle
             call report%missing(place_type(), '--set '// &
                name//': no *PARAMETER of the deck has this name'// &
-               nearest_known(to_upper(name), self%names), 'parameter', name)
+               nearest_known(to_upper(name), self%names%known()), 'parameter', name)
          end associate
       end do
    end subroutine check_settings
 
-   pure integer function position(names, name)
-      type(string_type), intent(in) :: names(:)
-      character(*), intent(in) :: name
-      integer :: i
+   !> A text of the command line without the blanks around it, as fields of a deck are.
+   pure function without_blanks_around(string) result(bare)
+      character(*), intent(in) :: string
+      character(:), allocatable :: bare
 
-      position = 0
-      do i = 1, size(names)
-         if (to_upper(names(i)%value) == name) position = i
-      end do
-   end function position
+      bare = string(first_text(string):last_text(string))
+   end function without_blanks_around
 
 end module deck_parameters

@@ -6,8 +6,10 @@ module given_cards
       field_type, keyword_card_type, parameter_type
    use keywords, only: find_keyword
    use kinds, only: dp
-   use sorting, only: sort_order
-   use text, only: read_integer, read_real, string_type, to_text, to_upper
+   use name_index, only: name_index_type
+   use number_lists, only: number_list_type
+   use sorting, only: unique_sorted
+   use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none
    private
    public :: given_type, add_set, add_generated, add_numbers, add_node_card, node_place
@@ -141,45 +143,71 @@ contains
 
    !> Numbers of a set of the cards so far, each once and ascending. What is no number and no set so
    !> far is reported elsewhere.
-   recursive function members_of(all, keyword, name) result(numbers)
+   function members_of(all, keyword, name) result(numbers)
       type(cards_type), intent(in) :: all
       character(*), intent(in) :: keyword           !! NSET or ELSET
       character(*), intent(in) :: name              !! of the set, in any case
       integer, allocatable :: numbers(:)
-      integer :: i, j, k, number, range(3)
+      type(string_type), allocatable :: names(:)    ! of it and the sets in it, each once
+      type(name_index_type) :: known                ! the same names
+      type(number_list_type) :: found
+      integer :: k, n
+
+      call add_name(name, known, names)
+      n = 0
+      do while (n < size(names))
+         n = n + 1
+         do k = 1, all%keyword_count
+            if (to_upper(parameter_text(all%keywords(k), keyword)) /= names(n)%value) cycle
+            call add_members(all, all%keywords(k), keyword, found, known, names)
+         end do
+      end do
+      numbers = unique_sorted(found%numbers())
+   end function members_of
+
+   !> Adds the members that one card gives a set: numbers, and names of other sets.
+   subroutine add_members(all, card, keyword, found, known, names)
+      type(cards_type), intent(in) :: all
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: keyword
+      type(number_list_type), intent(inout) :: found
+      type(name_index_type), intent(inout) :: known
+      type(string_type), allocatable, intent(inout) :: names(:)
+      integer :: i, j, number, range(3)
       logical :: valid
 
-      allocate (numbers(0))
-      do k = 1, all%keyword_count
-         associate (card => all%keywords(k))
-            if (to_upper(parameter_text(card, keyword)) /= to_upper(name)) cycle
-            do j = card%first_data, card%last_data
-               associate (data => all%data(j))
-                  if (card%name == keyword .and. has_parameter(card, 'GENERATE')) then
-                     range(3) = 1
-                     do i = 1, min(size(data%fields), 3)
-                        call read_integer(field_text(data, i), range(i), valid)
-                     end do
-                     if (range(3) > 0) numbers = [numbers, (i, i=range(1), range(2), range(3))]
-                  else if (card%name == keyword) then
-                     do i = 1, size(data%fields)
-                        call read_integer(field_text(data, i), number, valid)
-                        if (valid) numbers = [numbers, number]
-                        if (valid .or. to_upper(field_text(data, i)) == to_upper(name)) cycle
-                        numbers = [numbers, members_of(all, keyword, field_text(data, i))]
-                     end do
-                  else if (any(card%name == ['NODE   ', 'ELEMENT'])) then
-                     call read_integer(field_text(data, 1), number, valid)
-                     if (valid) numbers = [numbers, number]
-                  end if
-               end associate
-            end do
+      do j = card%first_data, card%last_data
+         associate (data => all%data(j))
+            if (card%name == keyword .and. has_parameter(card, 'GENERATE')) then
+               range(3) = 1
+               do i = 1, min(size(data%fields), 3)
+                  call read_integer(field_text(data, i), range(i), valid)
+               end do
+               if (range(3) > 0) call found%add([(i, i=range(1), range(2), range(3))])
+            else if (card%name == keyword) then
+               do i = 1, size(data%fields)
+                  call read_integer(field_text(data, i), number, valid)
+                  if (valid) call found%add([number])
+                  if (.not. valid) call add_name(field_text(data, i), known, names)
+               end do
+            else if (any(card%name == ['NODE   ', 'ELEMENT'])) then
+               call read_integer(field_text(data, 1), number, valid)
+               if (valid) call found%add([number])
+            end if
          end associate
       end do
-      numbers = numbers(sort_order(numbers))
-      numbers = pack(numbers, [(i == 1 .or. numbers(max(i - 1, 1)) /= numbers(i), &
-         i=1, size(numbers))])
-   end function members_of
+   end subroutine add_members
+
+   !> Adds a name that is not there yet.
+   subroutine add_name(name, known, names)
+      character(*), intent(in) :: name
+      type(name_index_type), intent(inout) :: known
+      type(string_type), allocatable, intent(inout) :: names(:)
+
+      if (known%find(name) > 0) return
+      call known%add(name)
+      call append(names, to_upper(name))
+   end subroutine add_name
 
    !> Position of a number in a list, the last one where there are several; 0 where it is not.
    pure integer function position_of(number, given)
