@@ -43,14 +43,14 @@ contains
       end do
    end function whole_request
 
-   !> Reads a request such as 1%, of the usual quantities, or force=1%,heat=2%; unallocated where it
-   !> is none.
+   !> Reads a request such as 1%, of the usual quantities, or force=1%,heat=2%, each quantity once;
+   !> unallocated where it is none.
    pure subroutine read_request(words, targets)
       character(*), intent(in) :: words
       type(accuracy_target_type), allocatable, intent(out) :: targets(:)
       character(:), allocatable :: part, rest
       real(dp) :: bound
-      integer :: comma, equals, q
+      integer :: comma, equals, i, q
       logical :: valid
 
       allocate (targets(0))
@@ -67,6 +67,9 @@ contains
             short_names == part(:max(equals - 1, 0)), .true., dim=1)
          if (equals == 0) valid = valid .and. size(targets) == 0 .and. len(rest) == 0
          if (equals > 0) valid = valid .and. q > 0
+         do i = 1, size(targets)
+            if (q > 0) valid = valid .and. targets(i)%quantity /= quantities(q)
+         end do
          if (.not. valid) deallocate (targets)
          if (.not. valid) return
          if (equals == 0) targets = whole_request(bound/100.0_dp)

@@ -234,8 +234,8 @@ contains
          call read_request(value, command%targets)
          if (.not. allocated(command%targets)) call set_error(error, status_deck, &
             'option --accuracy needs a percentage above 0% and below 100%, such as 1%, or '// &
-            'those of quantities, such as force=1%,heat=2% (force, heat, pressure, edge, '// &
-            'shear, stick), not '//value)
+            'those of quantities, each once, such as force=1%,heat=2% (force, heat, pressure, '// &
+            'edge, shear, stick), not '//value)
       case ('--limit')
          call read_real(value(:len(value) - merge(1, 0, index(value, 's') == len(value))), &
             command%limit, valid)

@@ -68,6 +68,29 @@ def test_counts_of_one_are_singular_and_settings_named_as_given(good, tmp_path):
     assert "--set x: no *PARAMETER" in run("check", good, "--set", "x=1").stderr
 
 
+def test_blanks_around_a_setting_do_not_count_and_a_name_is_set_once(tmp_path):
+    parameter = ["*PARAMETER", "p = x", *("1, P3, <p>" if line == "1, P3, 1." else line
+                                          for line in GOOD)]
+    deck = write(tmp_path / "set.inp", parameter)
+    assert "'x' is not a number" in run("check", deck).stderr
+    for setting in ("p= 2. ", " P =2.", "p=\t2."):
+        process = run("check", deck, "--set", setting)
+        assert process.returncode == 0, process.stderr
+    process = run("check", deck, "--set", "p=2.", "--set", "P=3.")
+    assert (process.returncode, process.stdout) == (1, "")
+    assert "--set gives P twice" in process.stderr
+    for setting in ("p= ", " =2.", "p"):
+        assert run("check", deck, "--set", setting).returncode == 1
+
+
+@pytest.mark.parametrize("request_", ["force=1%,force=2%", "force=1%,normal_force=2%"])
+def test_a_quantity_has_one_target(good, tmp_path, request_):
+    process = run("run", good, "--accuracy", request_, "--out", tmp_path)
+    assert process.returncode == 1
+    assert "each once" in process.stderr
+    assert names(tmp_path) == ["decks"]
+
+
 def test_quiet_silences_the_summary_but_no_error(good, bad, tmp_path):
     loud = run("run", good, "--out", tmp_path)
     assert "good.inp" in loud.stdout + loud.stderr

@@ -141,13 +141,30 @@ contains
       contents = as_utf8(contents)
    end subroutine read_contents
 
-   !> Why the contents of a file are no text: a control character; empty where they are text.
+   !> Why the contents of a file are no text in UTF-8 or Latin-1 with ends of line; empty where they
+   !> are.
    pure function text_fault(contents) result(fault)
       character(*), intent(in) :: contents
       character(:), allocatable :: fault
+      character, parameter :: nul = achar(0), carriage_return = achar(13)
       integer :: code, i, line
 
       fault = ''
+      ! Without its mark, UTF-16 has a 0 beside the first character of a keyword or a number.
+      if (len(contents) > 1) then
+         associate (two => contents(:2))
+            if (any(two == [char(255)//char(254), char(254)//char(255)]) .or. &
+               count([two(1:1), two(2:2)] == nul) == 1 .and. scan(two, '*0123456789') > 0) then
+               fault = 'it is text in UTF-16; save it in UTF-8'
+               return
+            end if
+         end associate
+      end if
+      if (index(contents, new_line('a')) == 0 .and. &
+         scan(contents(:max(len(contents) - 1, 0)), carriage_return) > 0) then
+         fault = 'its lines end in carriage returns alone; save it with line feeds'
+         return
+      end if
       line = 1
       do i = 1, len(contents)
          code = iachar(contents(i:i))
