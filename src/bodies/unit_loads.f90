@@ -48,19 +48,18 @@ contains
       type(load_type), allocatable :: loads(:), all(:)
       integer, allocatable :: ranks(:), order(:)
       logical, allocatable :: first(:)
-      integer :: s, i
+      integer :: s, i, n
 
       allocate (all(0), ranks(0))
       do s = 1, size(steps)
          if (.not. allocated(steps(s)%loads)) cycle
          loads = steps(s)%loads(location_order(steps(s)%loads))
          all = [all, loads]
-         do i = 1, size(loads)
-            ! How manieth load of its location it is.
-            ranks = [ranks, 1]
-            if (i == 1) cycle
-            if (same_location(loads(i), loads(i - 1))) ranks(size(ranks)) = &
-               ranks(size(ranks) - 1) + 1
+         n = size(ranks)
+         ranks = [ranks, spread(1, 1, size(loads))]
+         do i = 2, size(loads)
+            ! Rank of the load among those at its location.
+            if (same_location(loads(i), loads(i - 1))) ranks(n + i) = ranks(n + i - 1) + 1
          end do
       end do
       order = sort_order(ranks)
