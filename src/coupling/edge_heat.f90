@@ -194,8 +194,8 @@ contains
    end function edge_heat_at
 
    !> How the heat that enters the nodes by the hats at edges follows the openings, at given
-   !> temperatures: differences with each opening that moves an edge or changes what is beside it, away
-   !> from zero. Contact points at rest keep theirs.
+   !> temperatures: differences with each opening that moves an edge or changes what is beside it,
+   !> away from zero. Contact points at rest keep theirs.
    pure subroutine find_heat_by_opening(bodies, graph, opening, resting, temperature, point, heat)
       type(reduced_bodies_type), intent(in) :: bodies
       type(conductance_graph_type), intent(in) :: graph(:)   !! (m)
