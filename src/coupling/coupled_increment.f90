@@ -143,6 +143,7 @@ contains
       guess = next
       fresh = workspace
       has_other = .false.
+      found = .false.
       do i = 1, 3
          if (i == 3 .and. any(found(:2))) then
             turned = turned_over(bodies, omega(:, findloc(found(:2), .true., dim=1)))

@@ -170,15 +170,17 @@ contains
       type(command_type), intent(in) :: command
       type(error_type), allocatable, intent(out) :: error
       type(input_files_type) :: inputs
-      type(string_type), allocatable :: outputs(:)
+      ! A variable: gfortran does not free the components of a function's result in an expression.
+      type(string_type), allocatable :: of_deck(:), outputs(:)
       type(file_identity_type) :: identity
-      integer :: i, kinds
+      integer :: i
       logical :: any_is_there
 
-      kinds = size(outputs_of('', command))
-      allocate (outputs(kinds*size(command%decks)))
+      of_deck = outputs_of('', command)
+      allocate (outputs(size(of_deck)*size(command%decks)))
       do i = 1, size(command%decks)
-         outputs((i - 1)*kinds + 1:i*kinds) = outputs_of(command%decks(i)%value, command)
+         of_deck = outputs_of(command%decks(i)%value, command)
+         outputs((i - 1)*size(of_deck) + 1:i*size(of_deck)) = of_deck
       end do
       any_is_there = .false.
       do i = 1, size(outputs)

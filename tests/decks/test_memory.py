@@ -9,13 +9,11 @@ import subprocess
 
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from deck_runs import COUPLED, CYLINDER, INPUT, PROGRAM, copy_deck, run
+from deck_runs import COUPLED, CYLINDER, INPUT, PROGRAM, copy_deck, of_release, run
 
 MEGABYTE = 1e6
 
-# A program for finding faults is larger, and puts guards round what it allocates.
-of_release = pytest.mark.skipif(os.environ.get("THERCON_BUILD_TYPE", "Release") != "Release",
-                                reason="the estimate is that of the optimised program")
+pytestmark = of_release
 
 
 def estimate(deck):
@@ -51,7 +49,6 @@ def without_checks(source, folder, cards):
     return copy_deck(folder / "source.inp", folder / "deck.inp", cards)
 
 
-@of_release
 @pytest.mark.parametrize(("source", "cards"), [
     (CYLINDER, ["*REFINE, LEVELS=0"]),
     (CYLINDER, ["*REFINE, LEVELS=1"]),
@@ -65,14 +62,12 @@ def test_the_estimate_is_not_under_the_peak_nor_twice_as_much(tmp_path, source, 
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
 
 
-@of_release
 def test_the_estimate_has_room_for_the_factors_of_the_bounds_beside_mortar_points(tmp_path):
     deck = few_increments(without_checks(CYLINDER, tmp_path, ["*REFINE, LEVELS=3"]))
     deck.write_text(deck.read_text().replace("PAIRING=NODES", "PAIRING=SURFACES"))
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
 
 
-@of_release
 @pytest.mark.parametrize("levels", [2, 3])
 def test_the_estimate_has_room_for_the_motions_of_a_state(tmp_path, levels):
     """*STABILITY keeps what contact points make of all temperatures, at several rates."""

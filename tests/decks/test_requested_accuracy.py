@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 from blocks import without_unused_surfaces, write
 from changes import note_changes
-from deck_runs import COUPLED, CYLINDER, DECKS, HERTZ, INPUT, PATIENCE, PROGRAM, copy_deck, run, solve
+from deck_runs import (COUPLED, CYLINDER, DECKS, HERTZ, INPUT, PATIENCE, PROGRAM, copy_deck, of_release,
+                       run, solve)
 from physics import material, mesh
 
 sys.path.insert(0, str(DECKS.parent / "documents"))
@@ -547,6 +548,7 @@ def test_a_later_round_that_is_refused_keeps_the_last_whole_one(tmp_path):
     assert "requested accuracy not reached after 1 round" in process.stdout
 
 
+@of_release
 def test_a_later_round_without_memory_keeps_the_last_whole_one(tmp_path):
     """Some limit of the process lets it solve the first round and not a later one."""
     kept = []
@@ -569,6 +571,7 @@ def test_a_later_round_without_memory_keeps_the_last_whole_one(tmp_path):
     assert kept, "no limit ends a later round"
 
 
+@of_release
 @pytest.mark.parametrize("seconds", [0.0, 0.5, 1.2])
 def test_memory_that_runs_out_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
     """As where others take it meanwhile, which no estimate can foresee."""
