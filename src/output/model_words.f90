@@ -117,9 +117,9 @@ contains
 
       words = pairing_name(points%pairing)
       if (asked /= pairing_by_faces) return
-      words = words//', because the faces match'
-      if (allocated(points%mismatch)) words = pairing_name(points%pairing)// &
-         ', because the faces do not match: '//points%mismatch
+      if (points%pairing == pairing_nodes) words = words//', because the faces match'
+      if (allocated(points%mismatch)) words = words//', because the faces do not match: '// &
+         points%mismatch
    end function pairing_words
 
    !> Corners of the slave that no master is opposite to; empty for none.

@@ -130,6 +130,8 @@ contains
       errors = report%error_count()
       call build_sets('node', cards, context, mesh, report, sets)
       call move_alloc(sets, mesh%node_sets)
+      context%node_index%sets%others = context%element_index%sets%name_index_type
+      context%element_index%sets%others = context%node_index%sets%name_index_type
       call build_node_surfaces(cards, context, mesh, report)
       context%sets_sound = context%sets_sound .and. report%error_count() == errors .and. &
          .not. report%has_lost('node set')

@@ -331,7 +331,7 @@ contains
    pure logical function names_set(card, parameter, sets, context)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter
-      type(name_index_type), intent(in) :: sets
+      class(name_index_type), intent(in) :: sets
       type(deck_context_type), intent(in) :: context
 
       names_set = context%sets_sound .or. sets%find(parameter_text(card, parameter)) > 0

@@ -3,7 +3,7 @@
 !> points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choose, has_parameter, lacks_parameter, parameter_place, &
+   use card_parameters, only: choose, chosen, has_parameter, lacks_parameter, parameter_place, &
       parameter_text, take_parameter, take_positive
    use card_values, only: check_extra, decimal_comma, need_field, report_decimal_comma, take_field
    use cards, only: cards_type, data_card_type, field_place, keyword_card_type
@@ -19,6 +19,9 @@ module deck_builder_histories
    implicit none
    private
    public :: build_amplitudes, build_time_points, build_temperatures, build_initial_stresses
+
+   !> TYPE= of *INITIAL CONDITIONS; of these the last three mean nothing.
+   character(*), parameter :: initial_kinds = 'TEMPERATURE/STRESS/FIELD/SOLUTION/VELOCITY'
 
    !> Points of CalculiX's solid element, by the kind of the plane one.
    integer, parameter :: solid_points(kind_count) = [27, 8, 8, 9, 2, 1]
@@ -234,13 +237,11 @@ contains
                call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE '// &
                   'or TYPE=STRESS')
             end if
-            kind = to_upper(parameter_text(card, 'TYPE'))
-            if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) then
-               call context%note('*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing '// &
-                  'depends on it')
-            else
-               call choose(card, 'TYPE', 'TEMPERATURE/STRESS', report, kind)
-            end if
+            kind = ''
+            call choose(card, 'TYPE', initial_kinds, report, kind)
+            if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) call &
+               context%note('*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing depends '// &
+               'on it')
             if (kind /= 'TEMPERATURE') cycle
             do j = card%first_data, card%last_data
                valid = .true.
@@ -267,7 +268,7 @@ contains
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (card%name /= 'INITIAL CONDITIONS') cycle
-            if (to_upper(parameter_text(card, 'TYPE')) /= 'STRESS' .or. card%flawed) cycle
+            if (chosen(card, 'TYPE', initial_kinds) /= 'STRESS' .or. card%flawed) cycle
             if (.not. allocated(mesh%initial_stress)) allocate (mesh%initial_stress(4, &
                size(mesh%element_number)), source=0.0_dp)
             points = spread(0, 1, size(mesh%element_number))

@@ -26,8 +26,8 @@ module deck_builder_loads
       '*BOUNDARY: 0 on degrees of freedom 3 to 6 is ignored'
 
    !> Supports that are known by a name.
-   character(8), parameter :: support_names(5) = &
-      [character(8) :: 'ENCASTRE', 'PINNED', 'XSYMM', 'YSYMM', 'ZSYMM']
+   character(8), parameter :: support_names(8) = [character(8) :: 'ENCASTRE', 'PINNED', &
+      'XSYMM', 'YSYMM', 'ZSYMM', 'XASYMM', 'YASYMM', 'ZASYMM']
 
 contains
 
@@ -373,6 +373,12 @@ contains
          degrees = [2, 4, 6]
       case ('ZSYMM')
          degrees = [3, 4, 5]
+      case ('XASYMM')
+         degrees = [2, 3, 4]
+      case ('YASYMM')
+         degrees = [1, 3, 5]
+      case ('ZASYMM')
+         degrees = [1, 2, 6]
       case default
          allocate (degrees(0))
       end select

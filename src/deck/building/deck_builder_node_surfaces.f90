@@ -1,6 +1,6 @@
 !> *SURFACE, TYPE=NODE: the faces whose nodes the surface names.
 module deck_builder_node_surfaces
-   use card_parameters, only: parameter_text
+   use card_parameters, only: chosen, surface_kinds
    use card_values, only: check_extra, take_field
    use cards, only: cards_type, field_place, has_field, keyword_card_type
    use deck_context, only: deck_context_type, read_target
@@ -12,7 +12,7 @@ module deck_builder_node_surfaces
    use load_requests, only: target_type
    use mesh, only: mesh_type
    use number_lists, only: number_list_type
-   use text, only: to_text, to_upper
+   use text, only: to_text
    implicit none
    private
    public :: build_node_surfaces
@@ -32,7 +32,7 @@ contains
       places = cards_of(cards, 'SURFACE')
       do n = 1, size(places)
          associate (card => cards%keywords(places(n)))
-            if (to_upper(parameter_text(card, 'TYPE')) /= 'NODE') cycle
+            if (chosen(card, 'TYPE', surface_kinds) /= 'NODE') cycle
             errors = report%error_count()
             call read_nodes(cards, card, context, mesh, report, named)
             if (report%error_count() == errors .and. all(context%element_valid)) then

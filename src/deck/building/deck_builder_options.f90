@@ -5,7 +5,7 @@ module deck_builder_options
    use cards, only: cards_type, keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_context_type, need_element_set, need_named, report_unknown
+   use deck_context, only: deck_context_type, look_up, need_element_set, need_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
@@ -189,12 +189,8 @@ contains
             'LOAD= has a node set and a degree of freedom 1, 2 or 11')
          return
       end if
-      set = context%node_index%sets%find(name)
-      if (set == 0) then
-         call report_unknown('node set', name, context%node_index%sets%known(), &
-            context%load_place, report)
-         return
-      end if
+      call look_up('node set', name, context%node_index%sets, context%load_place, report, set)
+      if (set == 0) return
       members = model%mesh%node_sets(set)%members
       if (size(members) == 0) return
       members = pack(members, .not. context%dropped(members))

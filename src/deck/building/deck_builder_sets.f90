@@ -1,7 +1,7 @@
 !> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets; *SURFACE -> sets of faces.
 module deck_builder_sets
    use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, &
-      parameter_text
+      parameter_text, surface_kinds
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
       keyword_card_type
@@ -276,7 +276,7 @@ contains
       kind = 'ELEMENT'
       surface%card = card%place%image
       errors = report%error_count()
-      call choose(card, 'TYPE', 'ELEMENT/NODE/SEGMENTS', report, kind)
+      call choose(card, 'TYPE', surface_kinds, report, kind)
       allocate(surface%faces(2, 0))
       ! The data of another type have other fields; node sets are made of surfaces, too.
       if (report%error_count() > errors .or. kind == 'NODE') return

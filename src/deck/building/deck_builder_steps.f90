@@ -277,6 +277,7 @@ contains
       step%direct = is_on(card, 'DIRECT', report)
       if (card%last_data >= card%first_data) then
          call build_increments(cards%data(card%first_data), context, report, step)
+         if (card%name == 'HEAT TRANSFER') call check_rate(cards%data(card%first_data), report)
       else
          call context%note('*'//card%name//' without data: one increment, period 1')
       end if
@@ -397,7 +398,7 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
       type(step_type), intent(inout) :: step               !! receives the times
-      integer :: comma
+      integer :: comma, most
       logical :: valid
 
       valid = .true.
@@ -414,11 +415,13 @@ contains
       if (.not. (step%direct .or. has_field(data, 3))) call context%note('smallest increment '// &
          'not given: '//to_text(step%smallest_increment))
       comma = decimal_comma(data)
-      if (comma > 0 .and. (size(data%fields) > 4 .or. .not. times_fit(data, step))) then
+      most = merge(5, 4, step%analysis == analysis_heat)
+      if (comma > 0 .and. (size(data%fields) > most .or. .not. times_fit(data, step))) then
          call report_decimal_comma(data, comma, report)
          valid = .false.
       else
-         call check_extra(data, 4, 'first increment, period, smallest, largest increment', report)
+         call check_extra(data, most, 'first increment, period, smallest, largest increment', &
+            report)
          if (valid) call check_times(data, step, report, valid)
       end if
       if (.not. valid) then
@@ -435,6 +438,15 @@ contains
             ': a smaller part of the period is lost in rounding')
       end if
    end subroutine build_increments
+
+   !> Warns of the fifth field of *HEAT TRANSFER, with which Abaqus ends a step early.
+   subroutine check_rate(data, report)
+      type(data_card_type), intent(in) :: data
+      type(deck_report_type), intent(inout) :: report
+
+      if (has_field(data, 5)) call report%warning(field_place(data, 5), 'the fifth field, the '// &
+         'rate of temperature at which END=SS ends a step, is ignored: the step lasts its period')
+   end subroutine check_rate
 
    !> Whether the times of a step are positive, and the first increment lies between the smallest
    !> and the period.

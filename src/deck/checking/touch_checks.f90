@@ -6,7 +6,7 @@ module touch_checks
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use element_sides, only: element_sides_type, find_sides
-   use equations, only: coupled_nodes, equation_nodes, surface_nodes
+   use equations, only: coupled_nodes, equation_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
@@ -115,7 +115,8 @@ contains
       end do
    end subroutine find_touches
 
-   !> Drops the touches of faces that a *CONTACT PAIR, *TIE, *EQUATION or *COUPLING relates.
+   !> Drops the touches of faces that a *CONTACT PAIR, *TIE, *EQUATION or *COUPLING relates, and of
+   !> the cuts of pre-tension sections, which are within a body.
    subroutine drop_related(model, sides, touches)
       type(model_type), intent(in) :: model
       type(element_sides_type), intent(in) :: sides
@@ -123,6 +124,7 @@ contains
       type(number_index_type) :: of_surface(size(model%mesh%surfaces))   ! sides of each
       type(contact_definition_type), allocatable :: pairs(:)
       logical :: constrained(size(model%mesh%node_number)), related(size(touches))
+      logical :: is_cut(0:sides%count)
       integer :: i, k
 
       allocate (pairs(size(model%contacts) + size(model%ties)))
@@ -139,14 +141,19 @@ contains
                size(faces, 2))])
          end associate
       end do
+      is_cut = .false.
       constrained = equation_nodes(model%equations, size(constrained))
       do i = 1, size(model%couplings)
          constrained(coupled_nodes(model%mesh, model%couplings(i))) = .true.
-         if (model%couplings(i)%is_section()) constrained(surface_nodes(model%mesh, &
-            model%couplings(i)%opposite)) = .true.
+         if (.not. model%couplings(i)%is_section()) cycle
+         associate (faces => [model%mesh%surfaces(model%couplings(i)%surface)%faces, &
+            model%mesh%surfaces(model%couplings(i)%opposite)%faces])
+            is_cut([(sides%of_element(faces(2*k), faces(2*k - 1)), k=1, size(faces)/2)]) = .true.
+         end associate
       end do
       do i = 1, size(touches)
          related(i) = is_paired(touches(i)%side, touches(i)%other) .or. &
+            is_cut(touches(i)%side) .or. is_cut(touches(i)%other) .or. &
             (constrained(touches(i)%node) .and. &
             any(constrained(pack(sides%ends(:, touches(i)%side), &
             sides%ends(:, touches(i)%side) > 0))))

@@ -4,7 +4,7 @@
 !> become INSTANCE.NAME. Nodes and elements of the first instance keep their numbers; those of the
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
-   use card_parameters, only: has_parameter, parameter_place, parameter_text
+   use card_parameters, only: chosen, has_parameter, parameter_place, parameter_text, surface_kinds
    use card_values, only: check_extra, take_field
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_place, &
       field_text, field_type, keyword_card_type, replace_cards
@@ -407,7 +407,7 @@ contains
       case ('NGEN')
          call prefix_fields(1, min(2, n), 1)
       case ('ELGEN', 'SURFACE')
-         if (to_upper(parameter_text(card, 'TYPE')) == 'SEGMENTS') then
+         if (chosen(card, 'TYPE', surface_kinds) == 'SEGMENTS') then
             if (instance%moves) call move_point(data, 2, instance, fields)
             if (instance%moves .and. n > 3) call move_point(data, 4, instance, fields)
          else

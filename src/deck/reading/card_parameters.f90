@@ -10,8 +10,12 @@ module card_parameters
       to_text, to_upper, without_blanks
    implicit none
    private
-   public :: has_parameter, lacks_parameter, parameter_text, parameter_place
-   public :: need_parameter, take_parameter, choose, need_choice, is_on, take_positive, take_from
+   public :: surface_kinds, has_parameter, lacks_parameter, parameter_text, parameter_place
+   public :: need_parameter, take_parameter, choose, chosen, need_choice, is_on, take_positive, &
+      take_from
+
+   !> TYPE= of *SURFACE.
+   character(*), parameter :: surface_kinds = 'ELEMENT/NODE/SEGMENTS'
 
    !> Value of a parameter where the card has it; else it stays as it is.
    interface take_parameter
@@ -154,6 +158,37 @@ contains
       end if
    end subroutine take_from
 
+   !> The one of several words that the value of a parameter is, or begins as in Abaqus; empty where
+   !> none of them does, or several do.
+   pure function chosen(card, name, choices) result(word)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name                         !! parameter
+      character(*), intent(in) :: choices                      !! words, separated by slashes
+      character(:), allocatable :: word                        !! as in choices
+      type(string_type), allocatable :: words(:)
+      character(:), allocatable :: short
+      integer :: i
+
+      word = ''
+      short = to_upper(without_blanks(parameter_text(card, name)))
+      if (len(short) == 0) return
+      words = split_words(choices)
+      do i = 1, size(words)
+         word = words(i)%value
+         if (without_blanks(word) == short) return
+      end do
+      word = ''
+      do i = 1, size(words)
+         if (index(without_blanks(words(i)%value), short) /= 1) cycle
+         ! ISO is ISOTROPIC, which begins with it.
+         if (len(word) > 0 .and. index(words(i)%value, word//'') /= 1) then
+            word = ''
+            return
+         end if
+         if (len(word) == 0) word = words(i)%value
+      end do
+   end function chosen
+
    !> Takes one of several words.
    subroutine choose(card, name, choices, report, choice)
       type(keyword_card_type), intent(in) :: card
@@ -161,20 +196,17 @@ contains
       character(*), intent(in) :: choices                      !! words, separated by slashes
       type(deck_report_type), intent(inout) :: report          !! receives the error
       character(:), allocatable, intent(inout) :: choice   !! the word as in choices; else as it was
-      type(string_type), allocatable :: words(:)
-      character(:), allocatable :: wanted
-      integer :: i
+      character(:), allocatable :: wanted, word
 
       if (.not. has_parameter(card, name)) return
-      wanted = to_upper(without_blanks(parameter_text(card, name)))
-      words = split_words(choices)
-      do i = 1, size(words)
-         if (without_blanks(words(i)%value) /= wanted) cycle
-         choice = words(i)%value
+      word = chosen(card, name, choices)
+      if (len(word) > 0) then
+         choice = word
          return
-      end do
+      end if
+      wanted = to_upper(without_blanks(parameter_text(card, name)))
       call report%error(parameter_place(card, name), 'unknown '//name//'='//wanted//' of *'// &
-         card%name//known_choices(wanted, words))
+         card%name//known_choices(wanted, split_words(choices)))
    end subroutine choose
 
    !> Takes one of several words of a parameter that the card must have; empty after an error.

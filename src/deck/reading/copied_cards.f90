@@ -75,7 +75,7 @@ contains
          return
       end if
       call add_set(card, 'NSET', data, [from, to], all)
-      call add_generated(card, 'NODE', '', all)
+      if (intervals > 1) call add_generated(card, 'NODE', '', all)
       allocate (parts(0:intervals), source=0.0_dp)
       do k = 1, intervals
          parts(k) = parts(k - 1) + bias**(1 - k)

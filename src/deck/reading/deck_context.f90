@@ -21,7 +21,7 @@ module deck_context
    private
    public :: deck_context_type, item_index_type, place_list_type, plane_by_element
    public :: take_name, need_named, take_named, need_element_set, read_surface, read_target
-   public :: report_unknown
+   public :: report_unknown, look_up
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
 
@@ -32,10 +32,15 @@ module deck_context
       type(place_type), allocatable :: items(:)   !! the places
    end type place_list_type
 
+   !> Names of sets of nodes, or of elements, and of those of the other kind.
+   type, extends(name_index_type) :: set_names_type
+      type(name_index_type) :: others
+   end type set_names_type
+
    !> Index of the numbers of nodes or of elements, and of the names of their sets.
    type, extends(number_index_type) :: item_index_type
       character(:), allocatable :: noun           !! node or element
-      type(name_index_type) :: sets
+      type(set_names_type) :: sets
    end type item_index_type
 
    !> State of the builder.
@@ -117,7 +122,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter             !! the parameter
       character(*), intent(in) :: noun                  !! what it names, such as material
-      type(name_index_type), intent(in) :: names
+      class(name_index_type), intent(in) :: names
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: index
       character(:), allocatable :: name
@@ -133,7 +138,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter             !! the parameter
       character(*), intent(in) :: noun                  !! what it names, such as material
-      type(name_index_type), intent(in) :: names
+      class(name_index_type), intent(in) :: names
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(inout) :: index                   !! 0 after an error
 
@@ -160,16 +165,50 @@ contains
          report, surface)
    end subroutine read_surface
 
+   !> Index of the item that has a name; 0 after an error.
    subroutine look_up(noun, name, names, place, report, index)
-      character(*), intent(in) :: noun, name
-      type(name_index_type), intent(in) :: names
-      type(place_type), intent(in) :: place
-      type(deck_report_type), intent(inout) :: report
+      character(*), intent(in) :: noun                  !! such as material
+      character(*), intent(in) :: name
+      class(name_index_type), intent(in) :: names
+      type(place_type), intent(in) :: place             !! where it is
+      type(deck_report_type), intent(inout) :: report   !! receives the error
       integer, intent(out) :: index
 
       index = names%find(name)
-      if (index == 0) call report_unknown(noun, name, names%known(), place, report)
+      if (index > 0) return
+      if (is_other_kind(names, name)) then
+         call report_other_kind(noun, name, place, report)
+      else
+         call report_unknown(noun, name, names%known(), place, report)
+      end if
    end subroutine look_up
+
+   !> Whether a name is that of a set of elements where one of nodes is due, or the reverse.
+   pure logical function is_other_kind(names, name)
+      class(name_index_type), intent(in) :: names
+      character(*), intent(in) :: name
+
+      is_other_kind = .false.
+      select type (names)
+      type is (set_names_type)
+         is_other_kind = names%others%find(name) > 0
+      end select
+   end function is_other_kind
+
+   !> Reports such a name.
+   subroutine report_other_kind(noun, name, place, report)
+      character(*), intent(in) :: noun, name
+      type(place_type), intent(in) :: place
+      type(deck_report_type), intent(inout) :: report
+
+      if (noun == 'node set') then
+         call report%missing(place, name//' is an element set, and a node set is due here; '// &
+            '*NSET, NSET='//name//', ELSET='//name//' makes one of its nodes', noun, name)
+      else
+         call report%missing(place, name//' is a node set, and an element set is due here; '// &
+            'give its elements a name by *ELSET', noun, name)
+      end if
+   end subroutine report_other_kind
 
    !> Reports a name that nothing has.
    subroutine report_unknown(noun, name, known, place, report)
@@ -186,7 +225,7 @@ contains
    !> Index of the element set that ELSET= of a card names; 0 after an error.
    subroutine need_element_set(card, names, sets, report, set)
       type(keyword_card_type), intent(in) :: card
-      type(name_index_type), intent(in) :: names        !! of the element sets
+      class(name_index_type), intent(in) :: names       !! of the element sets
       type(set_type), intent(in) :: sets(:)             !! element sets
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: set
@@ -240,13 +279,16 @@ contains
       end if
       if (target%item > 0 .or. target%set > 0) return
       valid = .false.
-      if (.not. (is_number .or. verify(name, '0123456789') == 0)) then
+      if (is_number .or. verify(name, '0123456789') == 0) then
+         call report%missing(field_place(data, position), 'there is no '//numbers%noun//' '// &
+            name, numbers%noun, name)
+      else if (is_other_kind(numbers%sets, name)) then
+         call report_other_kind(numbers%noun//' set', to_upper(name), &
+            field_place(data, position), report)
+      else
          known = numbers%sets%known()
          call report_unknown(numbers%noun//' set', to_upper(name), known(:size(sets)), &
             field_place(data, position), report)
-      else
-         call report%missing(field_place(data, position), 'there is no '//numbers%noun//' '// &
-            name, numbers%noun, name)
       end if
    end subroutine read_target
 

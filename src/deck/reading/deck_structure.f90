@@ -1,7 +1,7 @@
 !> Whether the cards of a deck are where they may be, and whether those that every deck needs
 !> are there.
 module deck_structure
-   use card_parameters, only: has_parameter, parameter_place, parameter_text
+   use card_parameters, only: chosen, has_parameter, parameter_place, parameter_text
    use cards, only: cards_type, field_place, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -259,7 +259,7 @@ contains
    pure logical function says_all(card)
       type(keyword_card_type), intent(in) :: card
 
-      says_all = to_upper(parameter_text(card, 'OP')) == 'NEW' .or. (card%name == 'NSET' .and. &
+      says_all = chosen(card, 'OP', 'MOD/NEW') == 'NEW' .or. (card%name == 'NSET' .and. &
          (has_parameter(card, 'ELSET') .or. has_parameter(card, 'SURFACE'))) .or. &
          (card%name == 'FRICTION' .and. has_parameter(card, 'ROUGH'))
    end function says_all

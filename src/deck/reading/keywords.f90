@@ -190,7 +190,7 @@ module keywords
       keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(93) = [ &
+   type(advice_type), parameter :: advice(96) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -212,6 +212,7 @@ module keywords
       advice_type(passed_over, '', 'DAMPING/CONTACT DAMPING', 'loads are slow'), &
       advice_type(passed_over, '', 'NORMAL', 'the normal of the plane is z'), &
       advice_type(passed_over, '', 'DEPVAR', 'materials have no state'), &
+      advice_type(passed_over, '', 'USER OUTPUT VARIABLES', 'no routine of the user is called'), &
       advice_type(passed_over, '', 'PREPRINT', 'the listing has the whole deck'), &
       advice_type(passed_over, '', 'PRINT', 'the listing has all that it has to say'), &
       advice_type(passed_over, '', 'MONITOR', 'the result has all nodes'), &
@@ -241,6 +242,8 @@ module keywords
       advice_type(refused, 'SOLID SECTION', 'SHELL SECTION/BEAM SECTION/BEAM GENERAL SECTION/'// &
          'MEMBRANE SECTION', &
          'elements are plane: CPE, CPS or CAX, with *SOLID SECTION'), &
+      advice_type(refused, '', 'USER ELEMENT/UEL PROPERTY', &
+         'no routine of the user is called; elements are CPE, CPS or CAX, with *SOLID SECTION'), &
       advice_type(refused, 'SOLID SECTION', 'FLUID SECTION', 'there are no fluids'), &
       advice_type(refused, '', 'FLUID CONSTANTS/SPECIFIC GAS CONSTANT/MASS FLOW', &
          'there are no fluids'), &
@@ -257,7 +260,8 @@ module keywords
       advice_type(refused, '', 'MASS', 'weight is *DENSITY with GRAV on *DLOAD'), &
       advice_type(refused, '', 'CHANGE MATERIAL/CHANGE SOLID SECTION/CHANGE SURFACE BEHAVIOR', &
          'materials, elements and sections are the same in all steps'), &
-      advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/MODAL DYNAMIC/'// &
+      advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/DYNAMIC '// &
+         'TEMPERATURE-DISPLACEMENT/MODAL DYNAMIC/'// &
          'STEADY STATE DYNAMICS/VISCO/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD/GEOSTATIC/SOILS/'// &
          'MASS DIFFUSION/COUPLED THERMAL-ELECTRICAL/DIRECT CYCLIC', &
          'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
@@ -299,8 +303,8 @@ module keywords
       advice_type(of_parameter, '', 'TIME RESET', 'times of the steps add up'), &
       advice_type(of_parameter, '', 'TOTAL TIME AT START', 'times of the steps add up, from 0'), &
       advice_type(of_parameter, '', 'RIKS', &
-         'loads and temperatures follow the time; leave it out'), &
-      advice_type(of_parameter, '', 'MXDEM', 'heat capacity is not modelled; leave it out'), &
+         'solutions past a turning point of the load are *CONTINUATION'), &
+      advice_type(of_parameter, '', 'MXDEM', 'emissivities are constant; leave it out'), &
       advice_type(of_parameter, '', 'CREEP', 'materials are linear; leave it out'), &
       advice_type(of_parameter, '', 'DEPENDENCIES', &
          'values depend on no field; give the rows of one value of it, and 0'), &
@@ -325,8 +329,8 @@ module keywords
          '*BOUNDARY prescribes temperatures (11), *INITIAL CONDITIONS gives the first ones'), &
       advice_type(of_word, '', 'POISSON/YOUNG/MODULUS/STIFFNESS', &
          '*ELASTIC has Young''s modulus and Poisson''s ratio'), &
-      advice_type(of_word, '', 'CAPACITY/LATENT/ENTHALPY', &
-         'heat capacity is not modelled; leave it out'), &
+      advice_type(of_word, '', 'CAPACITY', 'heat capacity is *SPECIFIC HEAT, with *DENSITY'), &
+      advice_type(of_word, '', 'LATENT/ENTHALPY', 'no phase changes; leave it out'), &
       advice_type(of_word, '', 'ALPHA/CTE', 'the coefficient of thermal expansion is *EXPANSION'), &
       advice_type(of_word, '', 'CONDUCTANCE/RESISTANCE', &
          'the conductance of a contact is *GAP LAW or *GAP CONDUCTANCE'), &
