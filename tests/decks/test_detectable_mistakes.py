@@ -373,3 +373,13 @@ def test_surfaces_of_included_files_that_nothing_uses(tmp_path, used):
     assert process.returncode == 0
     assert ("warning: nothing uses the surface RIM\n" in process.stderr) != used
     assert process.stderr.count("warning") == (not used)
+
+
+def test_the_cut_of_a_pre_tension_section_touches_nothing(tmp_path):
+    """A bolt is drawn over the flange that it goes through, and is cut where the face of the flange is."""
+    cards = [*mesh("FLANGE", [-1.0, 0.0, 1.0, 2.0], [0.0, 1.0], "CPE4"), *solid("FLANGE", 2e5, 0.3),
+             *mesh("BOLT", [0.0, 1.0], [0.5, 1.0, 2.0], "CPE4", first=101), *solid("BOLT", 2e5, 0.3),
+             "*NODE", "9000, 0., 9.", "*SURFACE, NAME=CUT", "101, S3",
+             "*PRE-TENSION SECTION, NODE=9000, SURFACE=CUT", "*STEP", "*STATIC", "*BOUNDARY",
+             "FLANGE, 1, 2", "BOLT.TOP, 1, 2", "BOLT.BOTTOM, 1, 2", "*CLOAD", "9000, 1, 5.", "*END STEP"]
+    assert "touch" not in str(warnings(tmp_path, cards))
