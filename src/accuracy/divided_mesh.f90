@@ -282,7 +282,7 @@ contains
 
    !> The quantities of the interfaces at the end of the run's step. Anderson's method solves the
    !> increment without the loads of all jumps; where it fails, that of the deck does with them.
-   !> Errors: as simulation_type's enter_step and reduce, or the increment has no solution.
+   !> Errors: as simulation_type's reduce, or the increment has no solution.
    subroutine solve_end(self, simulation, also, previous, values, error)
       type(divided_mesh_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
@@ -294,8 +294,7 @@ contains
       type(step_type) :: step
 
       associate (run => self%run, number => simulation%control%step)
-         call enter_step(self, number, error)
-         if (allocated(error)) return
+         call enter_step(self, number)
          call order_as_run(self, simulation%bodies)
          call run%reduce(self%model, error)
          if (allocated(error)) return
@@ -368,11 +367,9 @@ contains
 
    !> Enters a step as the run did. The run's state at the start of steps shows in loads that ramp
    !> from there only, and not at the end of a step.
-   !> Errors: as simulation_type's enter_step.
-   subroutine enter_step(self, step, error)
+   subroutine enter_step(self, step)
       type(divided_mesh_type), intent(inout) :: self
       integer, intent(in) :: step
-      type(error_type), allocatable, intent(out) :: error
 
       associate (run => self%run)
          do while (run%control%step < step)
@@ -380,8 +377,7 @@ contains
                run%control%step), self%model)
             run%state%displacement = run%loads%displacement%value
             run%state%temperature = run%loads%temperature%value
-            call run%enter_step(self%model, error)
-            if (allocated(error)) return
+            call run%enter_step(self%model)
          end do
       end associate
    end subroutine enter_step

@@ -1,11 +1,10 @@
-!> Whether the equations of the deck say something new, and leave the relative motion of contact
-!> points free; whether what supports prescribe on both sides of a tie agrees with it; names of
-!> supports in messages.
+!> Whether the equations of the deck say something new; whether what supports prescribe on both sides
+!> of a tie agrees with it, and leaves contact points open whose motion it determines.
 module constraint_checks
    use connections, only: connections_type
    use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_support, of_tie, &
       origins_of, row_origin_type
-   use field_constraints, only: displacement_rows, first_tied, temperature_rows
+   use field_constraints, only: displacement_rows, find_prescribed, temperature_rows
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use linear_constraints, only: linear_constraints_type
@@ -17,17 +16,19 @@ module constraint_checks
    use text, only: to_text
    implicit none
    private
-   public :: check_equations, check_prescribed_ties, support_name, join_name
+   public :: check_equations, check_prescribed
 
    !> Part of the prescribed values by which they may miss what a tie asks for. Decks give them to a
    !> few digits.
    real(dp), parameter :: agreed = 1.0e-6_dp
 
+   !> Gap that is rounding, as part of the largest coordinate: a sum of a few of them.
+   real(dp), parameter :: touching = 64*epsilon(1.0_dp)
+
 contains
 
    !> Checks the constraints of a step.
-   !> Errors: an equation that follows from supports or from other equations, or contradicts them; a
-   !> contact point whose relative motion ties, supports and equations prescribe.
+   !> Error: an equation that follows from supports or from other equations, or contradicts them.
    subroutine check_equations(model, bodies, loads, step, error)
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies       !! numbered for the step
@@ -45,8 +46,6 @@ contains
                call check_field(model, points, bodies%mechanical%map, rows, loads%displacement, &
                   error)
             end if
-            if (.not. allocated(error)) call check_contact(model, points, bodies%mechanical%map, &
-               loads%displacement, error)
          end if
          if (allocated(error) .or. .not. solves_heat(analysis)) return
          if (.not. any(bodies%thermal%map%condition%kind == of_equation)) return
@@ -85,37 +84,7 @@ contains
       end do
    end subroutine check_field
 
-   !> Reports a contact point whose relative motion is prescribed.
-   subroutine check_contact(model, points, map, supports, error)
-      type(model_type), intent(in) :: model
-      type(connections_type), intent(in) :: points
-      type(linear_constraints_type), intent(in) :: map
-      type(load_history_type), intent(in) :: supports
-      type(error_type), allocatable, intent(out) :: error
-      type(constraint_rows_type) :: rows
-      character(:), allocatable :: others
-      logical :: as_found(size(points%slave)), supported
-      integer :: i, k
-
-      if (size(model%ties) + size(points%equations) == 0) return
-      k = first_tied(map, points)
-      if (k == 0) return
-      as_found = .false.
-      rows = displacement_rows(supports%active, points, as_found)
-      call name_origins(model, points, rows, supports, row_origin_type(of_contact, k), others, &
-         supported)
-      i = count(points%interface_start <= k)
-      associate (number => model%mesh%node_number)
-         call set_error(error, status_deck, model%contacts(i)%title()//': how slave node '// &
-            to_text(number(points%slave(k)))//' moves against master node '// &
-            to_text(number(points%master(k)))//' is prescribed by '//others//', so that their '// &
-            'contact force is undetermined; free one of the two, or leave the nodes out of the '// &
-            '*CONTACT PAIR', model%contacts(i)%card)
-      end associate
-   end subroutine check_contact
-
-   !> The cards from which the rows of a constraint follow, in words; empty where only the axis of
-   !> symmetry is.
+   !> The cards from which the rows of a constraint follow, in words, and the axis of symmetry.
    subroutine name_origins(model, points, rows, supports, constraint, names, supported)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points
@@ -138,7 +107,9 @@ contains
                name = model%ties(points%ties%tie(number))%faces%title()
             case (of_support)
                supported = .true.
-               name = support_name(model, supports, number)
+               name = 'the axis of symmetry'
+               if (supports%card(number) > 0) name = '*BOUNDARY, '// &
+                  model%boundary_places(supports%card(number))%value
             case (of_equation)
                name = points%equations(number)%title
             case default
@@ -148,18 +119,6 @@ contains
          call join_name(names, name)
       end do
    end subroutine name_origins
-
-   !> The card that prescribes a degree of freedom, in words; empty for the axis of symmetry.
-   pure function support_name(model, supports, dof) result(name)
-      type(model_type), intent(in) :: model
-      type(load_history_type), intent(in) :: supports   !! of the step
-      integer, intent(in) :: dof                        !! prescribed
-      character(:), allocatable :: name
-
-      name = ''
-      if (supports%card(dof) > 0) name = '*BOUNDARY, '// &
-         model%boundary_places(supports%card(dof))%value
-   end function support_name
 
    !> Adds a name to names joined by "and", once.
    pure subroutine join_name(names, name)
@@ -171,23 +130,62 @@ contains
       names = names//name
    end subroutine join_name
 
-   !> Sees whether the values that supports prescribe now satisfy the ties they leave no choice.
-   !> Error: a tie that they do not satisfy, with the nodes.
-   subroutine check_prescribed_ties(model, bodies, loads, step, error)
+   !> Sees whether the values that supports prescribe now satisfy the ties they leave no choice, and
+   !> leave gaps at contact points that they move.
+   !> Errors: a tie that they do not satisfy, with the nodes; a contact point that they close, whose
+   !> force is undetermined.
+   subroutine check_prescribed(model, bodies, loads, step, error)
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies       !! numbered for the step
       type(loads_type), intent(in) :: loads                 !! loads at the instant
       integer, intent(in) :: step                           !! the step
       type(error_type), allocatable, intent(out) :: error
 
-      if (size(model%ties) == 0) return
       associate (analysis => model%steps(step)%analysis)
-         if (solves_mechanics(analysis)) call check_given(model, bodies, bodies%mechanical%map, &
-            loads%displacement%value, error)
+         if (solves_mechanics(analysis)) then
+            call check_given(model, bodies, bodies%mechanical%map, loads%displacement%value, error)
+            if (.not. allocated(error)) call check_gaps(model, bodies, loads, error)
+         end if
          if (allocated(error) .or. .not. solves_heat(analysis)) return
          call check_given(model, bodies, bodies%thermal%map, loads%temperature%value, error)
       end associate
-   end subroutine check_prescribed_ties
+   end subroutine check_prescribed
+
+   !> Reports a contact point that is prescribed and not open.
+   subroutine check_gaps(model, bodies, loads, error)
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(loads_type), intent(in) :: loads
+      type(error_type), allocatable, intent(out) :: error
+      logical, dimension(size(bodies%points%slave)) :: along_normal, is_open, prescribed
+      character(:), allocatable :: others
+      type(constraint_rows_type) :: rows
+      logical :: supported
+      integer :: i, k
+
+      associate (points => bodies%points, map => bodies%mechanical%map, &
+         number => model%mesh%node_number)
+         if (map%link_unknowns%count == 0) return
+         call find_prescribed(map, prescribed, along_normal)
+         if (.not. any(prescribed)) return
+         is_open = bodies%laws%removed .or. along_normal .and. loads%present_gaps(points) - &
+            sum(points%normal*points%relative(map%supported(loads%displacement%value)), dim=1) > &
+            touching*maxval(abs(model%mesh%coordinates))
+         k = findloc(prescribed .and. .not. is_open, .true., dim=1)
+         if (k == 0) return
+         is_open = .false.
+         rows = displacement_rows(loads%displacement%active, points, is_open)
+         call name_origins(model, points, rows, loads%displacement, &
+            row_origin_type(of_contact, k), others, supported)
+         i = count(points%interface_start <= k)
+         call set_error(error, status_deck, model%contacts(i)%title()//': how slave node '// &
+            to_text(number(points%slave(k)))//' moves against master node '// &
+            to_text(number(points%master(k)))//' is prescribed by '//others//', and leaves no '// &
+            'gap between them, so that their contact force is undetermined; free one of the '// &
+            'two along the normal of the faces, or leave the nodes out of the *CONTACT PAIR', &
+            model%contacts(i)%card)
+      end associate
+   end subroutine check_gaps
 
    subroutine check_given(model, bodies, map, given, error)
       type(model_type), intent(in) :: model
@@ -198,6 +196,7 @@ contains
       real(dp) :: left(map%condition_given%count)
       integer :: i
 
+      if (size(model%ties) == 0) return
       left = 0.0_dp
       call map%condition_given%add_totals(given, left)
       do i = 1, size(left)

@@ -2,7 +2,7 @@
 !>
 !> At a contact point the slave's values are the master's plus its relative values in its own frame:
 !> along normal and tangent; one jump of temperature. Where supports hold both nodes along an axis
-!> there is only the row of the normal. Contact points that form cycles, as where a block is in
+!> there is only the row of the normal; where they prescribe its motion, it has links alone. Contact points that form cycles, as where a block is in
 !> an inner corner, end with one whose rows follow from those of the others: they become links.
 !>
 !> Contact points of a cycle that all stick share their friction in a way that statics leaves open,
@@ -18,17 +18,16 @@ module field_constraints
    use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_hanging, &
       of_support, of_tie, row_origin_type
    use equations, only: equation_type
-   use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
    use linear_constraints, only: eliminate, linear_constraints_type, node_stiffness
    use connections, only: connections_type, tie_points_type
-   use held_points, only: held_directions, over_constrained
+   use held_points, only: held_directions, least_slant
    use sparse_matrix, only: sparse_matrix_type
    use sum_lists, only: add_terms
    implicit none
    private
    public :: constrain_displacements, constrain_temperatures, in_cycle, stiffness_alone, &
-      cycle_compliance, first_tied, displacement_rows, temperature_rows, add_ties
+      cycle_compliance, find_prescribed, displacement_rows, temperature_rows, add_ties
 
    !> Compliance of a stuck contact point of a cycle, as a part of the bodies' at its nodes.
    real(dp), parameter :: cycle_compliance = 1.0e-8_dp
@@ -40,9 +39,8 @@ contains
 
    !> Constraints of the displacements; the normal ones, and with friction the tangential ones, are
    !> on the tail.
-   !> Error: a contact point whose normal motion is prescribed on both nodes.
-   subroutine constrain_displacements(used, held, points, has_friction, slave_leads, &
-      constraints, error)
+   pure subroutine constrain_displacements(used, held, points, has_friction, slave_leads, &
+      constraints)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
       type(connections_type), intent(in) :: points !! contact points
@@ -50,14 +48,8 @@ contains
       !> (m) whether the slave is to lead where neither node is prescribed; else the master does
       logical, intent(in) :: slave_leads(:)
       type(linear_constraints_type), intent(out) :: constraints
-      type(error_type), allocatable, intent(out) :: error
       type(constraint_rows_type) :: rows
 
-      if (any(over_constrained(points, held))) then
-         call set_error(error, status_deck, &
-            'a contact pair whose normal motion is prescribed on both nodes')
-         return
-      end if
       rows = displacement_rows(held, points, slave_leads)
       rows%on_tail(2::2) = has_friction
       call eliminate(rows, in_use(used, points, .false.), constraints)
@@ -243,25 +235,32 @@ contains
       rows%choice(rows%count) = rows%components*(nodes(1) - 1) + component
    end subroutine relate
 
-   !> The first contact point whose relative motion ties and supports prescribe; 0 where there is
-   !> none. A link then relates nothing but its own values.
-   pure integer function first_tied(constraints, points)
+   !> Contact points of which supports, ties and equations prescribe how they move: links relate
+   !> nothing but their own values. Those of which they prescribe the whole, or the normal motion.
+   pure subroutine find_prescribed(constraints, prescribed, along_normal)
       type(linear_constraints_type), intent(in) :: constraints !! of the displacements
-      type(connections_type), intent(in) :: points      !! all contact points
-      integer :: i, k
+      logical, intent(out) :: prescribed(:)         !! (m) whether any motion is
+      logical, intent(out) :: along_normal(:)       !! (m) whether the normal one is
+      integer :: i, k, links(size(prescribed))
 
+      links = 0
+      along_normal = .false.
       do i = 1, constraints%link_unknowns%count
-         associate (linked => constraints%link_unknowns%values_of(i))
+         associate (linked => constraints%link_unknowns%values_of(i), &
+            share => constraints%link_unknowns%coefficients_of(i))
             if (size(linked) == 0) cycle
-            do k = 1, size(points%slave)
-               first_tied = k
-               if (all(linked == constraints%introduced(2*k - 1) .or. &
-                  linked == constraints%introduced(2*k))) return
-            end do
+            k = (findloc(constraints%introduced, linked(1), dim=1) + 1)/2
+            if (k == 0) cycle
+            associate (own => constraints%introduced(2*k - 1:2*k))
+               if (any(linked /= own(1) .and. linked /= own(2))) cycle
+               links(k) = links(k) + 1
+               along_normal(k) = links(k) == 2 .or. &
+                  all(linked == own(1) .or. abs(share) <= least_slant)
+            end associate
          end associate
       end do
-      first_tied = 0
-   end function first_tied
+      prescribed = links > 0
+   end subroutine find_prescribed
 
    !> Contact points that are part of a cycle.
    pure function in_cycle(constraints, points) result(cyclic)

@@ -16,8 +16,8 @@ module held_points
    use kinds, only: dp
    implicit none
    private
-   public :: held_directions, over_constrained, normal_supports, free_part, &
-      tangential_positions, first_redundant
+   public :: held_directions, over_constrained, free_part, tangential_positions, first_redundant, &
+      least_slant
 
    !> Component of a unit vector that is rounding: two axes are one, or the normal motion of a
    !> contact point is prescribed.
@@ -35,8 +35,8 @@ contains
    pure function held_directions(points, held) result(directions)
       type(connections_type), intent(in) :: points !! all contact points
       logical, intent(in) :: held(:)                      !! (2 nodes) prescribed displacements
-      !> (2, m) unit vectors along which both nodes are held, while one of them is free across; 0
-      !> where there are none
+      !> (2, m) unit vectors along which both nodes are held, while their normal motion is not
+      !> prescribed; 0 where there are none
       real(dp) :: directions(2, size(points%slave))
       real(dp) :: axes(2, 2)
       logical :: all_held(2)
@@ -46,7 +46,7 @@ contains
          associate (direction => directions(:, k))
             direction = 0.0_dp
             call find_shared_axes(points, held, k, axes, all_held)
-            if (all(all_held)) cycle
+            if (holds_normal(points, k, axes, all_held)) cycle
             if (any(all_held)) then
                direction = axes(:, findloc(all_held, .true., dim=1))
             else if (norm2(held_along_tangent(points, held, k, points%master(k))) > 0.0_dp) then
@@ -68,34 +68,20 @@ contains
 
       do k = 1, size(points%slave)
          call find_shared_axes(points, held, k, axes, all_held)
-         too_much(k) = any(all_held) .and. &
-            all(all_held .or. abs(matmul(points%normal(:, k), axes)) <= least_slant)
+         too_much(k) = holds_normal(points, k, axes, all_held)
       end do
    end function over_constrained
 
-   !> The degrees of freedom, of a contact point's nodes, that supports hold and that move it along
-   !> its normal.
-   pure function normal_supports(points, held, k) result(dofs)
+   !> Whether supports hold both axes, or the one that is the normal.
+   pure logical function holds_normal(points, k, axes, all_held)
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
-      integer, intent(in) :: k                     !! a contact point
-      integer, allocatable :: dofs(:)
-      real(dp) :: axes(2, 2)
-      logical :: fixed(2)
-      integer, allocatable :: nodes(:)
-      integer :: c, i
+      integer, intent(in) :: k
+      real(dp), intent(in) :: axes(2, 2)
+      logical, intent(in) :: all_held(2)
 
-      nodes = points%nodes_of(k)
-      allocate (dofs(0))
-      do i = 1, size(nodes)
-         call find_axes(points, held, nodes(i), axes, fixed)
-         do c = 1, 2
-            if (fixed(c) .and. abs(dot_product(points%normal(:, k), axes(:, c))) > least_slant) then
-               dofs = [dofs, 2*named_node(points, nodes(i)) - 2 + c]
-            end if
-         end do
-      end do
-   end function normal_supports
+      holds_normal = any(all_held) .and. &
+         all(all_held .or. abs(matmul(points%normal(:, k), axes)) <= least_slant)
+   end function holds_normal
 
    !> The axes of a contact point's slave node, and along which of them all nodes whose values it
    !> takes are held.
@@ -210,18 +196,22 @@ contains
    end function tangential_positions
 
    !> A contact point of one interface whose normal force, or friction force, supports leave
-   !> undetermined beside those of the others; 0 where there is none.
+   !> undetermined beside those of the others; 0 where there is none. Contact points whose normal
+   !> motion is prescribed do not count.
    pure integer function first_redundant(points, first, last, held, has_friction) result(found)
       type(connections_type), intent(in) :: points !! all contact points
       integer, intent(in) :: first, last                  !! those of the interface
       logical, intent(in) :: held(:)                      !! (2 nodes) prescribed displacements
       logical, intent(in) :: has_friction(:)              !! (m)
-      logical :: slides(size(has_friction))
+      logical :: moves(size(has_friction)), slides(size(has_friction))
       integer :: k
 
-      found = redundant_along(points, [(k, k=first, last)], points%normal, held)
+      moves = .not. over_constrained(points, held)
+      found = redundant_along(points, pack([(k, k=first, last)], moves(first:last)), &
+         points%normal, held)
       if (found > 0) return
-      slides = has_friction .and. .not. norm2(held_directions(points, held), dim=1) > 0.0_dp
+      slides = has_friction .and. moves .and. &
+         .not. norm2(held_directions(points, held), dim=1) > 0.0_dp
       found = redundant_along(points, pack([(k, k=first, last)], slides(first:last)), &
          points%tangent, held)
    end function first_redundant

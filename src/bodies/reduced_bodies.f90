@@ -138,13 +138,11 @@ contains
    !> Enters a step: laws of its contact points, unknowns of its fields. A field is numbered again
    !> only where it is solved and its supports or frictions differ from those that were numbered
    !> last; only then are its factors formed again.
-   !> Error: as number.
-   subroutine enter_step(self, model, step, loads, error)
+   subroutine enter_step(self, model, step, loads)
       class(reduced_bodies_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model
       integer, intent(in) :: step                            !! its index
       type(loads_type), intent(in) :: loads                  !! supports of the step
-      type(error_type), allocatable, intent(out) :: error
       logical :: heat, mechanics
 
       self%laws = laws_of_step(model, self%points, step)
@@ -164,20 +162,18 @@ contains
             self%has_friction = has_friction
          end if
          if (heat) self%held_temperature = held_temperature
-         call self%number(model, held, held_temperature, mechanics, heat, error)
+         call self%number(model, held, held_temperature, mechanics, heat)
       end associate
    end subroutine enter_step
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
-   !> Error: an over-constrained contact point.
-   subroutine number(self, model, held, held_temperature, mechanics, heat, error)
+   subroutine number(self, model, held, held_temperature, mechanics, heat)
       class(reduced_bodies_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model
       logical, intent(in) :: held(:)                         !! (2 nodes) prescribed displacements
       logical, intent(in) :: held_temperature(:)             !! (nodes) prescribed temperatures
       logical, intent(in) :: mechanics                       !! whether displacements are numbered
       logical, intent(in) :: heat                            !! whether temperatures are numbered
-      type(error_type), allocatable, intent(out) :: error
       ! gfortran never frees the components of a function's result within an array constructor.
       type(joint_type), allocatable :: of_bars(:), of_equations(:), of_ties(:)
 
@@ -193,8 +189,7 @@ contains
          if (mechanics) then
             call constrain_displacements(used, held, points, &
                self%laws%friction%coefficient > 0.0_dp, slave_is_stiffer(model, points, .true.), &
-               self%mechanical%map, error)
-            if (allocated(error)) return
+               self%mechanical%map)
             self%mechanical%numbering = self%mechanical%numbering + 1
          end if
          if (.not. heat) return

@@ -21,11 +21,10 @@ module deck_preparation
    use model, only: model_type
    use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
-   use held_points, only: first_redundant, normal_supports, over_constrained
+   use held_points, only: first_redundant
    use progress, only: progress_type
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
-   use constraint_checks, only: join_name, support_name
    use simulation, only: simulation_type
    use text, only: string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
@@ -231,7 +230,7 @@ contains
 
       associate (analysis => model%steps(step)%analysis, points => simulation%bodies%points)
          if (solves_mechanics(analysis)) then
-            call report_over_constrained(model, simulation, laws, loads%displacement, step, report)
+            call report_redundant(model, simulation, laws, loads%displacement, step, report)
             call unconstrained_in_step(model, points, laws, loads%displacement%active, messages)
             convicted = .false.
             if (size(messages) > 0) call report%convict(frictionless, convicted)
@@ -252,68 +251,33 @@ contains
       end subroutine report_all
    end subroutine check_step
 
-   !> Reports the first contact point of each interface whose force is undetermined: its relative
-   !> motion is prescribed along the normal, because that of both nodes is, or supports leave fewer
-   !> nodes to act on than there are contact points.
-   subroutine report_over_constrained(model, simulation, laws, supports, step, report)
+   !> Reports the first contact point of each interface whose force is undetermined because supports
+   !> leave fewer nodes to act on than there are contact points.
+   subroutine report_redundant(model, simulation, laws, supports, step, report)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(contact_laws_type), intent(in) :: laws
       type(load_history_type), intent(in) :: supports
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
-      logical :: too_much(size(simulation%bodies%points%slave))
-      character(:), allocatable :: reason
       integer :: i, k
 
-      too_much = over_constrained(simulation%bodies%points, supports%active)
       do i = 1, size(model%contacts)
          associate (row => simulation%bodies%points, own => simulation%bodies%interfaces(i), &
             number => model%mesh%node_number, first => simulation%bodies%points% &
             interface_start(i), last => simulation%bodies%points%interface_start(i + 1) - 1)
-            k = findloc(too_much(first:last), .true., dim=1)
-            if (k > 0) then
-               k = first + k - 1
-               reason = cards_at(model, row, supports, k)//' the motion of slave node '// &
-                  to_text(number(row%slave(k)))//' and master node '// &
-                  to_text(number(row%master(k)))//' towards each other, so that their '// &
-                  'contact force is undetermined; free one of the two nodes along the normal '// &
-                  'of the faces'
-            else if (own%pairing == pairing_surfaces) then
-               k = first_redundant(row, first, last, supports%active, &
-                  laws%friction%coefficient > 0.0_dp)
-               if (k == 0) cycle
-               reason = '*BOUNDARY holds slave node '//to_text(number(row%slave(k)))// &
-                  ', and too few nodes of the master are free there to determine the contact '// &
-                  'forces; '// &
-                  'exchange slave and master so that the held face is the master, make the '// &
-                  'slave coarser, or leave the faces at held nodes out of the surface'
-            else
-               cycle
-            end if
+            if (own%pairing /= pairing_surfaces) cycle
+            k = first_redundant(row, first, last, supports%active, &
+               laws%friction%coefficient > 0.0_dp)
+            if (k == 0) cycle
             call report%error(place_type(image=model%contacts(i)%card), 'step '// &
-               to_text(step)//': contact pair '//own%name//': '//reason)
+               to_text(step)//': contact pair '//own%name//': *BOUNDARY holds slave node '// &
+               to_text(number(row%slave(k)))//', and too few nodes of the master are free '// &
+               'there to determine the contact forces; '// &
+               'exchange slave and master so that the held face is the master, make the '// &
+               'slave coarser, or leave the faces at held nodes out of the surface')
          end associate
       end do
-   end subroutine report_over_constrained
-
-   !> The cards that prescribe the motion of a contact point along its normal, and that they do.
-   pure function cards_at(model, points, supports, k) result(words)
-      type(model_type), intent(in) :: model
-      type(connections_type), intent(in) :: points
-      type(load_history_type), intent(in) :: supports
-      integer, intent(in) :: k
-      character(:), allocatable :: words
-      integer, allocatable :: dofs(:)
-      integer :: i
-
-      words = ''
-      dofs = normal_supports(points, supports%active, k)
-      do i = 1, size(dofs)
-         call join_name(words, support_name(model, supports, dofs(i)))
-      end do
-      if (len(words) == 0) words = 'the axis of symmetry'
-      words = words//trim(merge(' prescribe ', ' prescribes', index(words, ' and ') > 0))
-   end function cards_at
+   end subroutine report_redundant
 
 end module deck_preparation

@@ -1,7 +1,7 @@
 !> An attempt at an increment, stage by stage.
 module increment_attempts
    use clock, only: wall_seconds
-   use constraint_checks, only: check_prescribed_ties
+   use constraint_checks, only: check_prescribed
    use controls, only: method_newton
    use coupled_increment, only: differ
    use due_output, only: stability_is_due
@@ -93,7 +93,7 @@ contains
       real(dp) :: since
 
       call run%loads%move_to(stage%clock, model)
-      call check_prescribed_ties(model, run%bodies, run%loads, run%control%step, error)
+      call check_prescribed(model, run%bodies, run%loads, run%control%step, error)
       call begin_record(run, model, stage%of_increment, trial%record)
       if (allocated(error)) return
       trial%next = before

@@ -35,10 +35,7 @@ contains
       type(touch_search_type) :: touch
       real(dp) :: increment_size
 
-      if (run%control%step_is_over(model)) then
-         call run%enter_step(model, error)
-         if (allocated(error)) return
-      end if
+      if (run%control%step_is_over(model)) call run%enter_step(model)
       associate (control => run%control, step => model%steps(run%control%step))
          ! Attempts that failed do not count.
          if (control%increments_of_step >= step%max_increments .and. .not. &

@@ -34,7 +34,7 @@ contains
    end subroutine keep_restart
 
    !> Brings a run to where a table was kept.
-   !> Errors: as simulation_type's enter_step and reduce.
+   !> Errors: as simulation_type's reduce.
    subroutine go_on(model, simulation, table, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation     !! a fresh run, started and assembled
@@ -48,8 +48,7 @@ contains
          call simulation%reduce(model, error)
          if (allocated(error) .or. simulation%control%step == step(1)) exit
          call simulation%loads%move_to(end_of_step(model%steps, simulation%control%step), model)
-         call simulation%enter_step(model, error)
-         if (allocated(error)) exit
+         call simulation%enter_step(model)
       end do
       if (allocated(error)) return
       call exchange(simulation, table)

@@ -1,7 +1,7 @@
 !> How large the problems of a run are, and where its time goes.
 module run_sizes
    use connections, only: connections_type
-   use constraint_checks, only: check_equations, check_prescribed_ties
+   use constraint_checks, only: check_equations, check_prescribed
    use errors, only: error_type
    use heat_reduction, only: heat_reduction_type
    use kinds, only: dp, long
@@ -41,7 +41,7 @@ module run_sizes
 contains
 
    !> Numbers every step in turn, for the largest problems and for mistakes in its supports.
-   !> Error: as reduced_bodies' enter_step; mistakes in equations and ties.
+   !> Errors: as check_equations and check_prescribed.
    subroutine measure_steps(model, points, loads, state, sizes, error)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points   !! contact points of all interfaces
@@ -58,13 +58,10 @@ contains
       given = loads
       do step = 1, size(model%steps)
          call given%begin_step(model%steps(step), state%displacement, state%temperature)
-         call trial%enter_step(model, step, given, error)
-         if (.not. allocated(error)) then
-            call given%move_to(end_of_step(model%steps, step), model)
-            call check_equations(model, trial, given, step, error)
-            if (.not. allocated(error)) call check_prescribed_ties(model, trial, given, step, &
-               error)
-         end if
+         call trial%enter_step(model, step, given)
+         call given%move_to(end_of_step(model%steps, step), model)
+         call check_equations(model, trial, given, step, error)
+         if (.not. allocated(error)) call check_prescribed(model, trial, given, step, error)
          if (allocated(error)) then
             if (size(model%steps) > 1) error%message = 'step '//to_text(step)//': '//error%message
             return

@@ -62,7 +62,7 @@ module simulation
 contains
 
    !> Prepares a run, sees whether its steps can all be numbered, and enters the first.
-   !> Errors: as reduced_bodies' prepare and enter_step.
+   !> Errors: as reduced_bodies' prepare and measure_steps.
    subroutine start(self, model, error)
       class(simulation_type), intent(inout) :: self       !! a fresh run
       type(model_type), intent(in) :: model
@@ -79,21 +79,19 @@ contains
       self%state = make_initial_state(model, self%bodies)
       self%seconds%assemble = (wall_seconds() - since)
       call measure_steps(model, self%bodies%points, self%loads, self%state, self%sizes, error)
-      if (.not. allocated(error)) call enter_step(self, model, error)
+      if (.not. allocated(error)) call enter_step(self, model)
    end subroutine start
 
    !> Enters the next step.
-   !> Errors: as reduced_bodies' enter_step.
-   subroutine enter_step(self, model, error)
+   subroutine enter_step(self, model)
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
-      type(error_type), allocatable, intent(out) :: error
 
       call self%control%enter_step(model)
       call self%branch%begin_step(self%control%step, self%control%start_of_step(model))
       call self%loads%begin_step(model%steps(self%control%step), self%state%displacement, &
          self%state%temperature)
-      call self%bodies%enter_step(model, self%control%step, self%loads, error)
+      call self%bodies%enter_step(model, self%control%step, self%loads)
    end subroutine enter_step
 
    !> Assembles the bodies, where that is not done.
