@@ -128,18 +128,32 @@ def apart_words(result, factor):
 
 def touches_after_a_gap(result):
     """Whether points close that are apart in the mesh: magnified, they are drawn beyond each
-    other. Of faces whose nodes do not match this is taken for granted."""
+    other."""
     cells = result.cells
     point = dict(zip(cells.node_id.tolist(), cells.points))
     for contact in result.contacts() if result.contact_names else ():
         closed = (contact["status"] != OPEN).any(axis=0)
-        if contact.pairing != "NODES" and closed.any():
-            return True
-        sides = [[point[n] for n in contact[key][closed].tolist()]
-                 for key in ("slave_node", "master_node")]
-        if sides[0] and np.ptp(sides, axis=0).max() > 1e-6 * np.ptp(cells.points, axis=0).max():
+        slave, master = (contact[key][closed].tolist() for key in ("slave_node", "master_node"))
+        if contact.pairing == "NODES":
+            apart = [np.abs(point[n] - point[m]).max() for n, m in zip(slave, master)]
+        else:
+            outline = cells.boundary()
+            apart = [from_outline(cells, outline, n) for n in slave]
+        if apart and max(apart) > 1e-6 * np.ptp(cells.points, axis=0).max():
             return True
     return False
+
+
+def from_outline(cells, outline, number):
+    """Return the distance of a node from the edges that bodies end at, but its own."""
+    (node,) = np.flatnonzero(cells.node_id == number)
+    edges = outline[(outline != node).all(axis=1)]
+    halves = np.where(edges[:, 2:] >= 0, edges[:, [0, 2, 2, 1]], edges[:, [0, 1, 0, 1]])
+    first, last = cells.points[halves.reshape(-1, 2)].swapaxes(0, 1)
+    place = cells.points[node]
+    along = np.clip(((place - first) * (last - first)).sum(axis=1)
+                    / ((last - first) ** 2).sum(axis=1), 0.0, 1.0)
+    return np.linalg.norm(first + along[:, None] * (last - first) - place, axis=1).min()
 
 
 def name_of(result, row, options):

@@ -5,7 +5,6 @@ module equilibrium_reduction
    use field_constraints, only: cycle_compliance, in_cycle, stiffness_alone
    use contact_system, only: contact_system_type
    use dense, only: column_space
-   use element_kinds, only: axisymmetric, quad8_reduced
    use errors, only: error_type, status_deck
    use field_problem, only: field_problem_type, field_reduction_type
    use kinds, only: dp
@@ -53,6 +52,7 @@ contains
       call self%factor(mechanical, sparse_matrix_type(), model%solver, node_rank, error)
       if (allocated(error)) then
          words = weakness_of_bodies(model)
+         if (len(words) == 0) words = lost_place(model, self%lost_node)
          if (error%status == status_deck .and. len(words) > 0) error%message = &
             error%message//'; '//words
          return
@@ -126,11 +126,24 @@ contains
       end associate
    end subroutine set_cycles
 
-   !> The first body whose elements or material explain a singular matrix, and what to do; empty
-   !> where none does.
+   !> Where a matrix is singular, in words; empty where that is not known.
+   pure function lost_place(model, node) result(words)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: node          !! index, or 0
+      character(:), allocatable :: words
+
+      words = ''
+      if (node == 0) return
+      words = 'nothing resists it at node '//to_text(model%mesh%node_number(node))
+      if (model%mesh%node_body(node) > 0) words = words//' of '//body_name(model, &
+         model%mesh%node_body(node))
+   end function lost_place
+
+   !> The first body whose material explains a singular matrix, and what to do; empty where none
+   !> does.
    pure function weakness_of_bodies(model) result(words)
       type(model_type), intent(in) :: model
-      character(:), allocatable :: words   !! such as 'body 1 (...) is ...: take CPE8'
+      character(:), allocatable :: words   !! such as 'body 1 (...) is ...: check'
       real(dp) :: stiffness(model%mesh%body_count)
       integer :: body, e
 
@@ -150,15 +163,6 @@ contains
                   ': check the values and units of *ELASTIC'
                return
             end if
-            if (count(mesh%element_body == body) > 1) cycle
-            e = findloc(mesh%element_body, body, dim=1)
-            if (mesh%element_kind(e) /= quad8_reduced) cycle
-            if (mesh%element_plane(e) == axisymmetric) cycle
-            words = body_name(model, body)//' has a single element, '// &
-               to_text(mesh%element_number(e))//', with reduced integration, which can deform '// &
-               'without stress (hourglass mode): take CPE8 in place of CPE8R, or CPS8 in place '// &
-               'of CPS8R, or a finer mesh'
-            return
          end do
       end associate
    end function weakness_of_bodies

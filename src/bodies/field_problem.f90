@@ -56,6 +56,7 @@ module field_problem
       integer, allocatable :: rank(:)
       class(linear_solver_type), allocatable :: solver        !! pattern and factors
       integer :: factored = 0                                 !! how often
+      integer :: lost_node = 0   !! where a singular matrix shows, if that is known
       logical, private :: is_factored = .false.
    contains
       procedure :: renumber
@@ -168,7 +169,11 @@ contains
          status_deck, error)
       self%factored = self%factored + 1
       self%is_factored = .not. allocated(error)
-      if (allocated(error)) call self%release()
+      if (.not. allocated(error)) return
+      associate (node => problem%map%leading_nodes(), lost => self%solver%lost_unknown)
+         if (lost > 0 .and. lost <= size(node)) self%lost_node = node(lost)
+      end associate
+      call self%release()
    end subroutine factor
 
    !> Gives the matrix new values.

@@ -48,10 +48,10 @@ contains
          else
             words = words//trim(merge(' and', ',   ', is_last))//' '
          end if
-         words = words//trim(merge('turn', 'move', motions(i)%turns))//' '//motions(i)%way
+         words = words//motions(i)%verb()//' '//motions(i)%way
          if (is_last) then
             call append(messages, words//motions(i)%company// &
-               ': no *BOUNDARY and no contact holds it; hold it by *BOUNDARY')
+               ': no *BOUNDARY and no contact holds it; '//remedy(motions(i)))
          else if (motions(i)%company /= motions(i + 1)%company) then
             words = words//motions(i)%company
          end if
@@ -69,25 +69,26 @@ contains
       character(:), allocatable :: words
       type(free_motion_type), allocatable :: motions(:), welded(:)
       integer, allocatable :: stuck(:)
-      integer :: i, last
+      character(:), allocatable :: last
+      integer :: i
 
       call free_motions(model, points, held, contact_state, motions)
       stuck = merge(contact_stick, contact_state, contact_state == contact_slip .and. &
          has_friction)
       call free_motions(model, points, held, stuck, welded)
       words = ''
-      last = 0
+      last = ''
       do i = 1, size(motions)
-         if (motions(i)%body == last .and. last > 0) then
+         if (mover(model, motions(i)) == last) then
             words = words//', '
          else
             words = words//'; '//mover(model, motions(i))//' is free to '
          end if
-         last = motions(i)%body
-         if (motions(i)%turns) then
-            words = words//'turn'
+         last = mover(model, motions(i))
+         if (motions(i)%verb() == 'move' .and. size(welded) == 0) then
+            words = words//'slide'
          else
-            words = words//trim(merge('move ', 'slide', size(welded) > 0))
+            words = words//motions(i)%verb()
          end if
          words = words//' '//motions(i)%way//motions(i)%company
       end do
@@ -331,6 +332,17 @@ contains
          (model%couplings%reference == node .or. model%couplings%rotation == node), .true., dim=1)
    end function rigid_body_of
 
+   !> What to do about a motion that nothing holds.
+   pure function remedy(motion) result(words)
+      type(free_motion_type), intent(in) :: motion
+      character(:), allocatable :: words
+
+      words = 'hold it by *BOUNDARY'
+      if (motion%element > 0) words = words//', or let its parts share sides: they meet at nodes alone'
+      if (motion%deforms) words = 'its one element with reduced integration has an hourglass '// &
+         'mode: take CPE8 in place of CPE8R, or CPS8 in place of CPS8R, or a finer mesh'
+   end function remedy
+
    !> The moving part, in words.
    function mover(model, motion) result(name)
       type(model_type), intent(in) :: model
@@ -340,6 +352,8 @@ contains
 
       if (motion%body > 0) then
          name = body_name(model, motion%body)
+         if (motion%element > 0) name = 'the part of '//name//' with element '// &
+            to_text(motion%element)
       else
          name = 'node '//to_text(model%mesh%node_number(motion%node))//' of an equation'
          i = rigid_body_of(model, motion%node)

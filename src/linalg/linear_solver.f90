@@ -23,6 +23,7 @@ module linear_solver
       !> Smallest pivot of the leading block over its diagonal entry, at most 1; MUMPS: over the
       !> largest entry of its row, nearly.
       real(dp) :: smallest_pivot = 1.0_dp
+      integer :: lost_unknown = 0        !! leading unknown without a pivot, where one is known
       real(dp), allocatable :: schur(:, :) !! (tail, tail) Schur complement, both triangles
    contains
       procedure(analyse_interface), deferred :: analyse

@@ -180,6 +180,7 @@ contains
       call check(self, 'factorisation', error)
       if (allocated(error)) return
       if (self%mumps%infog(12) > 0 .or. self%mumps%infog(28) > 0) then
+         if (self%mumps%infog(28) > 0) self%lost_unknown = self%mumps%pivnul_list(1)
          call set_error(error, status_deck, unheld)
          return
       end if

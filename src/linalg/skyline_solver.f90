@@ -72,6 +72,7 @@ contains
       call set_values(self, lower)
       call self%columns%factor(1, lost, self%smallest_pivot, bad_column)
       if (bad_column > 0) then
+         self%lost_unknown = findloc(self%position, bad_column, dim=1)
          call set_error(error, status_deck, 'singular matrix: a body is not held by its '// &
             'supports and contacts, or far too weakly')
          return

@@ -45,6 +45,9 @@ module mesh
       integer, allocatable :: element_body(:)         !! (elements) 1..body_count: share nodes
       integer, allocatable :: node_body(:)            !! (nodes) body, 0 where no element uses it
       integer :: body_count = 0                       !! number of bodies
+      !> (elements) parts of the bodies whose elements share sides, which others hinge on at nodes.
+      !> Not allocated: every body is one part
+      integer, allocatable :: element_part(:)
       !> (5, sides) sides of an element beside which two elements of half its size lie: corner,
       !> middle node, corner, and the midside nodes of the small elements between them, or 0, 0;
       !> the latter hang, or the middle node if there are none. Not allocated: none

@@ -1,6 +1,7 @@
 !> Bodies: elements that share nodes hang together.
 module mesh_bodies
    use element_kinds, only: axisymmetric, element_node_count
+   use element_sides, only: element_sides_type, find_sides
    use mesh, only: mesh_type
    use model, only: model_type
    use text, only: to_text
@@ -10,8 +11,8 @@ module mesh_bodies
 
 contains
 
-   !> Fills element_body, node_body and body_count of a mesh; bodies are numbered by their first
-   !> element.
+   !> Fills element_body, node_body, body_count and element_part of a mesh; bodies are numbered by
+   !> their first element.
    pure subroutine find_bodies(mesh)
       type(mesh_type), intent(inout) :: mesh   !! the mesh; nodes without elements get body 0
       integer :: parent(size(mesh%node_number)), body(size(mesh%node_number))
@@ -41,7 +42,31 @@ contains
          call find_root(parent, q, root)
          mesh%node_body(q) = body(root)
       end do
+      call find_parts(mesh)
    end subroutine find_bodies
+
+   !> Numbers the parts of the bodies by their first element.
+   pure subroutine find_parts(mesh)
+      type(mesh_type), intent(inout) :: mesh
+      integer, dimension(size(mesh%element_nodes, 2)) :: parent, part
+      type(element_sides_type) :: sides
+      integer :: e, parts, root, s
+
+      if (allocated(mesh%element_part)) deallocate (mesh%element_part)
+      parent = separate_groups(size(parent))
+      sides = find_sides(mesh)
+      do s = 1, sides%count
+         if (sides%elements(2, s) > 0) call join(parent, sides%elements(1, s), sides%elements(2, s))
+      end do
+      parts = 0
+      do e = 1, size(parent)
+         call find_root(parent, e, root)
+         if (root == e) parts = parts + 1
+         if (root == e) part(e) = parts
+         part(e) = part(root)
+      end do
+      if (parts > mesh%body_count) mesh%element_part = part
+   end subroutine find_parts
 
    !> Which bodies turn about the axis: they can only move along it.
    pure function bodies_on_axis(mesh) result(on_axis)

@@ -6,10 +6,10 @@
 module transforms
    use equations, only: equation_type
    use kinds, only: dp
-   use mesh, only: mesh_type
+   use mesh, only: mesh_type, set_type
    implicit none
    private
-   public :: transform_type, partner_type, axes_at, along_axes, on_nodes
+   public :: transform_type, partner_type, axes_at, axis_in_plane, along_axes, on_nodes
 
    !> One *TRANSFORM.
    type :: transform_type
@@ -17,8 +17,9 @@ module transforms
       integer :: card = 0                      !! card image
       integer :: set = 0                       !! index of the node set
       logical :: cylindrical = .false.         !! TYPE=C: along the radius and round the axis
-      real(dp) :: point(2) = 0.0_dp            !! on the axis, or on the first of the local axes
-      real(dp) :: sense = 1.0_dp               !! -1 where the third local axis is against z
+      real(dp) :: point(2) = 0.0_dp            !! on the axis, or on the first axis in the plane
+      real(dp) :: sense = 1.0_dp               !! -1 where the second one is clockwise of the first
+      integer :: out_of_plane = 3              !! local axis along z
    end type transform_type
 
    !> A node with axes of its own, and its partner.
@@ -30,7 +31,7 @@ module transforms
 
 contains
 
-   !> The axes at a place, a unit vector each; zero on the axis of a cylindrical transform.
+   !> The axes in the plane at a place, a unit vector each; zero on the axis of a cylindrical transform.
    pure function axes_at(transform, x) result(axes)
       type(transform_type), intent(in) :: transform
       real(dp), intent(in) :: x(2)             !! [length]
@@ -45,6 +46,34 @@ contains
       axes(:, 1) = first
       axes(:, 2) = transform%sense*[-first(2), first(1)]
    end function axes_at
+
+   !> Which of the two axes in the plane a degree of freedom of some nodes is along, 3 where it is
+   !> along z, and 0 where the nodes differ; other degrees of freedom themselves.
+   pure integer function axis_in_plane(transforms, node_sets, nodes, dof) result(axis)
+      type(transform_type), intent(in) :: transforms(:)
+      type(set_type), intent(in) :: node_sets(:)
+      integer, intent(in) :: nodes(:)
+      integer, intent(in) :: dof
+      integer :: i, k, out_of_plane(size(nodes))
+
+      axis = dof
+      if (dof > 3 .or. all(transforms%out_of_plane == 3)) return
+      out_of_plane = 3
+      do i = 1, size(transforms)
+         if (transforms(i)%set == 0) cycle
+         do k = 1, size(nodes)
+            if (any(node_sets(transforms(i)%set)%members == nodes(k))) &
+               out_of_plane(k) = transforms(i)%out_of_plane
+         end do
+      end do
+      if (minval(out_of_plane) /= maxval(out_of_plane)) then
+         axis = 0
+      else if (dof == maxval(out_of_plane)) then
+         axis = 3
+      else if (dof > maxval(out_of_plane)) then
+         axis = dof - 1
+      end if
+   end function axis_in_plane
 
    !> An equation whose terms at nodes with axes of their own are along these, as one along x and y.
    pure function along_axes(equation, mesh, transforms, of_node) result(plain)

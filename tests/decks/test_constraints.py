@@ -174,6 +174,29 @@ def test_supports_and_forces_along_axes_of_nodes_as_in_calculix(tmp_path):
         note_changes(decks[0], other)
 
 
+@pytest.mark.parametrize("points, place", [
+    # Axis 2, or axis 1, is along z: degrees of freedom of the others, and the sign of the second.
+    ("{c}, {s}, 0., {c}, {s}, 2.", {1: (1, 1), 2: (3, -1)}),
+    ("{c}, {s}, 0., 0., 0., -1.", {1: (1, 1), 2: (3, 1)}),
+    ("0., 0., 1., {c}, {s}, 5.", {1: (2, 1), 2: (3, 1)}),
+    ("0., 0., -2., {c}, {s}, 0.", {1: (2, 1), 2: (3, -1)})])
+def test_one_of_the_axes_of_nodes_may_be_out_of_the_plane(tmp_path, points, place):
+    """Supports, forces, equations and springs are those along the axes that are in the plane."""
+    def deck(axes, place):
+        (one, _), (two, sign) = place[1], place[2]
+        out = 6 - one - two
+        return [*body(), *RECTANGULAR[:1], axes, "*ELEMENT, TYPE=SPRING1, ELSET=SPRING", "99, 12",
+                "*SPRING, ELSET=SPRING", f"{two}", "50.", "*EQUATION", "2", f"9, {two}, {sign}., 6, 2, -1.",
+                *STATIC, *LEFT_HELD, f"10, {one}, {one}, 0.01", f"10, {out}", "*CLOAD", f"9, {one}, 3.",
+                f"12, {two}, {2 * sign}.", "*NODE PRINT, NSET=BODY, GLOBAL=YES", "U", "*END STEP"]
+    axes = {"c": repr(float(np.cos(SLANT))), "s": repr(float(np.sin(SLANT)))}
+    plain = deck(RECTANGULAR[1], {1: (1, 1), 2: (2, 1)})
+    plain.remove("10, 3")
+    expected = thercon(write(tmp_path / "plain.inp", lines(plain)))
+    found = thercon(write(tmp_path / "deck.inp", lines(deck(points.format(**axes), place))))
+    assert_within(differences(expected, found), DIGITS)
+
+
 def test_equations_along_axes_of_nodes_as_in_calculix(tmp_path):
     theirs, ours = both(tmp_path, body(), RECTANGULAR, EQUATIONS, pull())
     assert_within(differences(theirs, ours), DIGITS)

@@ -78,11 +78,11 @@ contains
       call build_interactions(cards, context, model, report)
       call build_contacts(cards, context, model, report)
       call build_ties(cards, context, model, report)
+      call build_transforms(cards, context, model, report)
       call build_bars(cards, context, model, report)
       call build_equations(cards, context, model, report)
       call build_couplings(cards, context, model, report)
       call build_pre_tensions(cards, context, model, report)
-      call build_transforms(cards, context, model, report)
       call build_steps(cards, context, model, report)
       why = reason_of_deck(model)
       if (why /= no_reason .and. model%estimates_errors) then

@@ -15,6 +15,7 @@ module deck_builder_bars
    use model, only: model_type
    use steps, only: dof_temperature
    use text, only: to_text
+   use transforms, only: axis_in_plane
    implicit none
    private
    public :: build_bars
@@ -73,6 +74,10 @@ contains
          associate (data => cards%data(card%first_data))
             do k = 1, maxval(context%line_kind(members)) - ground_spring + 1
                call need_field(data, k, 'degree of freedom', report, dof(k), valid)
+               associate (ends => context%line_nodes(k, members))
+                  if (valid) dof(k) = axis_in_plane(model%transforms, model%mesh%node_sets, &
+                     pack(ends, ends > 0), dof(k))
+               end associate
                if (valid .and. (dof(k) < 1 .or. dof(k) > 2)) then
                   call report%error(field_place(data, k), 'springs act along 1 or 2')
                   valid = .false.

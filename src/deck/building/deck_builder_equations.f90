@@ -17,7 +17,7 @@ module deck_builder_equations
    use sorting, only: sort_order
    use steps, only: dof_temperature
    use text, only: read_integer, to_text
-   use transforms, only: transform_type
+   use transforms, only: axis_in_plane, transform_type
    implicit none
    private
    public :: build_equations, build_couplings, build_transforms, find_reference
@@ -118,16 +118,19 @@ contains
       type(term_type), allocatable, intent(inout) :: terms(:)
       logical, intent(inout) :: valid
       type(term_type) :: term
+      integer :: dof
 
       term%place = field_place(card, position)
       call read_target(card, position, context%node_index, model%mesh%node_sets, report, &
          term%target_type, valid)
-      call need_field(card, position + 1, 'degree of freedom', report, term%dof, valid)
+      call need_field(card, position + 1, 'degree of freedom', report, dof, valid)
       call need_field(card, position + 2, 'coefficient', report, term%coefficient, valid)
       if (.not. valid) return
+      term%dof = axis_in_plane(model%transforms, model%mesh%node_sets, &
+         term%members(model%mesh%node_sets), dof)
       if (all(term%dof /= [1, 2, dof_temperature])) then
          call report%error(field_place(card, position + 1), 'degree of freedom '// &
-            to_text(term%dof)//'; an equation relates 1 and 2, or 11')
+            to_text(dof)//'; an equation relates 1 and 2, or 11')
          valid = .false.
       end if
       terms = [terms, term]
@@ -398,7 +401,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(transform_type), intent(inout) :: transform
       character(*), parameter :: names = 'xyz'
-      real(dp) :: x(3, 2), across
+      real(dp) :: x(3, 2)
       integer :: i, j
       logical :: valid
 
@@ -421,14 +424,38 @@ contains
             report%error(field_place(data, 1), 'TYPE=C of a plane is round an axis along z, '// &
             'such as 0., 0., 0., 0., 0., 1.')
       else
-         across = x(1, 1)*x(2, 2) - x(2, 1)*x(1, 2)
-         transform%sense = sign(1.0_dp, across)
-         if (maxval(abs(x(3, :))) > negligible*maxval(abs(x)) .or. &
-            abs(across) <= negligible*norm2(x(:, 1))*norm2(x(:, 2))) call report%error( &
-            field_place(data, 1), 'TYPE=R of a plane has two points of z = 0 that are '// &
-            'not in line with the origin, such as 1., 1., 0., -1., 1., 0.')
+         call set_axes(x, transform, valid)
+         if (.not. valid) call report%error(field_place(data, 1), 'TYPE=R of a plane has two '// &
+            'points, not in line with the origin, that put one of the three axes along z, such '// &
+            'as 1., 1., 0., -1., 1., 0.')
       end if
    end subroutine read_points
+
+   !> The axes in the plane of two points, TYPE=R. One of the three axes must be along z.
+   pure subroutine set_axes(x, transform, valid)
+      real(dp), intent(in) :: x(3, 2)
+      type(transform_type), intent(inout) :: transform
+      logical, intent(out) :: valid
+      real(dp) :: axes(3, 3)
+
+      valid = all(norm2(x, dim=1) > 0.0_dp)
+      if (.not. valid) return
+      axes(:, 1) = x(:, 1)/norm2(x(:, 1))
+      axes(:, 2) = x(:, 2)/norm2(x(:, 2))
+      axes(:, 2) = axes(:, 2) - dot_product(axes(:, 1), axes(:, 2))*axes(:, 1)
+      valid = norm2(axes(:, 2)) > negligible
+      if (.not. valid) return
+      axes(:, 2) = axes(:, 2)/norm2(axes(:, 2))
+      axes(:, 3) = cshift(axes(:, 1), 1)*cshift(axes(:, 2), 2) - &
+         cshift(axes(:, 1), 2)*cshift(axes(:, 2), 1)
+      transform%out_of_plane = maxloc(abs(axes(3, :)), dim=1)
+      valid = norm2(axes(:2, transform%out_of_plane)) <= negligible
+      associate (first => axes(:2, merge(2, 1, transform%out_of_plane == 1)), &
+         second => axes(:2, merge(2, 3, transform%out_of_plane == 3)))
+         transform%point = first
+         transform%sense = sign(1.0_dp, first(1)*second(2) - first(2)*second(1))
+      end associate
+   end subroutine set_axes
 
    !> A node has one transform, and is not on the axis of it.
    subroutine check_nodes(card, n, model, report)

@@ -14,6 +14,7 @@ module deck_builder_loads
       load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
       load_pressure, load_temperature, load_traction, step_type
    use text, only: read_real, to_text, to_upper
+   use transforms, only: axis_in_plane
    implicit none
    private
    public :: build_load_card
@@ -200,10 +201,11 @@ contains
       end if
       if (.not. valid) return
       request%component = dof
+      if (keyword == 'CLOAD') request%component = place_in_plane(request, model, dof)
       if (keyword == 'CLOAD' .and. (dof == dof_rotation .or. (dof == dof_turn .and. &
          names_rotation(request, model)))) then
          call add_moment(data, request, model, context, report)
-      else if (keyword == 'CLOAD' .and. all(dof /= [1, 2])) then
+      else if (keyword == 'CLOAD' .and. all(request%component /= [1, 2])) then
          call report%error(field_place(data, 2), 'a force acts on degree of freedom 1 or 2')
       else if (keyword == 'CFLUX' .and. dof /= dof_temperature) then
          call report%error(field_place(data, 2), 'heat acts on degree of freedom 11')
@@ -257,6 +259,13 @@ contains
       request%value = 0.0_dp
       call read_target(data, 1, context%node_index, model%mesh%node_sets, report, &
          request%target_type, valid)
+      if (valid) then
+         if (place_in_plane(request, model, 1) == 0) then
+            call report%error(field_place(data, 1), 'the axes that *TRANSFORM gives these nodes '// &
+               'differ in which of them is out of the plane; name the nodes of each on a card')
+            return
+         end if
+      end if
       held = held_degrees(to_upper(field_text(data, 2)))
       if (size(held) > 0) then
          call check_extra(data, 2, 'node or set, '//to_upper(field_text(data, 2)), report)
@@ -277,9 +286,9 @@ contains
             end if
             cycle
          end if
-         select case (dof)
+         request%component = place_in_plane(request, model, dof)
+         select case (request%component)
          case (1, 2, dof_temperature)
-            request%component = dof
             call context%boundaries%add(request)
          case (3:6)
             if (dof == dof_rotation .and. turns(request, model)) then
@@ -293,7 +302,7 @@ contains
                return
             end if
             call context%note(out_of_plane)
-            if (first == 3 .and. dof == last) call report%warning(field_place(data, 2), &
+            if (first == 3 .and. dof == last .and. request%component == dof) call report%warning(field_place(data, 2), &
                'degree of freedom 3 does not exist in a plane model: this support is ignored')
          case default
             call report%error(field_place(data, merge(2, 3, dof == first)), &
@@ -395,14 +404,24 @@ contains
       do i = 1, size(degrees)
          if (degrees(i) == dof_rotation .and. turns(request, model)) then
             call add_rotations(request, model, context)
-         else if (degrees(i) > 2) then
+         else if (place_in_plane(request, model, degrees(i)) > 2) then
             call context%note(out_of_plane)
          else
-            request%component = degrees(i)
+            request%component = place_in_plane(request, model, degrees(i))
             call context%boundaries%add(request)
          end if
       end do
    end subroutine hold
+
+   !> The component of a request for a degree of freedom, as axis_in_plane.
+   pure integer function place_in_plane(request, model, dof)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: dof
+
+      place_in_plane = axis_in_plane(model%transforms, model%mesh%node_sets, &
+         request%members(model%mesh%node_sets), dof)
+   end function place_in_plane
 
    !> Whether the reference node of a coupling is among the nodes of a request.
    pure logical function turns(request, model)

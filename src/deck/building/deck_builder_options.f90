@@ -15,6 +15,7 @@ module deck_builder_options
    use refined_regions, only: refined_region_type
    use steps, only: dof_temperature
    use text, only: read_integer, to_text, to_upper
+   use transforms, only: axis_in_plane
    implicit none
    private
    public :: build_options, build_load_axis, build_regions
@@ -184,6 +185,9 @@ contains
       if (comma == 0) comma = len(context%load_set) + 1
       name = context%load_set(:comma - 1)
       call read_integer(context%load_set(min(comma + 1, len(context%load_set) + 1):), dof, valid)
+      set = context%node_index%sets%find(name)
+      if (valid .and. set > 0) dof = axis_in_plane(model%transforms, model%mesh%node_sets, &
+         model%mesh%node_sets(set)%members, dof)
       if (.not. valid .or. .not. any(dof == [1, 2, dof_temperature])) then
          call report%error(context%load_place, &
             'LOAD= has a node set and a degree of freedom 1, 2 or 11')
