@@ -1,5 +1,5 @@
-!> Whether the equations of the deck say something new; whether what supports prescribe on both sides
-!> of a tie agrees with it, and leaves contact points open whose motion it determines.
+!> Whether the equations of the deck say something new; whether what supports prescribe on both
+!> sides of a tie agrees with it, and leaves contact points open whose motion it determines.
 module constraint_checks
    use connections, only: connections_type
    use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_support, of_tie, &

@@ -2,8 +2,9 @@
 !>
 !> At a contact point the slave's values are the master's plus its relative values in its own frame:
 !> along normal and tangent; one jump of temperature. Where supports hold both nodes along an axis
-!> there is only the row of the normal; where they prescribe its motion, it has links alone. Contact points that form cycles, as where a block is in
-!> an inner corner, end with one whose rows follow from those of the others: they become links.
+!> there is only the row of the normal. Contact points that form cycles, as where a block is in an
+!> inner corner, end with one whose rows follow from those of the others: they become links. So do
+!> the rows of a contact point whose motion is prescribed.
 !>
 !> Contact points of a cycle that all stick share their friction in a way that statics leaves open,
 !> and their relations depend on each other. They therefore have a small part of the bodies'

@@ -1,8 +1,9 @@
 !> Motions without strain of the bodies that supports and contacts leave free.
 !>
-!> A body, or each of the parts that it hinges together from, is rigid. That of a plane model shifts along x and y and turns about the middle of its nodes; one of an
-!> axisymmetric model shifts along the axis y. Every support and every direction in which a contact
-!> point holds is one linear condition on these few unknowns; the motions that are free span the
+!> A body, or each of the parts that it hinges together from, is rigid. In a plane model it shifts
+!> along x and y and turns about the middle of its nodes; in an axisymmetric one it shifts along the
+!> axis y. Every support and every direction in which a contact point holds is one linear condition
+!> on these few unknowns, and so is each component at a hinge; the motions that are free span the
 !> null space of all conditions. Nodes of no body that joints take move by themselves. That space
 !> comes from a singular value decomposition and is brought to echelon form, so that a motion names
 !> as few bodies as possible. Turns count by the displacement that they give at the farthest node of
@@ -410,7 +411,8 @@ contains
                   other%way = 'without stress'
                   other%turns = .false.
                else
-                  call describe(vector, bodies%middle(:, p), bodies%extent(p), other%turns, other%way)
+                  call describe(vector, bodies%middle(:, p), bodies%extent(p), other%turns, &
+                     other%way)
                end if
             end associate
             if (motion%body == 0) then

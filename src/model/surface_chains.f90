@@ -69,7 +69,8 @@ contains
       if (i <= count_sides) then
          call set_error(error, status_deck, 'surface '//surface%name// &
             ' is not one line of faces, each beginning where another one ends'// &
-            first_break(mesh, sides)//'; name the pieces as surfaces of their own', surface%card)
+            first_break(mesh, surface, sides)//', each on a data card of *CONTACT PAIR or *TIE', &
+            surface%card)
          return
       end if
       chain%closed = side == first
@@ -145,14 +146,15 @@ contains
       end associate
    end subroutine find_first
 
-   !> Tells where a line breaks: at a node at which more than two sides meet, or between two nodes;
-   !> empty where closed faces lie beside a line.
-   function first_break(mesh, sides) result(words)
+   !> Tells where a line breaks: at a node at which more than two sides meet, or between two nodes,
+   !> and then the face that each piece begins with.
+   function first_break(mesh, surface, sides) result(words)
       type(mesh_type), intent(in) :: mesh
+      type(surface_type), intent(in) :: surface
       integer, intent(in) :: sides(:, :)            ! (nodes, sides)
       character(:), allocatable :: words
-      integer, allocatable :: entered(:), left(:)
-      integer :: begin, finish, i, n
+      integer, allocatable :: begins(:), entered(:), left(:)
+      integer :: finish, i, n
 
       n = size(sides, 1)
       allocate (entered(size(mesh%node_number)), left(size(mesh%node_number)), source=0)
@@ -163,11 +165,21 @@ contains
       words = ''
       i = findloc(entered > 1 .or. left > 1, .true., dim=1)
       if (i > 0) words = ': too many of them meet at node '//to_text(mesh%node_number(i))
-      if (i > 0 .or. count(entered(sides(1, :)) == 0) < 2) return
-      begin = findloc(entered(sides(1, :)) == 0, .true., dim=1, back=.true.)
+      begins = pack([(i, i=1, size(sides, 2))], entered(sides(1, :)) == 0)
+      if (len(words) > 0 .or. size(begins) < 2) then
+         words = words//'; name the pieces as surfaces of their own'
+         return
+      end if
       finish = findloc(left(sides(n, :)) == 0, .true., dim=1)
       words = ': it ends at node '//to_text(mesh%node_number(sides(n, finish)))// &
-         ' and begins again at node '//to_text(mesh%node_number(sides(1, begin)))
+         ' and begins again at node '//to_text(mesh%node_number(sides(1, begins(size(begins)))))// &
+         '; name its '//to_text(size(begins))//' pieces as surfaces of their own, which begin with'
+      do i = 1, size(begins)
+         associate (face => surface%faces(:, begins(i)))
+            words = words//trim(merge(' and', merge('    ', ',   ', i == 1), i == size(begins)))// &
+               ' S'//to_text(face(2))//' of '//to_text(mesh%element_number(face(1)))
+         end associate
+      end do
    end function first_break
 
    !> Whether a point comes before another one: by the smaller x, then by the smaller y.

@@ -135,3 +135,42 @@ def test_both_faces_are_found_for_pictures(tmp_path):
         ends = [np.sort(result.cells.points[edges[:, :2], 0].ravel()) for edges in (slave, master)]
     np.testing.assert_allclose(ends[0], [-0.5, 1.5, 1.5, 3.5])
     np.testing.assert_allclose(ends[1], [0.0, 1.0, 1.0, 2.0, 2.0, 3.0])
+
+
+def bridge(path, *pairs):
+    """Write a bridge on two feet, on a base."""
+    upper = [f"{10 + 4 * j + i + 1}, {float(i)}, {1.0 + j}" for j in range(3) for i in range(4)]
+    return path, "\n".join([
+        "*NODE, NSET=BASE", *(f"{4 * j + i + 1}, {float(i)}, {float(j)}" for j in (0, 1) for i in range(4)),
+        "*NODE, NSET=BRIDGE", *upper, "*ELEMENT, TYPE=CPE4, ELSET=BASE", "1, 1, 2, 6, 5", "2, 2, 3, 7, 6",
+        "3, 3, 4, 8, 7", "*ELEMENT, TYPE=CPE4, ELSET=BRIDGE", "4, 11, 12, 16, 15", "5, 13, 14, 18, 17",
+        "6, 15, 16, 20, 19", "7, 16, 17, 21, 20", "8, 17, 18, 22, 21", "*MATERIAL, NAME=M", "*ELASTIC",
+        "2.1E5, 0.3", "*SOLID SECTION, ELSET=BASE, MATERIAL=M", "*SOLID SECTION, ELSET=BRIDGE, MATERIAL=M",
+        "*SURFACE, NAME=FEET", "4, S1", "5, S1", "*SURFACE, NAME=LEFT", "4, S1", "*SURFACE, NAME=RIGHT",
+        "5, S1", "*SURFACE, NAME=TOP", "BASE, S3", "*SURFACE INTERACTION, NAME=I", *pairs, "*STEP",
+        "*STATIC", "*BOUNDARY", "1, 1, 2", "2, 2", "3, 2", "4, 2", "19, 1", "19, 2, 2, -0.001",
+        "20, 2, 2, -0.001", "21, 2, 2, -0.001", "22, 2, 2, -0.001", "*END STEP", ""])
+
+
+def test_each_data_card_of_a_contact_pair_is_a_pair(tmp_path):
+    """Alike on both feet, as from a card each; with a NAME= the slave surface is added to it."""
+    found = []
+    for name, pairs in (("one", ["*CONTACT PAIR, INTERACTION=I", "LEFT, TOP", "RIGHT, TOP"]),
+                        ("two", ["*CONTACT PAIR, INTERACTION=I", "LEFT, TOP",
+                                 "*CONTACT PAIR, INTERACTION=I", "RIGHT, TOP"]),
+                        ("named", ["*CONTACT PAIR, INTERACTION=I, NAME=F", "LEFT, TOP", "RIGHT, TOP"])):
+        deck, text = bridge(tmp_path / f"{name}.inp", *pairs)
+        deck.write_text(text)
+        with h5py.File(solve(deck)) as file:
+            assert list(file["contact"]) == (["F-LEFT", "F-RIGHT"] if name == "named" else ["LEFT", "RIGHT"])
+            found.append([pair["normal_force"][-1] for pair in file["contact"].values()])
+    assert found[0] == found[1] == found[2]
+    assert found[0][0] == pytest.approx(found[0][1], rel=0.2) and found[0][0] > 0.0
+
+
+def test_pieces_of_a_surface_are_told(tmp_path):
+    deck, text = bridge(tmp_path / "feet.inp", "*CONTACT PAIR, INTERACTION=I", "FEET, TOP")
+    deck.write_text(text)
+    process = run("check", "--quiet", deck)
+    assert process.returncode == 1
+    assert "name its 2 pieces as surfaces of their own, which begin with S1 of 4 and S1 of 5" in process.stderr

@@ -24,21 +24,29 @@ module deck_builder_contact
 
 contains
 
-   !> Builds all interfaces and their clearances.
+   !> Builds all interfaces, one for each data card, and their clearances.
    subroutine build_contacts(cards, context, model, report)
       type(cards_type), intent(in) :: cards
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(model_type), intent(inout) :: model             !! receives the interfaces
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
-      integer :: n
+      type(contact_definition_type) :: common
+      integer :: i, k, n
 
       places = cards_of(cards, 'CONTACT PAIR')
-      allocate(model%contacts(size(places)))
-      do n = 1, size(places)
-         call build_contact(cards, cards%keywords(places(n)), context, model, report, &
-            model%contacts(n))
-         call check_name(cards%keywords(places(n)), model%mesh, context, model%contacts(:n), report)
+      allocate (model%contacts(size(data_cards_of(cards, 'CONTACT PAIR'))))
+      n = 0
+      do k = 1, size(places)
+         associate (card => cards%keywords(places(k)))
+            call read_parameters(card, model, report, common)
+            do i = card%first_data, card%last_data
+               n = n + 1
+               model%contacts(n) = common
+               call read_faces(card, cards%data(i), context, model%mesh, report, model%contacts(n))
+               call check_name(card, model%mesh, context, model%contacts(:n), report)
+            end do
+         end associate
       end do
       places = cards_of(cards, 'CLEARANCE')
       do n = 1, size(places)
@@ -89,10 +97,9 @@ contains
          'surface')
    end subroutine find_contact
 
-   subroutine build_contact(cards, card, context, model, report, contact)
-      type(cards_type), intent(in) :: cards
+   !> Reads what all data cards of a card have in common.
+   subroutine read_parameters(card, model, report, contact)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
       type(model_type), intent(in) :: model
       type(deck_report_type), intent(inout) :: report
       type(contact_definition_type), intent(out) :: contact
@@ -117,9 +124,7 @@ contains
       end if
       contact%card = card%place%image
       contact%name = parameter_text(card, 'NAME')
-      if (card%last_data >= card%first_data) call read_faces(card, cards%data(card%first_data), &
-         context, model%mesh, report, contact)
-   end subroutine build_contact
+   end subroutine read_parameters
 
    !> Reads the two surfaces; the slave's name is that of a card without NAME=.
    subroutine read_faces(card, data, context, mesh, report, faces)
@@ -149,7 +154,8 @@ contains
    end subroutine read_faces
 
    !> A name stands for a group of the result file: it is used once, and is one that HDF5
-   !> allows for a group. The last pair has the name of its slave surface only if no other has it.
+   !> allows for a group. The last pair has the name of its slave surface only if no other has it;
+   !> it follows the name of a card with several pairs.
    subroutine check_name(card, mesh, context, contacts, report)
       type(keyword_card_type), intent(in) :: card
       type(mesh_type), intent(in) :: mesh
@@ -157,14 +163,18 @@ contains
       type(contact_definition_type), intent(inout) :: contacts(:)
       type(deck_report_type), intent(inout) :: report
       integer :: n
-      logical :: is_taken
+      logical :: is_taken, several
 
       n = size(contacts)
-      if (.not. has_parameter(card, 'NAME') .and. contacts(n)%master > 0) then
+      several = has_parameter(card, 'NAME') .and. card%last_data > card%first_data
+      if (several .and. contacts(n)%slave > 0) contacts(n)%name = contacts(n)%name//'-'// &
+         mesh%surfaces(contacts(n)%slave)%name
+      if ((several .or. .not. has_parameter(card, 'NAME')) .and. contacts(n)%master > 0) then
          is_taken = context%contacts%find(contacts(n)%name) > 0
          if (is_taken) contacts(n)%name = contacts(n)%name//'-'// &
             mesh%surfaces(contacts(n)%master)%name
-         call context%note('*CONTACT PAIR without NAME=: '//contacts(n)%name//', '//trim(merge( &
+         call context%note('*CONTACT PAIR '//trim(merge('of several pairs:', &
+            'without NAME=:   ', several))//' '//contacts(n)%name//', '//trim(merge( &
             'its surfaces     ', 'the slave surface', is_taken)))
       end if
       associate (place => parameter_place(card, 'NAME'), name => contacts(n)%name)

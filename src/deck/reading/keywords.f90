@@ -113,7 +113,7 @@ module keywords
       keyword_type('GAP RADIATION', built, in_model, 1, many, ''), &
       keyword_type('SURFACE BEHAVIOR', built, in_model, 0, many, &
          'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT'), &
-      keyword_type('CONTACT PAIR', built, in_model, 1, 1, &
+      keyword_type('CONTACT PAIR', built, in_model, 1, many, &
          'INTERACTION=/NAME=/PAIRING=/ADJUST=/~TYPE=/~SMALL SLIDING/~NO THICKNESS/~CPSET=/'// &
          '~GEOMETRIC CORRECTION=/~HCRIT=/~MECHANICAL CONSTRAINT=/~EXTENSION ZONE=/~SMOOTH=/'// &
          '~TRACKING=/~SUPPLEMENTARY CONSTRAINTS='), &
