@@ -338,8 +338,8 @@ contains
       character(:), allocatable :: words
 
       words = 'hold it by *BOUNDARY'
-      if (motion%element > 0) words = words//', or let the parts share sides: they meet at nodes '// &
-         'alone'
+      if (motion%element > 0) words = words//', or let the parts share sides: they meet '// &
+         'at nodes alone'
       if (motion%deforms) words = 'its one element with reduced integration has an hourglass '// &
          'mode: take CPE8 in place of CPE8R, or CPS8 in place of CPS8R, or a finer mesh'
    end function remedy

@@ -31,7 +31,8 @@ module transforms
 
 contains
 
-   !> The axes in the plane at a place, a unit vector each; zero on the axis of a cylindrical transform.
+   !> The axes in the plane at a place, a unit vector each; zero on the axis of a cylindrical
+   !> transform.
    pure function axes_at(transform, x) result(axes)
       type(transform_type), intent(in) :: transform
       real(dp), intent(in) :: x(2)             !! [length]
@@ -62,8 +63,8 @@ contains
       do i = 1, size(transforms)
          if (transforms(i)%set == 0) cycle
          do k = 1, size(nodes)
-            if (any(node_sets(transforms(i)%set)%members == nodes(k))) &
-               out_of_plane(k) = transforms(i)%out_of_plane
+            if (all(node_sets(transforms(i)%set)%members /= nodes(k))) cycle
+            out_of_plane(k) = transforms(i)%out_of_plane
          end do
       end do
       if (minval(out_of_plane) /= maxval(out_of_plane)) then

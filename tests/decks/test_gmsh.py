@@ -132,8 +132,7 @@ def test_a_line_that_is_no_face(tmp_path, meshes, name, fault):
 
 def test_a_curve_at_the_place_of_that_of_a_surface(tmp_path, meshes):
     """A drawing may have two curves in one place: the nodes of the second are those of no element."""
-    shutil.copy(meshes / "quads4.mesh", tmp_path / "quads4.mesh")
-    message = refusal(tmp_path, tmp_path / "quads4.mesh", "*NODE", "901, 0., 1.", "902, 1., 1.",
+    message = refusal(tmp_path, meshes / "quads4.mesh", "*NODE", "901, 0., 1.", "902, 1., 1.",
                       "*ELEMENT, TYPE=T3D2, ELSET=TWIN", "901, 901, 902", "*SURFACE, NAME=HIGH", "TWIN")
     assert "line 901 from node 901 to 902 belongs to no side of an element, nor do its nodes" in message
     assert "such as a second one at the place of one that is" in message

@@ -17,6 +17,7 @@ sys.path.insert(0, str(POST))
 
 from matplotlib.collections import PolyCollection, QuadMesh  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+import program  # noqa: E402
 from synthetic import (  # noqa: E402
     FRICTION,
     edge_of_contact,
@@ -1455,3 +1456,23 @@ def test_a_table_holds_no_formula_of_a_spreadsheet_and_plain_numbers(tmp_path):
     assert heading == ["'=label", "x"]
     assert [row[0] for row in rows] == [*("'" + text for text in texts[:-1]), "A=1"]
     assert [float(row[1]) for row in rows] == pytest.approx(np.linspace(-1.0, 0.5, 6))
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.01])
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+def test_faces_that_touch_in_the_mesh_do_not_seem_to_overlap(tmp_path, gap, pairing):
+    """Magnified, only faces that close a gap of the mesh are drawn beyond each other."""
+    deck = tmp_path / "touch.inp"
+    lower, upper = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1 + gap), (1, 1 + gap), (1, 2), (0, 2)]
+    deck.write_text("\n".join([
+        "*NODE", *(f"{n}, {x}, {y}" for n, (x, y) in enumerate([*lower, *upper], 1)),
+        "*ELEMENT, TYPE=CPE4, ELSET=E", "1, 1, 2, 3, 4", "2, 5, 6, 7, 8", "*MATERIAL, NAME=M",
+        "*ELASTIC", "1000., 0.", "*SOLID SECTION, ELSET=E, MATERIAL=M", "*SURFACE, NAME=UP", "2, S1",
+        "*SURFACE, NAME=LOW", "1, S3", "*SURFACE INTERACTION, NAME=I",
+        f"*CONTACT PAIR, INTERACTION=I, NAME=C, PAIRING={pairing}", "UP, LOW", "*STEP", "*STATIC",
+        "*BOUNDARY", "1, 1, 2", "2, 1, 2", "5, 1", "6, 1", "7, 1", "8, 1", "7, 2, 2, -0.02",
+        "8, 2, 2, -0.02", "*END STEP", ""]))
+    status, said = program.run(deck)
+    assert status == 0, said
+    with Result(deck.with_suffix(".vtkhdf")) as result:
+        assert ("seem to overlap" in fields.words_below(result, 0, 20.0)) == (gap > 0.0)

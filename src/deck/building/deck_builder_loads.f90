@@ -261,8 +261,8 @@ contains
          request%target_type, valid)
       if (valid) then
          if (place_in_plane(request, model, 1) == 0) then
-            call report%error(field_place(data, 1), 'the axes that *TRANSFORM gives these nodes '// &
-               'differ in which of them is out of the plane; name the nodes of each on a card')
+            call report%error(field_place(data, 1), 'these nodes have axes by *TRANSFORM that '// &
+               'differ in which one is out of the plane; name the nodes of each on a card')
             return
          end if
       end if
@@ -302,7 +302,7 @@ contains
                return
             end if
             call context%note(out_of_plane)
-            if (first == 3 .and. dof == last .and. request%component == dof) call report%warning(field_place(data, 2), &
+            if (first == 3 .and. dof == last) call report%warning(field_place(data, 2), &
                'degree of freedom 3 does not exist in a plane model: this support is ignored')
          case default
             call report%error(field_place(data, merge(2, 3, dof == first)), &

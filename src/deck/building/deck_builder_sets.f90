@@ -360,9 +360,10 @@ contains
       associate (nodes => context%line_nodes(:, members(bad)))
          if (any(nodes(:2) == 0)) return
          i = findloc(nodes > 0, .true., dim=1, back=.true.)
-         if (.not. any(mesh%element_nodes == nodes(1) .or. mesh%element_nodes == nodes(2))) &
+         if (all(mesh%element_nodes /= nodes(1) .and. mesh%element_nodes /= nodes(2))) then
             fault = fault//', nor do its nodes: its curve is the side of no surface in the '// &
-            'drawing, such as a second one at the place of one that is; take that one'
+               'drawing, such as a second one at the place of one that is; take that one'
+         end if
          call report%error(field_place(data, 1), 'line '// &
             to_text(context%line_number(members(bad)))//' from node '// &
             to_text(mesh%node_number(nodes(1)))//' to '//to_text(mesh%node_number(nodes(i)))// &
