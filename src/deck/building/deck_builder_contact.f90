@@ -39,7 +39,7 @@ contains
       n = 0
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
-            call read_parameters(card, model, report, common)
+            call read_parameters(card, context, report, common)
             do i = card%first_data, card%last_data
                n = n + 1
                model%contacts(n) = common
@@ -98,9 +98,9 @@ contains
    end subroutine find_contact
 
    !> Reads what all data cards of a card have in common.
-   subroutine read_parameters(card, model, report, contact)
+   subroutine read_parameters(card, context, report, contact)
       type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
+      type(deck_context_type), intent(in) :: context
       type(deck_report_type), intent(inout) :: report
       type(contact_definition_type), intent(out) :: contact
       character(:), allocatable :: pairing
