@@ -302,8 +302,8 @@ contains
                return
             end if
             call context%note(out_of_plane)
-            if (first == 3 .and. dof == last .and. place_in_plane(request, model, first) == 3) &
-               call report%warning(field_place(data, 2), &
+            if (place_in_plane(request, model, first) /= 3) cycle
+            if (first == 3 .and. dof == last) call report%warning(field_place(data, 2), &
                'degree of freedom 3 does not exist in a plane model: this support is ignored')
          case default
             call report%error(field_place(data, merge(2, 3, dof == first)), &
