@@ -27,11 +27,11 @@ contains
       type(element_sides_type) :: sides
       integer :: e, f, ends(3), low, most, side
 
-      most = 4*size(mesh%element_number)
+      most = 4*size(mesh%element_kind)
       allocate(sides%ends(3, most), sides%elements(2, most), sides%before(most), source=0)
-      allocate(sides%of_element(4, size(mesh%element_number)), source=0)
+      allocate(sides%of_element(4, size(mesh%element_kind)), source=0)
       allocate(sides%latest(size(mesh%node_number)), source=0)
-      do e = 1, size(mesh%element_number)
+      do e = 1, size(mesh%element_kind)
          do f = 1, element_corner_count(mesh%element_kind(e))
             ends = side_ends(mesh, e, f)
             side = sides%index_of(ends)
