@@ -331,20 +331,21 @@ contains
    pure subroutine find_modes(mesh, bodies)
       type(mesh_type), intent(in) :: mesh
       type(rigid_bodies_type), intent(inout) :: bodies
-      integer :: e, p
+      integer :: elements(size(bodies%body)), e, p
+      integer, allocatable :: part(:)
 
       allocate (bodies%soft(0), bodies%corner(8, 0), bodies%mode(2, 8, 0))
       if (.not. allocated(mesh%element_kind)) return
-      do e = 1, size(mesh%element_kind)
-         if (mesh%element_kind(e) /= quad8_reduced) cycle
-         if (mesh%element_plane(e) == axisymmetric) cycle
-         if (allocated(mesh%element_part)) then
-            p = mesh%element_part(e)
-            if (count(mesh%element_part == p) > 1) cycle
-         else
-            p = mesh%element_body(e)
-            if (count(mesh%element_body == p) > 1) cycle
-         end if
+      part = mesh%element_body
+      if (allocated(mesh%element_part)) part = mesh%element_part
+      elements = 0
+      do e = 1, size(part)
+         elements(part(e)) = elements(part(e)) + 1
+      end do
+      do e = 1, size(part)
+         p = part(e)
+         if (elements(p) > 1 .or. mesh%element_kind(e) /= quad8_reduced .or. &
+            mesh%element_plane(e) == axisymmetric) cycle
          bodies%soft = [bodies%soft, p]
          bodies%corner = reshape([bodies%corner, mesh%element_nodes(:, e)], [8, size(bodies%soft)])
          bodies%mode = reshape([bodies%mode, hourglass(mesh%coordinates(:, &
