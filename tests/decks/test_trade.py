@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import transients
 from blocks import write
-from deck_runs import CYLINDER, HERTZ, INPUT, PATIENCE, PROGRAM, run, solve
+from deck_runs import CYLINDER, HERTZ, INPUT, PATIENCE, PROGRAM, of_release, run, solve
 from physics import DECKS  # noqa: F401  puts tests/reference on the path
 from test_known_rods import BRANCH, RODS
 from test_physics_rings import CLOSED, tubes
@@ -284,6 +284,7 @@ def test_optimal_rows_are_beaten_by_none(r2):
         assert row["pareto"] == str(int(not beaten)), row
 
 
+@of_release
 def test_cheap_rows_are_repeated_and_their_figures_make_sense(r2):
     rows, _ = r2
     solved = [row for row in rows[:-1] if row["status"] == "0"]
