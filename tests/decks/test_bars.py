@@ -69,17 +69,20 @@ def test_a_spring_at_a_node_that_drops_out_pulls_its_neighbours(tmp_path, option
           [("U2", "BODY.TOP", "LAST", 50.0 * 0.01 / (STIFFNESS + 50.0), EXACT), BALANCED])
 
 
+@pytest.mark.parametrize("beside", [0.0, 50.0])
 @pytest.mark.parametrize("anchor_at", [HEATED, 0.0])
-def test_a_warm_truss_pushes(tmp_path, anchor_at):
-    """E A/L = 100; both become longer by alpha T, the truss by that of the mean of its ends."""
+def test_a_warm_truss_pushes(tmp_path, anchor_at, beside):
+    """E A/L = 100; both become longer by alpha T, the truss by that of the mean of its ends. A
+    spring beside it does not."""
     truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", "51, 100, 101",
              "*SOLID SECTION, ELSET=BAR, MATERIAL=BODY", "0.2"]
     free, longer = 1e-4 * HEATED, 2.0 * 1e-4 * (HEATED + anchor_at) / 2
-    judge(tmp_path, [*BLOCK, *HANDLE, *anchor(1.0, 4.0), *truss, *COLD, *HELD, "ANCHOR, 2",
+    spring = springs("SPRINGA", "100, 101", f"{beside!r}", number=50) if beside else []
+    judge(tmp_path, [*BLOCK, *HANDLE, *anchor(1.0, 4.0), *spring, *truss, *COLD, *HELD, "ANCHOR, 2",
                      "*TEMPERATURE", "BODY, 30.", "HANDLE, 30.", f"ANCHOR, {anchor_at!r}",
                      "*END STEP"],
-          [("U2", "100", "LAST", (STIFFNESS * free - 100.0 * longer) / (STIFFNESS + 100.0), EXACT),
-           BALANCED])
+          [("U2", "100", "LAST",
+            (STIFFNESS * free - 100.0 * longer) / (STIFFNESS + 100.0 + beside), EXACT), BALANCED])
 
 
 def test_a_spring_holds_a_body_that_contact_stops(tmp_path):

@@ -87,3 +87,21 @@ def test_bodies_cool_by_the_strain_times_their_own_initial_temperature(tmp_path)
         checks += [("NT", name, "LAST", start + change, 1e-9)]
     judge(tmp_path, [*deck, "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, DILATATION=YES",
                      "1., 1.", *held, "*END STEP"], checks)
+
+
+@pytest.mark.parametrize("scheme", ["L-STABLE", "IMPLICIT", "CRANK-NICOLSON"])
+def test_an_even_stretch_takes_up_heat_at_an_even_rate(tmp_path, scheme):
+    """T0 beta e' of the volume in every increment, however many stages it has."""
+    rate, expansion, width = 1e-3, 1e-4, 2.0
+    beta = YOUNG[0] * expansion / (1 - 2 * POISSON[0])
+    taken = ABSOLUTE * beta * rate * width
+    judge(tmp_path, [
+        f"*PHYSICAL CONSTANTS, ABSOLUTE ZERO={START - ABSOLUTE!r}",
+        *mesh("BODY", [0.0, 1.0, width], [0.0, 1.0], "CPE4"),
+        *material("BODY", (YOUNG[0], POISSON[0]), expansion, 1.0, 1.0, 4.0),
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"BODY, {START!r}",
+        "*AMPLITUDE, NAME=EVENLY, TIME=TOTAL TIME", "0., 0., 1., 1.",
+        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, DILATATION=YES", "0.25, 1.",
+        f"*THERMAL SCHEME, TYPE={scheme}", "*BOUNDARY, AMPLITUDE=EVENLY", "BODY, 2", "BODY.LEFT, 1",
+        f"BODY.RIGHT, 1, 1, {rate * width!r}", "*END STEP"],
+        [("heat_dilatation", "", when, taken, 1e-9) for when in ("0.25", "LAST")])
