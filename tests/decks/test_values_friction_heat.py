@@ -159,6 +159,15 @@ def test_slip_that_ends_within_an_increment_heats_by_its_work(tmp_path, scheme):
     judge(tmp_path, deck, [("NT", "MIN", "LAST", rise, 1e-6), ("NT", "MAX", "LAST", rise, 1e-6)])
 
 
+@pytest.mark.parametrize("later", ["HEAT TRANSFER, DIRECT", "HEAT TRANSFER, STEADY STATE"])
+def test_a_step_of_heat_alone_has_no_slip(tmp_path, later):
+    """Behind one that ends while the upper block slides at 0.1, with 0.9 of the work as heat."""
+    deck = [*slid("IMPLICIT", young=1e10, times="0.1, 0.5"), "*STEP", f"*{later}", "1., 1.",
+            "*BOUNDARY", "LOWER.BOTTOM, 11", "*END STEP"]
+    judge(tmp_path, deck, [("heat_friction", "", 1.5, 0.9 * MU * PRESSURE * 3.0 * 0.1, 1e-6),
+                           ("heat_friction", "", 2.5, 0.0, 0.0, "ABS")])
+
+
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
 @pytest.mark.parametrize(("scheme", "times"), [
     ("CRANK-NICOLSON", "0.1, 20."), ("CRANK-NICOLSON", "0.05, 12."), ("CRANK-NICOLSON", "0.02, 4."),
