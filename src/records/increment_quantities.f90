@@ -194,7 +194,9 @@ contains
 
       if (found%unstable_modes > 0) then
          words = 'unstable: '//counted(found%unstable_modes, 'mode')//trim(merge(' grows', &
-            ' grow ', found%unstable_modes == 1))//', doubling in '// &
+            ' grow ', found%unstable_modes == 1))
+         ! Of motions that are in doubt the fastest one that is found may decay.
+         if (found%growth_rate > 0.0_dp) words = words//', doubling in '// &
             few_digits(log(2.0_dp)/found%growth_rate, 3)
       else if (found%growth_rate < 0.0_dp) then
          words = 'stable; slowest mode decays in '//few_digits(-1.0_dp/found%growth_rate, 3)
