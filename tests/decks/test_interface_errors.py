@@ -8,7 +8,7 @@ import pytest
 from blocks import block, solid, without_unused_surfaces, write
 from changes import note_changes
 from deck_runs import CYLINDER, HERTZ, INPUT, copy_deck, run, solve
-from physics import material, mesh   # puts tests/reference on the path, too
+from physics import material, mesh, nodes_of   # puts tests/reference on the path, too
 
 import rods
 
@@ -217,6 +217,24 @@ def test_a_mirrored_punch_has_the_same_bounds(tmp_path):
     punch = punches(tmp_path / "punch.inp", ("B", 1))["B"]
     mirrored = punches(tmp_path / "mirrored.inp", ("B", 1, 0.0, 1.0, -1))["B"]
     np.testing.assert_allclose(mirrored["normal_force"][:2], punch["normal_force"][:2], rtol=1e-6)
+
+
+def test_an_amplitude_moves_the_new_nodes_of_its_own_side_alone(tmp_path):
+    """Half of twice the way, given node by node on a side of divided elements, beside another one
+    that is held without an amplitude: the bounds of the way itself."""
+    cards = [*mesh("P", [0.0, 0.4, 0.7, 1.0], [0.0, 0.5], "CPE4"), *material("P", (100.0, 0.3)),
+             *mesh("B", [0.0, 0.4, 0.7, 1.0, 1.5, 3.0], [-1.0, 0.0], "CPE4", first=101),
+             *material("B", (50.0, 0.3)), "*SURFACE INTERACTION, NAME=I",
+             "*CONTACT PAIR, INTERACTION=I, NAME=FACE", "P.BOTTOM, B.TOP",
+             "*AMPLITUDE, NAME=HALF", "0., 0., 1., 0.5"]
+    held = ["*BOUNDARY", "B.BOTTOM, 1, 2", "P.LEFT, 1", "B.LEFT, 1"]
+    top = [node for node, (_, y) in nodes_of(cards).items() if y == 0.5]
+    plain, moved = (errors(solve(write(tmp_path / f"{name}.inp", without_unused_surfaces(cards), [
+        "*STEP", "*STATIC", "0.25, 1.", *held, *way, "*END STEP"])), "FACE") for name, way in (
+            ("plain", [f"{node}, 2, 2, -0.01" for node in top]),
+            ("moved", ["*BOUNDARY, AMPLITUDE=HALF", *(f"{node}, 2, 2, -0.02" for node in top)])))
+    assert plain["normal_force"][1] > 0.0
+    np.testing.assert_allclose(moved["normal_force"][:2], plain["normal_force"][:2], rtol=1e-6)
 
 
 def test_the_bound_of_a_temperature_holds_the_error_of_elements_far_away(tmp_path):
