@@ -219,6 +219,25 @@ def test_a_mirrored_punch_has_the_same_bounds(tmp_path):
     np.testing.assert_allclose(mirrored["normal_force"][:2], punch["normal_force"][:2], rtol=1e-6)
 
 
+def test_a_past_out_of_equilibrium_is_no_error_of_the_mesh(tmp_path):
+    """Heat flows along y, which linear elements solve, behind a start that it is not at rest in."""
+    deck = [*mesh("UP", [0.0, 1.0], [0.0, 1.0], "CPE4"),
+            *mesh("LOW", [0.0, 1.0], [-1.0, 0.0], "CPE4", first=101)]
+    for name in "UP", "LOW":
+        deck += material(name, (1000.0, 0.0), 0.0, 2.0)
+    result = solve(write(tmp_path / "deck.inp", [
+        "*THERMAL SCHEME, TYPE=CRANK-NICOLSON", *deck, "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
+        "UP, 40.", "LOW, 0.", "*SURFACE INTERACTION, NAME=I", "*GAP LAW, TYPE=POWER", "3., 0., 1.",
+        "*CONTACT PAIR, INTERACTION=I, NAME=FACE", "UP.BOTTOM, LOW.TOP", "*STEP",
+        "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*BOUNDARY", "UP, 1",
+        "LOW, 1", "LOW.BOTTOM, 2", "LOW.BOTTOM, 11, 11, 0.", "UP.TOP, 11, 11, 100.", "*DSLOAD",
+        "UP.TOP, P, 5.", "*END STEP"]))
+    value, _, of_mesh, *_ = errors(result, "FACE")["heat_rate"]
+    at_rest = 100.0 / (1 / 2 + 1 / 3 + 1 / 2)
+    assert abs(value / at_rest - 1) > 0.1
+    assert of_mesh < 1e-5 * at_rest   # the tolerance of a fixed point on the divided mesh is 1e-6
+
+
 def test_an_amplitude_moves_the_new_nodes_of_its_own_side_alone(tmp_path):
     """Half of twice the way, given node by node on a side of divided elements, beside another one
     that is held without an amplitude: the bounds of the way itself."""
