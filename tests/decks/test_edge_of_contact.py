@@ -5,7 +5,9 @@ import sys
 import h5py
 import numpy as np
 import pytest
+from blocks import write
 from deck_runs import CYLINDER, DECKS, OWN_MESH, solve
+from physics import material, mesh
 
 sys.path.insert(0, str(DECKS.parent / "documents"))
 from document import Document  # noqa: E402
@@ -100,3 +102,46 @@ def test_hats_are_cut_where_laws_neither_jump_nor_vary_with_temperature(tmp_path
         differs = np.flatnonzero((abs(face["conductance"][last] / own - 1) > 1e-6) & ~rests)
         edge = np.flatnonzero(pressure > 0.0)[-1]
         assert differs.tolist() == ([edge, edge + 1] if cuts else [])
+
+
+def curved(name, first, side):
+    """Return the cards of a hot curved face that touches a cold one on one side of it, and their
+    supports."""
+    xs = sorted(side * np.linspace(0.0, 1.0, 5))
+    up, low = f"U{name}", f"L{name}"
+    middle = "LEFT" if side > 0 else "RIGHT"
+    cards = [*mesh(up, xs, [0.0, 0.4, 1.0], first=first,
+                   to=lambda x, y: (x, y + 2e-3 * x * x * (1 - y))),
+             *mesh(low, sorted(side * np.linspace(0.0, 1.0, 7)), [-1.0, -0.4, 0.0], first=first + 1000),
+             *material(up, (1e5, 0.0), 1e-5, 1.0), *material(low, (1e5, 0.0), None, 50.0),
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"{up}, 0.", f"{low}, 0.",
+             f"*CONTACT PAIR, INTERACTION=FACES, NAME={name}, PAIRING=SURFACES",
+             f"{up}.BOTTOM, {low}.TOP"]
+    return cards, [f"{up}.{middle}, 1", f"{low}.{middle}, 1", f"{low}.BOTTOM, 2", f"{up}.TOP, 2",
+                   f"{up}.TOP, 11, 11, 100.", f"{low}.BOTTOM, 11, 11, 0."]
+
+
+def joined(path, *joints):
+    """Solve joints in one deck; return the heat of each and the largest gain."""
+    cards, held = (sum(parts, []) for parts in zip(*(curved(*joint) for joint in joints),
+                                                   strict=True))
+    result = solve(write(path, [
+        "*OPTIONS, ERRORS=NO", "*FIXED POINT, METHOD=NEWTON, TOL=1e-12",
+        "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=GAS", "1e-6, 1.",
+        "*GAP LAW, TYPE=POWER", "1e-6, 0.05, 1.", *cards, "*STEP",
+        "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "0.25, 1.", "*BOUNDARY", *held,
+        "*END STEP"]))
+    with h5py.File(result) as file:
+        states = [file[f"contact/{name}/status"][-1] for name, *_ in joints]
+        assert all(0 < np.count_nonzero(closed) < len(closed) for closed in states)
+        return ([file[f"contact/{name}/heat_rate"][-1] for name, *_ in joints],
+                file["history/coupling_gain"][-1])
+
+
+def test_heat_and_gain_are_the_same_at_either_side_of_a_face(tmp_path):
+    """Alone, mirrored, and both in one deck."""
+    (heat,), gain = joined(tmp_path / "right.inp", ("R", 1, 1))
+    (mirrored,), mirrored_gain = joined(tmp_path / "left.inp", ("L", 1, -1))
+    both, both_gain = joined(tmp_path / "both.inp", ("R", 1, 1), ("L", 5001, -1))
+    np.testing.assert_allclose([mirrored, *both], heat, rtol=1e-9)
+    np.testing.assert_allclose([mirrored_gain, both_gain], gain, rtol=1e-6)
