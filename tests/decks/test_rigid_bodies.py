@@ -168,6 +168,23 @@ def test_a_ring_turns_with_the_rigid_shaft_that_it_sticks_to(tmp_path, pairing):
     np.testing.assert_allclose((turned - pressed)[on_ring], turn * arm[on_ring], atol=1e-5 * turn)
 
 
+def test_the_pole_of_a_dome_is_above_the_point_that_it_faces(tmp_path):
+    """Whatever its coarse mesh makes of the normal there: no direction has a larger part of the
+    distance, and one between the axis and the normal of the side has no smaller one."""
+    gap, rise = 0.1, 0.8
+    deck = write(tmp_path / "deck.inp", mesh(
+        "DOME", [0.0, 0.3, 0.6], [0.0, 0.5, 1.0], "CAX4",
+        to=lambda x, y: (x, y + rise * x * x * (1 - y))), material("DOME", (YOUNG, POISSON)), [
+        "*NODE", f"9001, 0., {-gap!r}", "*SURFACE, NAME=PLANE, TYPE=SEGMENTS",
+        f"START, -2., {-gap!r}", f"LINE, 2., {-gap!r}",
+        "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=PLANE", *SMOOTH,
+        "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, PAIRING=NODES", "DOME.BOTTOM, PLANE",
+        *STATIC, "*BOUNDARY", "DOME.LEFT, 1", "DOME.TOP, 2", "9001, 1, 2", "9001, 6", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        found = file["contact/FACE/gap"][-1][0]
+    assert gap / np.hypot(1.0, rise * 0.3) <= found <= gap * (1 + 1e-12)
+
+
 @pytest.mark.parametrize("kind", ["CPE8", "CAX8"])
 def test_drawings_serve_any_mesh(tmp_path, kind):
     """Linear elements of meshes that are refined everywhere and once more at the face."""
