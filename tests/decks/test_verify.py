@@ -9,9 +9,11 @@ import re
 from math import sqrt
 
 import h5py
+import physics
 import pytest
 from blocks import block, solid, write
 from deck_runs import CYLINDER, copy_deck, run, solve
+from physics import material, mesh
 
 WIDTH, YOUNG, POISSON, CONDUCTIVITY = 2.0, 1000.0, 0.25, 5.0
 PRESSURE, FRICTION, ALONG, SLIP, HOT = 3.0, 0.5, 2.0, 0.01, 100.0
@@ -249,3 +251,22 @@ def test_values_are_told_with_the_bounds_of_their_errors(tmp_path, quantity, whe
     assert float(said) == pytest.approx(bound, rel=0.06)
     assert "+-" not in middle and "(no estimate: inside a step), expected" in middle
     assert (tmp_path / "told.lst").read_text().count(f"found:  {found} +- {said}\n") == 2
+
+
+def test_the_bound_of_a_check_is_that_of_its_own_body(tmp_path):
+    """A bent plate has the bound that it has alone, beside one on which nothing acts."""
+    said = {}
+    for name, first in (("alone", 1), ("beside", 1001)):
+        cards = mesh("BENT", [2.0 * column for column in range(9)], [0.0, 1.0], "CPS4", first=first)
+        held = ["BENT.LEFT, 1, 2"]
+        if name == "beside":
+            cards = [*mesh("IDLE", [0.0, 1.0, 2.0], [9.0, 10.0], "CPS4"), *cards,
+                     *material("IDLE", (YOUNG, POISSON))]
+            held += ["IDLE.LEFT, 1, 2"]
+        node = next(n for n, place in physics.nodes_of(cards).items() if place == (16.0, 1.0))
+        deck = write(tmp_path / f"{name}.inp", cards, material("BENT", (YOUNG, POISSON)), [
+            "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", *held, "*DSLOAD", "BENT.TOP, P, 1e-3",
+            "*END STEP", "*VERIFY, KIND=FIGURE", f"MISES, {node}, LAST, 0., 1e-9, ABS"])
+        run("run", "--quiet", deck, "--out", tmp_path)
+        said[name] = re.search(r"found: +(\S+ \+- \S+)", deck.with_suffix(".lst").read_text())[1]
+    assert said["beside"] == said["alone"]
