@@ -112,7 +112,8 @@ def curved(name, first, side):
     middle = "LEFT" if side > 0 else "RIGHT"
     cards = [*mesh(up, xs, [0.0, 0.4, 1.0], first=first,
                    to=lambda x, y: (x, y + 2e-3 * x * x * (1 - y))),
-             *mesh(low, sorted(side * np.linspace(0.0, 1.0, 7)), [-1.0, -0.4, 0.0], first=first + 1000),
+             *mesh(low, sorted(side * np.linspace(0.0, 1.0, 7)), [-1.0, -0.4, 0.0],
+                   first=first + 1000),
              *material(up, (1e5, 0.0), 1e-5, 1.0), *material(low, (1e5, 0.0), None, 50.0),
              "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"{up}, 0.", f"{low}, 0.",
              f"*CONTACT PAIR, INTERACTION=FACES, NAME={name}, PAIRING=SURFACES",
