@@ -80,11 +80,10 @@ contains
       slope = laws%pass%graph%derivative(coordinate)
       heat_rate = -heat_across(bodies%points%weight, 1.0_dp, state%jump)
       if (allocated(state%edge%point)) then
+         ! There are none where laws follow temperatures.
          call find_heat_by_opening(bodies, laws%pass%graph, opening, state%resting, &
             state%temperature, self%at_edge, self%edge_heat)
-         ! Their laws may follow temperatures, too.
-         slope(state%edge%point) = 0.0_dp
-         heat_rate(state%edge%point) = heat_rate(state%edge%point)*state%edge%own
+         heat_rate(state%edge%point) = 0.0_dp
       end if
       where (bodies%jump_index == 0 .or. state%resting .or. (.not. abs(slope) > 0.0_dp .and. &
          .not. bodies%points%vary_with_temperature())) heat_rate = 0.0_dp
