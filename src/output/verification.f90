@@ -133,7 +133,7 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:)
       type(outcome_type), intent(inout) :: outcome
       character(:), allocatable :: quantity, where
-      integer :: i, number, q, why
+      integer :: bodies, i, number, q, why
       logical :: holds(reason_count), is_node
 
       quantity = to_upper(model%verifications(c)%quantity)
@@ -149,7 +149,9 @@ contains
       if (q > 0 .and. (is_node .or. where == 'MAX')) then
          outcome%no_estimate = why
          holds = .false.
-         do i = 1, merge(size(record%body_errors), 0, why == no_reason)
+         bodies = 0
+         if (why == no_reason .and. allocated(record%body_errors)) bodies = size(record%body_errors)
+         do i = 1, bodies
             associate (errors => record%body_errors(i))
                if (is_node) then
                   if (errors%no_estimate(q) /= no_reason) holds(errors%no_estimate(q)) = .true.
