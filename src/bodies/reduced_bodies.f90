@@ -15,10 +15,10 @@ module reduced_bodies
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use loads, only: loads_type
-   use materials, only: follows_temperature, heat_capacity, properties_type
+   use materials, only: follows_temperature, heat_capacity, heat_capacity_at
    use model, only: model_type
    use held_points, only: held_directions
-   use point_materials, only: point_material_type, point_materials_type
+   use point_materials, only: point_materials_type
    use point_rules, only: integration_rules
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
    use sparse_matrix, only: linear_combination, sparse_matrix_type
@@ -51,10 +51,8 @@ module reduced_bodies
       type(sparse_matrix_type) :: bar_stiffness, bar_load
       type(equilibrium_reduction_type) :: equilibrium         !! the partial solution of (2.4)
       real(dp) :: largest_expansion = 0.0_dp !! of all bodies [1/temperature]
-      ! Where properties follow temperatures: those that the operators were formed with.
-      real(dp), allocatable :: operators_at(:)                   !! (nodes) [temperature]
-      type(point_material_type), allocatable :: materials(:)     !! at integration points
-      real(dp), allocatable :: heat_capacity(:)                  !! (elements) rho c
+      !> (nodes) that the operators were formed with, where properties follow them [temperature]
+      real(dp), allocatable :: operators_at(:)
       real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
@@ -301,10 +299,8 @@ contains
          if (with_mechanics .and. allocated(model%bars)) call add_bars(self, model, with_strain)
          if (with_heat) call self%thermal%set_matrix(assemble_conduction(mesh, sections, points))
          if (any(model%steps%is_transient .or. model%steps%stability_frequency > 0)) then
-            self%heat_capacity = capacities(model, temperature)
-            self%capacity = assemble_capacity(mesh, sections, self%heat_capacity)
+            self%capacity = assemble_capacity(mesh, sections, capacities(model, temperature))
          end if
-         if (follows) call move_alloc(points%materials, self%materials)
       end associate
    end subroutine form_operators
 
@@ -340,7 +336,6 @@ contains
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)
       real(dp) :: capacity(size(model%mesh%element_kind))
-      type(properties_type) :: properties
       integer :: e
 
       do e = 1, size(capacity)
@@ -348,10 +343,8 @@ contains
             material), nodes => model%mesh%element_nodes(:element_node_count( &
             model%mesh%element_kind(e)), e))
             capacity(e) = heat_capacity(material)
-            if (.not. follows_temperature(material)) cycle
-            properties = material%properties_type
-            call material%set_to(sum(temperature(nodes))/size(nodes), properties)
-            capacity(e) = heat_capacity(properties)
+            if (follows_temperature(material)) capacity(e) = heat_capacity_at(material, &
+               sum(temperature(nodes))/size(nodes))
          end associate
       end do
    end function capacities

@@ -27,7 +27,7 @@ module coupled_increment
    use text, only: append
    implicit none
    private
-   public :: solve_coupled, contact_scales, differ, find_gains, is_one_of_several
+   public :: solve_coupled, judge_solution, contact_scales, differ, find_gains, is_one_of_several
 
    real(dp), parameter :: end_conductance(2) = [1.0e-8_dp, 1.0e8_dp] !! of the starts open and
    !! closed, in the conductance of the bodies about the contact point
@@ -67,7 +67,7 @@ contains
          call iterate(bodies, heat, data%fixed_point, data, workspace, next, error)
       end if
       if (allocated(error) .or. .not. data%fixed_point%finds_gain) return
-      call judge(bodies, heat, data, next, data%fixed_point%method == method_picard, workspace)
+      call judge_solution(bodies, heat, data, next, workspace)
    end subroutine solve_coupled
 
    !> Largest values that are known at the start of an increment. Its load counts by the overlap
@@ -227,14 +227,13 @@ contains
       differ = abs(a - b) > different*max(a, b)
    end function differ
 
-   !> The gain of the coupling, and what follows from it.
-   subroutine judge(bodies, heat, data, next, is_plain, workspace)
+   !> The gain of the coupling at a solution, and what follows from it.
+   subroutine judge_solution(bodies, heat, data, next, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(solution_state_type), intent(in) :: next
-      logical, intent(in) :: is_plain                            !! whether the iteration is (4.1)
-      type(increment_workspace_type), intent(inout) :: workspace
+      type(increment_workspace_type), intent(inout) :: workspace !! its last pass in, record out
       type(arnoldi_type) :: gains
       logical :: is_negative                                     ! det(I - U')
 
@@ -261,7 +260,8 @@ contains
          record%is_unstable = is_negative .and. data%equation%duration <= 0.0_dp
          ! The points of a branch say so themselves.
          if (data%follows_branch) return
-         if (record%coupling_gain < -1.0_dp .and. is_plain) call record%warn( &
+         if (record%coupling_gain < -1.0_dp .and. data%fixed_point%method == method_picard) &
+            call record%warn( &
             'the coupling gain is ', record%coupling_gain, &
             ', below -1: plain iteration (4.1) would diverge')
          if (.not. ieee_is_nan(record%coupling_gain_max)) then
@@ -292,7 +292,7 @@ contains
             end if
          end if
       end associate
-   end subroutine judge
+   end subroutine judge_solution
 
    !> Whether closed and open contact points alternate along a face whose gap is the same
    !> everywhere: more than every other one differs from the one before.

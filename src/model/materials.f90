@@ -10,7 +10,7 @@ module materials
    public :: material_type, properties_type, section_type, property_type, orientation_type
    public :: material_axes, strain_rotation, heat_capacity, least_heat_capacity
    public :: set_property, isotropic, engineering, orthotropic, anisotropic
-   public :: follows_temperature, thermal_strain, heat_content, expansion_heat
+   public :: follows_temperature, thermal_strain, heat_content, heat_capacity_at, expansion_heat
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
       of_specific_heat
 
@@ -54,6 +54,14 @@ module materials
       real(dp) :: specific_heat = 0.0_dp              !! c_p [energy/(mass temperature)]
    end type properties_type
 
+   !> Integral of rho c over temperature: between rows rho c is quadratic, as both factors are
+   !> linear, outside of them it is constant. The first part is below the first row.
+   type :: heat_table_type
+      real(dp), allocatable :: from(:)                !! (parts) where the rest counts from
+      real(dp), allocatable :: content(:)             !! (parts) there [energy/volume]
+      real(dp), allocatable :: capacity(:, :)         !! (3, parts) rho c: 1, x, x^2 from there on
+   end type heat_table_type
+
    !> A material; the properties that it inherits are those of the first rows.
    type, extends(properties_type) :: material_type
       real(dp) :: no_strain = 0.0_dp                  !! ZERO= of *EXPANSION [temperature]
@@ -64,6 +72,7 @@ module materials
       logical :: has_specific_heat = .false.          !! *SPECIFIC HEAT was given
       !> All properties as the deck gives them; unallocated for none
       type(property_type), allocatable :: given(:)
+      type(heat_table_type) :: heat                   !! of density and specific heat
    contains
       procedure :: set_to
    end type material_type
@@ -124,6 +133,7 @@ contains
          end if
       end associate
       call take_values(property%kind, property%symmetry, property%values(:, 1), material)
+      call integrate_capacity(material)
    end subroutine set_property
 
    !> Gives properties the constants of a card.
@@ -258,27 +268,56 @@ contains
    pure real(dp) function heat_content(material, temperature) result(content)
       type(material_type), intent(in) :: material
       real(dp), intent(in) :: temperature
+      real(dp) :: x
+      integer :: i
+
+      associate (heat => material%heat)
+         i = 1 + row_below(heat%from(2:), temperature)
+         x = temperature - heat%from(i)
+         content = heat%content(i) + x*(heat%capacity(1, i) + x*(heat%capacity(2, i)/2 + &
+            x*heat%capacity(3, i)/3))
+      end associate
+   end function heat_content
+
+   !> rho c at a temperature.
+   pure real(dp) function heat_capacity_at(material, temperature) result(capacity)
+      type(material_type), intent(in) :: material
+      real(dp), intent(in) :: temperature
+      real(dp) :: x
+      integer :: i
+
+      associate (heat => material%heat)
+         i = 1 + row_below(heat%from(2:), temperature)
+         x = temperature - heat%from(i)
+         capacity = heat%capacity(1, i) + x*(heat%capacity(2, i) + x*heat%capacity(3, i))
+      end associate
+   end function heat_capacity_at
+
+   !> Integrates rho c of the properties that the material has.
+   pure subroutine integrate_capacity(material)
+      type(material_type), intent(inout) :: material
       real(dp), allocatable :: rows(:)
-      real(dp) :: from, to
+      real(dp) :: at(3), width
       integer :: i
 
       rows = content_rows(material)
-      content = 0.0_dp
       if (size(rows) == 0) rows = [0.0_dp]
-      if (temperature < rows(1)) then
-         content = capacity_at(material, rows(1))*(temperature - rows(1))
-         return
-      end if
-      from = rows(1)
-      do i = 1, size(rows)
-         to = temperature
-         if (i < size(rows)) to = min(to, rows(i + 1))
-         ! Simpson's rule is exact for rho c, which is quadratic between rows.
-         content = content + (to - from)/6*(capacity_at(material, from) + &
-            4*capacity_at(material, (from + to)/2) + capacity_at(material, to))
-         from = to
-      end do
-   end function heat_content
+      associate (n => size(rows), heat => material%heat)
+         heat%from = [rows(1), rows]
+         heat%content = 0.0_dp*heat%from
+         heat%capacity = spread([heat_capacity(material), 0.0_dp, 0.0_dp], 2, n + 1)
+         do i = 2, n
+            width = rows(i) - rows(i - 1)
+            at = [capacity_at(material, rows(i - 1)), capacity_at(material, rows(i - 1) + &
+               width/2), capacity_at(material, rows(i))]
+            heat%capacity(:, i) = [at(1), (4*at(2) - 3*at(1) - at(3))/width, &
+               (2*at(1) - 4*at(2) + 2*at(3))/width**2]
+            ! Simpson's rule is exact.
+            heat%content(i + 1) = heat%content(i) + width/6*(at(1) + 4*at(2) + at(3))
+            heat%capacity(1, i + 1) = at(3)
+         end do
+      end associate
+   end subroutine integrate_capacity
 
    !> beta:alpha of a material; in plane stress that of the strains in the plane.
    pure real(dp) function expansion_heat(material, plane)

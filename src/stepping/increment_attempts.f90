@@ -3,7 +3,7 @@ module increment_attempts
    use clock, only: wall_seconds
    use constraint_checks, only: check_prescribed
    use controls, only: method_newton
-   use coupled_increment, only: differ
+   use coupled_increment, only: differ, judge_solution
    use due_output, only: stability_is_due
    use errors, only: error_type, set_error, status_no_convergence
    use friction_heating, only: nodal_friction_heat
@@ -159,6 +159,12 @@ contains
             trial%workspace = fresh_workspace
          end do
          call corrections%keep(run%bodies, before, trial%next)
+         if (run%bodies%is_coupled .and. step%fixed_point%finds_gain .and. .not. &
+            trial%data%equation%is_explicit()) then
+            call judge_solution(run%bodies, run%heats(run%in_use), trial%data, trial%next, &
+               trial%workspace)
+            trial%record%solution_report_type = trial%workspace%record
+         end if
          trial%record%corrections = corrections%passes
          trial%record%has_new_operators = corrections%is_renewed
       end associate
@@ -195,6 +201,9 @@ contains
          data => trial%data, workspace => trial%workspace, next => trial%next)
          workspace%record%increment = trial%record%increment
          call begin_increment(bodies, step, before, next, data)
+         ! The last of the corrected solutions is judged alone.
+         data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
+            run%corrections%corrects
          if (step%is_transient) then
             call data%equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
                before%stored)

@@ -2,16 +2,16 @@
 !> were formed at earlier temperatures. They stand on the right of the equations of a stage, and are
 !> corrected until they are those of its solution.
 !>
-!> At the integration points fluxes and stresses of both kinds are taken, and their differences
-!> gathered on the nodes, so that a solution balances the true ones. Heat is stored as enthalpy,
-!> H(T) = integral of rho c, so that the heat of an increment is a difference of contents. Heat that
-!> strains take up (DILATATION) is corrected in the same way.
+!> True fluxes and stresses are taken at the integration points and gathered on the nodes; what the
+!> operators have instead is K T, and K u - B (T - T_0), so that a solution balances the true ones.
+!> Heat is stored as enthalpy, H(T) = integral of rho c, so that the heat of an increment is a
+!> difference of contents. Heat that strains take up (DILATATION) is corrected in the same way.
 !>
 !> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where one does
 !> not reduce what is left over to 0.3 of the one before, the operators are to be formed again.
 module operator_corrections
    use anderson_mixing, only: mixing_type
-   use element_kinds, only: element_node_count, quad4_enhanced
+   use element_kinds, only: element_node_count
    use errors, only: error_type, set_error, status_no_convergence
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
@@ -19,7 +19,6 @@ module operator_corrections
    use materials, only: follows_temperature, heat_content
    use model, only: model_type
    use point_fields, only: point_fields_type
-   use point_materials, only: point_material_type
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
@@ -35,12 +34,13 @@ module operator_corrections
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
 
-   !> Fields at points of all elements, and the elements whose properties follow temperatures.
+   !> Fields at points, and the elements of the bodies in which properties follow temperatures.
    type :: corrections_type
       private
-      !> Operators over bodies, at integration points; and points of heat contents
-      type(point_fields_type), allocatable :: excess, contents
+      !> Integration points, and points of heat contents
+      type(point_fields_type), allocatable :: points, contents
       integer, allocatable :: elements(:)
+      logical, allocatable :: follows(:)           !! (nodes) of these bodies
       !> (4 nodes) of a stage: rate of heat taken up, heat beyond conduction, forces along x and y
       real(dp), allocatable :: values(:)
       real(dp), allocatable :: heat_before(:)      !! (nodes) beyond conduction at its start
@@ -70,18 +70,24 @@ contains
    subroutine prepare(self, model)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      logical :: follows(size(model%mesh%element_section))
+      logical :: follows(0:model%mesh%body_count)      ! bodies, none of them first
       integer :: e
 
-      follows = follows_temperature(model%materials(model%sections( &
-         model%mesh%element_section)%material))
-      self%elements = pack([(e, e=1, size(follows))], follows)
+      follows = .false.
+      associate (mesh => model%mesh)
+         do e = 1, size(mesh%element_body)
+            if (follows_temperature(model%materials(model%sections(mesh%element_section(e))% &
+               material))) follows(mesh%element_body(e)) = .true.
+         end do
+         self%elements = pack([(e, e=1, size(mesh%element_body))], follows(mesh%element_body))
+         self%follows = follows(mesh%node_body)
+      end associate
       self%corrects = any(follows) .or. any(model%steps%dilates)
       if (.not. any(follows)) return
-      allocate (self%excess, self%contents)
-      self%excess%has_inverses = .false.
+      allocate (self%points, self%contents)
+      self%points%has_inverses = .false.
       self%contents%has_inverses = .false.
-      call self%excess%prepare(model%mesh, model%sections, model%materials, model%orientations, &
+      call self%points%prepare(model%mesh, model%sections, model%materials, model%orientations, &
          integration_rules())
       if (any(model%steps%is_transient)) call self%contents%prepare(model%mesh, model%sections, &
          model%materials, model%orientations, load_rules())
@@ -220,8 +226,8 @@ contains
          displacement, values(n + 1:2*n), values(2*n + 1:))
       if (stage%duration <= 0.0_dp) return
       if (allocated(stage%content)) values(:n) = true_contents(self, model, temperature) - &
-         stage%content - nodal_contents(self, model, temperature - stage%temperature, &
-         bodies%heat_capacity)
+         stage%content - merge(bodies%capacity%multiply(temperature - stage%temperature), 0.0_dp, &
+         self%follows)
       if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
          bodies%thermal_load, displacement, temperature) - self%strain_before
       values(:n) = values(:n)/stage%duration
@@ -249,88 +255,62 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:), displacement(:)
       real(dp), intent(out) :: heat(:), forces(:)            ! (nodes), (2 nodes)
-      real(dp) :: flux(most, 2), stress(most, 4), of_bodies(most, 4), of_nodes(2, 8)
-      real(dp) :: u(2, size(temperature))
+      real(dp) :: flux(most, 2), stress(most, 4), of_nodes(2, 8)
+      real(dp) :: u(2, size(temperature)), balance(2, size(temperature))
       real(dp) :: warming(size(temperature))
-      integer :: e, i, q
+      logical :: conducts, strains
+      integer :: i
 
-      heat = 0.0_dp
-      forces = 0.0_dp
-      call self%excess%set_temperature(model%mesh, model%sections, model%materials, &
-         model%orientations, temperature, model%initial_temperature)
-      ! Its materials become differences.
-      deallocate (self%excess%temperature)
-      u = reshape(displacement, shape(u))
       warming = temperature - model%initial_temperature
+      conducts = allocated(bodies%thermal%matrix%value)
+      strains = allocated(bodies%mechanical%matrix%value)
+      heat = 0.0_dp
+      balance = 0.0_dp
+      if (conducts) heat = bodies%thermal%matrix%multiply(temperature)
+      if (strains) balance = reshape(of_operators(), shape(balance))
+      u = reshape(displacement, shape(u))
       flux = 0.0_dp
       stress = 0.0_dp
+      call self%points%set_temperature(model%mesh, model%sections, model%materials, &
+         model%orientations, temperature, model%initial_temperature)
       do i = 1, size(self%elements)
-         e = self%elements(i)
-         associate (mesh => model%mesh, first => self%excess%material(e), &
-            n => self%excess%rules(model%mesh%element_kind(e))%count, &
-            nodes => model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e))
-            of_bodies = 0.0_dp
-            if (allocated(mesh%initial_stress)) of_bodies(:n, :) = &
-               spread(mesh%initial_stress(:, e), 1, n)
-            ! Enhanced strains are not linear in the properties: both stresses are formed.
-            if (mesh%element_kind(e) == quad4_enhanced) call self%excess%stress(mesh, e, u, &
-               warming, of_bodies)
-            call take_from(bodies%materials(first:first + n - 1), &
-               self%excess%materials(first:first + n - 1))
-            if (allocated(bodies%thermal%matrix%value)) then
-               call self%excess%heat_flux(mesh, e, temperature, flux)
-               of_nodes(1, :) = self%excess%nodal_heat(mesh, e, flux)
-               heat(nodes) = heat(nodes) + of_nodes(1, :size(nodes))
+         associate (mesh => model%mesh, e => self%elements(i), nodes => model%mesh%element_nodes( &
+            :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
+            if (conducts) then
+               call self%points%heat_flux(mesh, e, temperature, flux)
+               of_nodes(1, :) = self%points%nodal_heat(mesh, e, flux)
+               heat(nodes) = heat(nodes) - of_nodes(1, :size(nodes))
             end if
-            if (.not. allocated(bodies%mechanical%matrix%value)) cycle
-            if (mesh%element_kind(e) == quad4_enhanced) then
-               self%excess%materials(first:first + n - 1) = bodies%materials(first:first + n - 1)
-               do q = first, first + n - 1
-                  self%excess%materials(q)%thermal_stress = 0.0_dp
-               end do
-            end if
-            call self%excess%stress(mesh, e, u, warming, stress)
-            stress = stress - of_bodies
-            of_nodes = self%excess%nodal_forces(mesh, e, stress)
-            do q = 1, size(nodes)
-               associate (there => forces(2*nodes(q) - 1:2*nodes(q)))
-                  there = there + of_nodes(:, q)
-               end associate
-            end do
+            if (.not. strains) cycle
+            call self%points%stress(mesh, e, u, warming, stress)
+            of_nodes = self%points%nodal_forces(mesh, e, stress)
+            balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
          end associate
       end do
+      heat = merge(heat, 0.0_dp, self%follows)
+      forces = reshape(merge(balance, 0.0_dp, spread(self%follows, 1, 2)), shape(forces))
+   contains
+      !> Forces that the operators of the bodies alone have for the stresses at the points.
+      function of_operators() result(sums)
+         real(dp) :: sums(2*size(temperature))
+
+         sums = bodies%mechanical%matrix%multiply(displacement)
+         if (allocated(bodies%bar_stiffness%value)) sums = sums - &
+            bodies%bar_stiffness%multiply(displacement)
+         if (allocated(bodies%thermal_load%value)) sums = sums - &
+            bodies%thermal_load%multiply(warming)
+         if (allocated(bodies%bar_load%value)) sums = sums + bodies%bar_load%multiply(warming)
+         if (allocated(bodies%initial_force)) sums = sums - bodies%initial_force
+      end function of_operators
    end subroutine gather_excess
 
-   !> Properties of the operators less those of the bodies.
-   pure elemental subroutine take_from(of_operators, of_bodies)
-      type(point_material_type), intent(in) :: of_operators
-      type(point_material_type), intent(inout) :: of_bodies
-
-      of_bodies%elasticity = of_operators%elasticity - of_bodies%elasticity
-      of_bodies%thermal_modulus = of_operators%thermal_modulus - of_bodies%thermal_modulus
-      of_bodies%thermal_stress = -of_bodies%thermal_stress
-      of_bodies%conductivity = of_operators%conductivity - of_bodies%conductivity
-   end subroutine take_from
-
-   !> Heat contents of the elements whose properties follow temperatures, on the nodes.
+   !> Heat contents of the bodies whose properties follow temperatures, on the nodes; consistent in
+   !> elements with nodes between corners, else lumped, as the capacity matrix is.
    pure function true_contents(self, model, temperature) result(content)
       class(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes) [temperature]
       real(dp) :: content(size(temperature))                 !! (nodes) [energy]
-      real(dp), allocatable :: none(:)
-
-      content = nodal_contents(self, model, temperature, none)
-   end function true_contents
-
-   !> Contents by a law of the material, or by given capacities of the elements; consistent in
-   !> elements with nodes between corners, else lumped, as the capacity matrix is.
-   pure function nodal_contents(self, model, temperature, capacity) result(content)
-      class(corrections_type), intent(in) :: self
-      type(model_type), intent(in) :: model
-      real(dp), intent(in) :: temperature(:)
-      real(dp), allocatable, intent(in) :: capacity(:)       ! (elements), or none
-      real(dp) :: content(size(temperature))
       real(dp) :: there
       integer :: g, i, q
 
@@ -339,37 +319,25 @@ contains
          associate (mesh => model%mesh, e => self%elements(i), fields => self%contents)
             associate (rule => fields%rules(mesh%element_kind(e)), nodes => mesh%element_nodes( &
                :element_node_count(mesh%element_kind(e)), e), material => model%materials( &
-               model%sections(mesh%element_section(e))%material))
+               model%sections(mesh%element_section(e))%material), volume => fields%volume( &
+               fields%first(e):fields%first(e + 1) - 1))
                if (size(nodes) <= 4) then
                   do q = 1, size(nodes)
-                     there = content_at(temperature(nodes(q)))
-                     content(nodes(q)) = content(nodes(q)) + there*dot_product(rule%shape( &
-                        :rule%count, q), fields%volume(fields%first(e):fields%first(e + 1) - 1))
+                     content(nodes(q)) = content(nodes(q)) + heat_content(material, &
+                        temperature(nodes(q)))*dot_product(rule%shape(:rule%count, q), volume)
                   end do
                   cycle
                end if
                do g = 1, rule%count
                   associate (psi => rule%shape(g, :rule%nodes))
-                     there = content_at(dot_product(psi, temperature(nodes)))
-                     content(nodes) = content(nodes) + there*fields%volume(fields%first(e) + g - &
-                        1)*psi
+                     there = heat_content(material, dot_product(psi, temperature(nodes)))
+                     content(nodes) = content(nodes) + there*volume(g)*psi
                   end associate
                end do
             end associate
          end associate
       end do
-   contains
-      pure real(dp) function content_at(temperature)
-         real(dp), intent(in) :: temperature
-
-         if (allocated(capacity)) then
-            content_at = capacity(self%elements(i))*temperature
-         else
-            content_at = heat_content(model%materials(model%sections( &
-               model%mesh%element_section(self%elements(i)))%material), temperature)
-         end if
-      end function content_at
-   end function nodal_contents
+   end function true_contents
 
    !> Largest heat and forces of a solution, by which what is left over is small; at least those of
    !> which the rounding of their terms is the settled part.
