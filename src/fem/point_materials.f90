@@ -3,8 +3,9 @@
 module point_materials
    use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain
    use kinds, only: dp
-   use materials, only: follows_temperature, material_axes, material_type, orientation_type, &
-      properties_type, section_type, strain_rotation, thermal_strain
+   use materials, only: follows_temperature, material_axes, material_type, of_conductivity, &
+      of_elasticity, of_expansion, orientation_type, properties_type, section_type, &
+      strain_rotation, thermal_strain
    use mesh, only: mesh_type
    use point_properties, only: are_x_and_y, conductivity_in, elasticity_in, thermal_modulus_in
    use point_rules, only: point_rule_type
@@ -75,7 +76,9 @@ contains
                   position = matmul(mesh%coordinates(:, nodes), rule%shape(g, :rule%nodes))
                   axes = material_axes(orientations, sections(s)%orientation, position)
                   associate (material => materials(sections(s)%material))
-                     call set_point(plane, material, axes, self%has_inverses, self%materials(n))
+                     call set_elasticity(plane, material, axes, self%has_inverses, &
+                        self%materials(n))
+                     call set_conduction(material, axes, self%has_inverses, self%materials(n))
                      self%materials(n)%thermal_modulus = thermal_modulus_in(plane, material, &
                         material%expansion, axes)
                   end associate
@@ -97,7 +100,7 @@ contains
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       real(dp), intent(in) :: temperature(:), initial(:)    !! (nodes) [temperature]
       type(properties_type) :: properties(size(materials))
-      logical :: follows(size(materials))
+      logical, dimension(size(materials)) :: conducts, strains   ! otherwise with the temperature
       real(dp) :: axes(2, 2)
       integer :: e, g, m
 
@@ -105,7 +108,9 @@ contains
          if (all(abs(self%temperature - temperature) <= 0.0_dp)) return
       end if
       self%temperature = temperature
-      follows = follows_temperature(materials)
+      conducts = follows_temperature(materials, of_conductivity)
+      strains = follows_temperature(materials, of_elasticity) .or. &
+         follows_temperature(materials, of_expansion)
       do m = 1, size(materials)
          properties(m) = materials(m)%properties_type
       end do
@@ -114,34 +119,38 @@ contains
             rule => self%rules(mesh%element_kind(e)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
             m = section%material
-            if (.not. follows(m)) cycle
+            if (.not. (conducts(m) .or. strains(m))) cycle
             do g = 1, rule%count
                associate (psi => rule%shape(g, :rule%nodes))
                   if (g == 1 .or. section%orientation > 0) axes = material_axes(orientations, &
                      section%orientation, matmul(mesh%coordinates(:, nodes), psi))
-                  call set_warm_point(plane, materials(m), properties(m), axes, &
-                     [dot_product(psi, initial(nodes)), dot_product(psi, temperature(nodes))], &
-                     self%has_inverses, self%materials(self%material(e) + g - 1))
+                  associate (at => [dot_product(psi, initial(nodes)), dot_product(psi, &
+                     temperature(nodes))], there => self%materials(self%material(e) + g - 1))
+                     call materials(m)%set_to(at(2), properties(m))
+                     if (conducts(m)) call set_conduction(properties(m), axes, &
+                        self%has_inverses, there)
+                     if (strains(m)) call set_strain(plane, materials(m), properties(m), axes, &
+                        at, self%has_inverses, there)
+                  end associate
                end associate
             end do
          end associate
       end do
    end subroutine set_temperature
 
-   pure subroutine set_warm_point(plane, material, properties, axes, temperature, with_inverses, &
-      there)
+   !> Elasticity and expansion at a temperature.
+   pure subroutine set_strain(plane, material, properties, axes, temperature, with_inverses, there)
       integer, intent(in) :: plane
       type(material_type), intent(in) :: material
-      type(properties_type), intent(inout) :: properties
+      type(properties_type), intent(in) :: properties  ! at the temperature
       real(dp), intent(in) :: axes(2, 2)
       real(dp), intent(in) :: temperature(2)           ! the initial one, and the present one
       logical, intent(in) :: with_inverses
       type(point_material_type), intent(inout) :: there
       real(dp) :: strain(3), slope(3)
 
-      call material%set_to(temperature(2), properties)
       call thermal_strain(material, temperature(1), temperature(2), strain, slope)
-      call set_point(plane, properties, axes, with_inverses, there)
+      call set_elasticity(plane, properties, axes, with_inverses, there)
       there%thermal_modulus = stress_of(slope)
       strain = strain - slope*(temperature(2) - temperature(1))
       there%thermal_stress = 0.0_dp
@@ -160,9 +169,9 @@ contains
                there%elasticity(3, i)*global(3) + there%elasticity(4, i)*global(4)
          end do
       end function stress_of
-   end subroutine set_warm_point
+   end subroutine set_strain
 
-   pure subroutine set_point(plane, properties, axes, with_inverses, there)
+   pure subroutine set_elasticity(plane, properties, axes, with_inverses, there)
       integer, intent(in) :: plane
       class(properties_type), intent(in) :: properties
       real(dp), intent(in) :: axes(2, 2)
@@ -170,12 +179,19 @@ contains
       type(point_material_type), intent(inout) :: there
 
       there%elasticity = elasticity_in(plane, properties, axes)
-      there%conductivity = conductivity_in(properties, axes)
-      if (.not. with_inverses) return
       ! Not condensed: with sigma_zz = 0 its energy is that of plane stress, too.
-      there%compliance = inverse_of(elasticity_in(plane_strain, properties, axes))
-      there%resistivity = inverse_of(there%conductivity)
-   end subroutine set_point
+      if (with_inverses) there%compliance = inverse_of(elasticity_in(plane_strain, properties, axes))
+   end subroutine set_elasticity
+
+   pure subroutine set_conduction(properties, axes, with_inverses, there)
+      class(properties_type), intent(in) :: properties
+      real(dp), intent(in) :: axes(2, 2)
+      logical, intent(in) :: with_inverses
+      type(point_material_type), intent(inout) :: there
+
+      there%conductivity = conductivity_in(properties, axes)
+      if (with_inverses) there%resistivity = inverse_of(there%conductivity)
+   end subroutine set_conduction
 
    !> The material at a point of an element.
    pure integer function at_point(self, element, g) result(i)

@@ -132,27 +132,27 @@ contains
    end subroutine begin_storage
 
    !> Measures an increment: error and largest change of its temperatures.
-   subroutine measure_changes(run, model, before, next, record)
+   subroutine measure_changes(run, model, start, stored, next, record)
       type(simulation_type), intent(in) :: run               !! heat reduced as in the increment
       type(model_type), intent(in) :: model
-      !> State before the last stage, with the temperatures at the start of the increment
-      type(solution_state_type), intent(in) :: before
+      type(solution_state_type), intent(in) :: start         !! state at its start
+      real(dp), intent(in) :: stored(:)                      !! (nodes) before its last stage [power]
       type(solution_state_type), intent(inout) :: next       !! state at the end
       type(increment_record_type), intent(inout) :: record
       real(dp) :: here(2), part, range
 
       here = extremes_of(model, next%temperature)
-      next%extremes = [min(before%extremes(1), here(1)), max(before%extremes(2), here(2))]
-      record%makes_range = next%extremes(2) - next%extremes(1) > own*(before%extremes(2) - &
-         before%extremes(1))
+      next%extremes = [min(start%extremes(1), here(1)), max(start%extremes(2), here(2))]
+      record%makes_range = next%extremes(2) - next%extremes(1) > own*(start%extremes(2) - &
+         start%extremes(1))
       range = max(next%extremes(2) - next%extremes(1), unresolved*maxval(abs(next%extremes)), &
          tiny(range))
       associate (scheme => model%steps(record%step)%scheme)
          part = merge(1.0_dp, 0.5_dp/scheme%a(1), scheme%stages == 2)
       end associate
       record%local_error = maxval(abs(run%heats(run%in_use)%welded_response( &
-         run%bodies%thermal, part*(next%stored - before%stored))))/range
-      record%largest_change = maxval(abs(next%temperature - before%temperature), &
+         run%bodies%thermal, part*(next%stored - stored))))/range
+      record%largest_change = maxval(abs(next%temperature - start%temperature), &
          mask=.not. run%loads%temperature%active)
    end subroutine measure_changes
 

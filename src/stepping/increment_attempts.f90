@@ -1,4 +1,6 @@
-!> An attempt at an increment, stage by stage.
+!> An attempt at an increment, stage by stage. It owns what the increment leaves to the next ones;
+!> the increment that is accepted hands that over to the run. What it moves to its instant in the
+!> run, the loads and the operators, is taken back where it is not accepted.
 module increment_attempts
    use clock, only: wall_seconds
    use constraint_checks, only: check_prescribed
@@ -11,6 +13,7 @@ module increment_attempts
    use increment_checks, only: check_heat, check_record, warn_of_choices
    use increment_data, only: increment_data_type, increment_workspace_type, stage_type
    use increment_records, only: complete_record
+   use field_problem, only: solved_loads_type
    use increment_solution, only: begin_increment, recover_fields, solve_points
    use kinds, only: dp
    use load_histories, only: step_clock_type
@@ -24,7 +27,17 @@ module increment_attempts
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
-   public :: attempt_increment, begin_record
+   public :: attempt_type, attempt_increment, begin_record
+
+   !> What an attempt found.
+   type :: attempt_type
+      type(solution_state_type) :: next            !! state at its end
+      type(increment_record_type) :: record
+      type(solved_loads_type), allocatable :: known(:)  !! loads that are solved, earlier ones too
+      !> What the solution left, where its stability is analysed
+      type(increment_workspace_type), allocatable :: solved
+      character(:), allocatable :: undecided       !! what was last warned of
+   end type attempt_type
 
    !> A stage that is being solved.
    type :: trial_type
@@ -38,56 +51,60 @@ module increment_attempts
 
 contains
 
-   !> Tries an increment that ends at an instant, stage by stage. The state of the run stays; what
-   !> else an attempt leaves behind, loads and factors, the next one sets anew.
-   subroutine attempt_increment(run, model, clock, next, record, error)
-      type(simulation_type), intent(inout) :: run
+   !> Tries an increment that ends at an instant, stage by stage.
+   !> Errors: no convergence, bodies that nothing holds, a failed self-check.
+   subroutine attempt_increment(run, model, clock, attempt, error)
+      type(simulation_type), intent(inout) :: run           !! its loads and operators move
       type(model_type), intent(in) :: model
       type(step_clock_type), intent(in) :: clock            !! its end
-      type(solution_state_type), intent(out) :: next        !! state there
-      type(increment_record_type), intent(out) :: record
+      type(attempt_type), intent(out) :: attempt
       type(error_type), allocatable, intent(out) :: error
-      type(solution_state_type) :: before
+      type(solution_state_type) :: start    ! state at its start, jumps where a step begins included
       type(stage_type) :: stage
       type(trial_type) :: first, last
 
-      before = run%state
+      if (allocated(run%known)) attempt%known = run%known
+      attempt%undecided = run%undecided
+      start = run%state
       stage%clock = clock
       stage%of_increment = clock
       stage%size = clock%step_time - run%control%step_time
       associate (step => model%steps(run%control%step))
-         if (step%is_transient) call begin_first_stage(run, model, stage, before)
-         if (.not. stage%is_last) then
-            call solve_stage(run, model, stage, before, first, error)
-            if (allocated(error)) then
-               record = first%record
-               return
-            end if
-            call begin_second_stage(run, model, first%next, before, stage)
-            before = first%next
+         if (step%is_transient) call begin_first_stage(run, model, stage, start)
+         if (stage%is_last) then
+            call solve_stage(run, model, stage, start, attempt, last, error)
+         else
+            call solve_stage(run, model, stage, start, attempt, first, error)
+            attempt%record = first%record
+            if (allocated(error)) return
+            call begin_second_stage(run, model, first%next, start, stage)
+            call solve_stage(run, model, stage, first%next, attempt, last, error)
+            call add_attempts(first%record, last%record)
          end if
-         call solve_stage(run, model, stage, before, last, error)
-         next = last%next
-         record = last%record
-         if (first%record%increment > 0) call add_attempts(first%record, record)
+         attempt%next = last%next
+         attempt%record = last%record
          if (run%branch%is_followed .and. .not. allocated(error)) then
-            if (any(differ(next%omega, run%branch%point%omega))) call set_error(error, &
+            if (any(differ(attempt%next%omega, run%branch%point%omega))) call set_error(error, &
                status_no_convergence, 'the increment leads to another branch')
          end if
          if (.not. step%is_transient .or. allocated(error)) return
-         if (first%record%increment > 0) before%temperature = run%state%temperature + stage%jump
-         call measure_changes(run, model, before, next, record)
+         if (allocated(first%next%stored)) then
+            call measure_changes(run, model, start, first%next%stored, attempt%next, attempt%record)
+         else
+            call measure_changes(run, model, start, start%stored, attempt%next, attempt%record)
+         end if
          if (run%control%increments_of_step == 0) call note_shock(model, stage%jump, &
-            run%control%size_to(clock), record)
+            run%control%size_to(clock), attempt%record)
       end associate
    end subroutine attempt_increment
 
    !> Solves a stage of an increment, mostly the only one; the last one is recorded.
-   subroutine solve_stage(run, model, stage, before, trial, error)
+   subroutine solve_stage(run, model, stage, before, attempt, trial, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before
+      type(attempt_type), intent(inout) :: attempt
       type(trial_type), intent(out) :: trial
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
@@ -107,21 +124,23 @@ contains
             next%sources%film = run%loads%film_matrix()
          end if
          next%force_load = run%loads%nodal_forces()
+         ! A solution that fails leaves nothing behind, not even in the last digits.
+         if (allocated(attempt%known)) trial%workspace%known = attempt%known
          call solve_corrected(run, model, stage, before, trial, error)
          if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call warn_of_choices(run, model, &
-            trial%workspace%contact, next, record)
+            trial%workspace%contact, next, attempt%undecided, record)
          if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
          if (stage%is_last) then
             since = wall_seconds()
             call complete_record(bodies, model, run%recovery, run%loads, trial%data, next, record)
             run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
             call warn_of_tables(model, bodies%points, record)
-            if (stability_is_due(record, model)) run%solved = trial%workspace%of_motions()
+            if (stability_is_due(record, model)) attempt%solved = trial%workspace%of_motions()
             call check_record(record, step%analysis, error)
             if (allocated(error)) return
          end if
-         call move_alloc(trial%workspace%known, run%known)
+         call move_alloc(trial%workspace%known, attempt%known)
       end associate
    end subroutine solve_stage
 
@@ -142,6 +161,7 @@ contains
             return
          end if
          fresh = trial%next
+         fresh_workspace = trial%workspace
          call corrections%begin(model, run%bodies, stage, before, &
             takes_past=abs(step%scheme%b(1)) > 0.0_dp)
          do
@@ -221,8 +241,6 @@ contains
             if (allocated(error)) return
          end if
          since = wall_seconds()
-         ! An increment that fails leaves nothing behind, not even in the last digits.
-         if (allocated(run%known)) workspace%known = run%known
          call solve_points(bodies, run%heats(run%in_use), run%loads, data, workspace, next, &
             error)
          trial%record%solution_report_type = workspace%record

@@ -121,11 +121,12 @@ contains
 
    !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
    !> and nothing holds, contact states of which friction allows several.
-   subroutine warn_of_choices(run, model, contact, next, record)
-      type(simulation_type), intent(inout) :: run               !! with supports of the increment
+   subroutine warn_of_choices(run, model, contact, next, undecided, record)
+      type(simulation_type), intent(in) :: run                  !! with supports of the increment
       type(model_type), intent(in) :: model
       type(contact_workspace_type), intent(in) :: contact       !! of the solution
       type(solution_state_type), intent(in) :: next             !! state at its end
+      character(:), allocatable, intent(inout) :: undecided     !! what was last warned of
       type(increment_record_type), intent(inout) :: record      !! receives the warning
       character(:), allocatable :: free, words
 
@@ -139,8 +140,8 @@ contains
          if (len(free) > 0) words = &
             free(3:)//'; no load drives it: the smallest movement is used'
       end if
-      if (words /= run%undecided .and. len(words) > 0) call record%warn(words)
-      run%undecided = words
+      if (words /= undecided .and. len(words) > 0) call record%warn(words)
+      undecided = words
    end subroutine warn_of_choices
 
 end module increment_checks

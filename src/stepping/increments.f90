@@ -2,7 +2,7 @@
 module increments
    use balances, only: sound_imbalance
    use errors, only: error_type, set_error, status_no_convergence
-   use increment_attempts, only: attempt_increment, begin_record
+   use increment_attempts, only: attempt_increment, attempt_type, begin_record
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use model, only: model_type
@@ -29,8 +29,8 @@ contains
       type(model_type), intent(in) :: model
       type(increment_record_type), intent(out) :: record
       type(error_type), allocatable, intent(out) :: error
+      type(attempt_type) :: attempt
       type(increment_record_type) :: before
-      type(solution_state_type) :: next
       type(step_clock_type) :: clock
       type(touch_search_type) :: touch
       real(dp) :: increment_size
@@ -57,21 +57,26 @@ contains
          end if
          if (touch%interface > 0) call run%control%end_at(touch%ending, clock)
          increment_size = clock%step_time - run%control%step_time
-         if (.not. allocated(error)) call attempt_increment(run, model, clock, next, record, error)
+         if (.not. allocated(error)) then
+            call attempt_increment(run, model, clock, attempt, error)
+            record = attempt%record
+         end if
          call add_attempts(before, record)
          if (allocated(error)) then
             touch = touch_search_type()
             call try_again(run, model, increment_size, record, error)
             if (allocated(error)) return
          else
-            if (keeps(run, model, clock, next, touch, record)) exit
+            if (keeps(run, model, clock, attempt%next, touch, record)) exit
          end if
          before = record
+         call run%take_back(model, error)
+         if (allocated(error)) return
       end do
       call warn_of_pivot(run, record)
       run%sizes%corrections = run%sizes%corrections + record%corrections
       run%sizes%most_corrections = max(run%sizes%most_corrections, record%corrections)
-      call accept_increment(next, model, run%state, record)
+      call accept_attempt(attempt, model, record, run)
       call run%control%accept(model, clock, record)
       if (.not. model%steps(run%control%step)%continuation%is_on) return
       call run%branch%accept(model, record%load_factor)
@@ -140,6 +145,19 @@ contains
             run%bodies%interfaces(touch%interface)%name//' touches or parts within it')
       end if
    end function keeps
+
+   !> Hands over to the run what an attempt owns.
+   subroutine accept_attempt(attempt, model, record, run)
+      type(attempt_type), intent(inout) :: attempt
+      type(model_type), intent(in) :: model
+      type(increment_record_type), intent(in) :: record
+      type(simulation_type), intent(inout) :: run
+
+      call accept_increment(attempt%next, model, run%state, record)
+      call move_alloc(attempt%known, run%known)
+      call move_alloc(attempt%undecided, run%undecided)
+      if (allocated(attempt%solved)) call move_alloc(attempt%solved, run%solved)
+   end subroutine accept_attempt
 
    !> Makes the end of an increment the state of a run, the only place where that changes. A
    !> companion run, of which nothing is reported, has no record.

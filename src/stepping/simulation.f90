@@ -55,6 +55,7 @@ module simulation
       procedure :: assemble
       procedure :: reduce
       procedure :: reduce_heat
+      procedure :: take_back
       procedure :: finished
       procedure :: release
    end type simulation_type
@@ -151,6 +152,28 @@ contains
       self%seconds%reduce = self%seconds%reduce + (wall_seconds() - since)
       call measure_factors(self%bodies, self%heats, self%sizes)
    end subroutine reduce
+
+   !> Moves loads and operators from an attempt that is not accepted back to those of the last
+   !> increment.
+   !> Errors: as reduce.
+   subroutine take_back(self, model, error)
+      class(simulation_type), intent(inout) :: self       !! the run
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%loads%move_to(self%control%present_instant(model), model)
+      if (.not. allocated(self%bodies%operators_at)) return
+      associate (at => model%initial_temperature)
+         if (.not. allocated(self%state%operators_at)) then
+            if (all(abs(self%bodies%operators_at - at) <= 0.0_dp)) return
+            call self%bodies%move_operators(model, at)
+         else
+            if (all(abs(self%bodies%operators_at - self%state%operators_at) <= 0.0_dp)) return
+            call self%bodies%move_operators(model, self%state%operators_at)
+         end if
+      end associate
+      call self%reduce(model, error)
+   end subroutine take_back
 
    !> Whether all steps are solved.
    pure function finished(self, model) result(done)
