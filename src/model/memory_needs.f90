@@ -19,7 +19,7 @@ module memory_needs
    public :: memory_needed
 
    real(dp), parameter :: real_bytes = 8.0_dp          !! of a number
-   real(dp), parameter :: base = 30.0e6_dp             !! of the program and its libraries [byte]
+   real(dp), parameter :: base = 36.0e6_dp             !! of the program and its libraries [byte]
    real(dp), parameter :: per_entry = 33.0_dp          !! of an entry of element matrices [byte]
    real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one, for the mesh of the bounds [byte]
    real(dp), parameter :: mumps_factor = 1.25_dp       !! MUMPS's memory in that of its factors

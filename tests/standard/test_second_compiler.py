@@ -101,8 +101,8 @@ def test_flang_refuses_what_gfortran_12_overlooks(complaint, tmp_path):
 
 def test_cmake_accepts_another_compiler_with_a_warning(tmp_path):
     assert flang(tmp_path, [STUB]).returncode == 0
-    configure = ["cmake", "-S", ROOT, "-B", tmp_path / "build", f"-DCMAKE_Fortran_COMPILER={FLANG}",
-                 "-DBUILD_TESTING=OFF"]
+    configure = ["cmake", "-G", "Ninja", "-S", ROOT, "-B", tmp_path / "build",
+                 f"-DCMAKE_Fortran_COMPILER={FLANG}", "-DBUILD_TESTING=OFF"]
     told = subprocess.run(configure, capture_output=True, text=True, check=False)
     assert told.returncode != 0
     assert f"{FLANG} cannot read" in told.stderr
