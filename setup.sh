@@ -11,7 +11,7 @@ program=$build/release/thercon
 # snap alone: of test_packages, those that a system lacks are left out.
 build_packages=(gcc libc6-dev gfortran cmake ninja-build libopenblas-serial-dev libmumps-seq-dev
    libmetis-dev libhdf5-dev python3 python3-venv)
-test_packages=(valgrind calculix-ccx flang-19 chromium chromium-driver debootstrap)
+test_packages=(valgrind calculix-ccx flang-19 chromium chromium-driver debootstrap file dpkg-dev)
 bench_packages=(calculix-ccx)
 requirements=("$root/post/requirements.txt" "$root/tests/requirements.txt")
 sweep_requirements=("$root/input/sweep/requirements.txt")
