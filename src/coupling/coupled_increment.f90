@@ -260,10 +260,10 @@ contains
          record%is_unstable = is_negative .and. data%equation%duration <= 0.0_dp
          ! The points of a branch say so themselves.
          if (data%follows_branch) return
-         if (record%coupling_gain < -1.0_dp .and. data%fixed_point%method == method_picard) &
-            call record%warn( &
-            'the coupling gain is ', record%coupling_gain, &
-            ', below -1: plain iteration (4.1) would diverge')
+         if (record%coupling_gain < -1.0_dp .and. data%fixed_point%method == method_picard) then
+            call record%warn('the coupling gain is ', record%coupling_gain, &
+               ', below -1: plain iteration (4.1) would diverge')
+         end if
          if (.not. ieee_is_nan(record%coupling_gain_max)) then
             if (abs(record%coupling_gain_max - 1.0_dp) <= near_turning_point) call record%warn( &
                'the largest real gain is ', record%coupling_gain_max, &

@@ -180,7 +180,8 @@ contains
 
       there%elasticity = elasticity_in(plane, properties, axes)
       ! Not condensed: with sigma_zz = 0 its energy is that of plane stress, too.
-      if (with_inverses) there%compliance = inverse_of(elasticity_in(plane_strain, properties, axes))
+      if (with_inverses) there%compliance = inverse_of(elasticity_in(plane_strain, properties, &
+         axes))
    end subroutine set_elasticity
 
    pure subroutine set_conduction(properties, axes, with_inverses, there)

@@ -136,7 +136,7 @@ contains
       type(simulation_type), intent(in) :: run               !! heat reduced as in the increment
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: start         !! state at its start
-      real(dp), intent(in) :: stored(:)                      !! (nodes) before its last stage [power]
+      real(dp), intent(in) :: stored(:)                      !! (nodes) before its last stage
       type(solution_state_type), intent(inout) :: next       !! state at the end
       type(increment_record_type), intent(inout) :: record
       real(dp) :: here(2), part, range
