@@ -205,38 +205,36 @@ contains
       integer, allocatable, intent(out) :: point(:)          !! (n) whose opening counts
       real(dp), allocatable, intent(out) :: heat(:, :)       !! (nodes, n) [power/length]
       type(edge_integral_type), allocatable :: hats(:)
-      real(dp), dimension(size(temperature)) :: unmoved, moved
-      real(dp) :: beside(size(opening)), step
+      real(dp) :: unmoved(size(temperature)), moved(size(opening)), step
       integer :: k, m
 
       m = size(opening)
       call find_edge_integrals(bodies, graph%modulus, opening, hats)
+      unmoved = entering(hats, opening)
       point = pack([(k, k=1, m)], [(any(abs(hats%point - k) <= farthest), k=1, m)] .and. &
          .not. resting)
       allocate (heat(size(temperature), size(point)))
-      unmoved = entering(opening)
       do k = 1, size(point)
          associate (j => point(k))
             step = small_part*sum(abs(opening(max(j - 1, 1):min(j + 1, m))))
-            beside = opening
-            beside(j) = opening(j) + merge(step, -step, opening(j) > 0.0_dp)
-            moved = entering(beside)
-            heat(:, k) = (moved - unmoved)/(beside(j) - opening(j))
+            moved = opening
+            moved(j) = opening(j) + merge(step, -step, opening(j) > 0.0_dp)
+            call find_edge_integrals(bodies, graph%modulus, moved, hats)
+            heat(:, k) = (entering(hats, moved) - unmoved)/(moved(j) - opening(j))
          end associate
       end do
    contains
       !> Heat that enters the nodes by the hats at edges.
-      pure function entering(at) result(sums)
+      pure function entering(integrals, at) result(sums)
+         type(edge_integral_type), intent(in) :: integrals(:)
          real(dp), intent(in) :: at(:)                       ! (m) openings
          real(dp) :: sums(size(temperature))
-         type(edge_integral_type), allocatable :: integrals(:)
          type(edge_heat_type) :: at_edge
-         real(dp), allocatable :: jump(:)
+         real(dp) :: jump(size(integrals))
 
-         call find_edge_integrals(bodies, graph%modulus, at, integrals)
          at_edge = edge_heat_at(integrals, bodies%points%weight, &
             graph%omega(graph%coordinate_of_opening(at)))
-         allocate (jump(size(integrals)), source=0.0_dp)
+         jump = 0.0_dp
          call at_edge%jump%add_totals(temperature, jump)
          sums = 0.0_dp
          call at_edge%jump%add_shares(-heat_across(bodies%points%weight(at_edge%point), &

@@ -5,6 +5,7 @@
 !> Each panel takes from the earlier ones what these eliminate, left-looking like Crout's method by
 !> columns. Until its rows are divided by their pivots it holds D U.
 module column_panels
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use blas_lapack, only: daxpy, ddot, dgemm, dtrsm
    use kinds, only: dp, long
    implicit none
@@ -107,7 +108,7 @@ contains
    pure subroutine factor(self, from, least, smallest, bad_column)
       class(column_panels_type), intent(inout) :: self  !! matrix in, factors out
       integer, intent(in) :: from                       !! first column
-      real(dp), intent(in) :: least   !! lost pivot over its diagonal entry; < 0: any is good
+      real(dp), intent(in) :: least   !! lost pivot over its diagonal entry; < 0: any but 0 is good
       real(dp), intent(out) :: smallest                 !! smallest pivot over its diagonal entry
       integer, intent(out) :: bad_column                !! column whose pivot is lost, 0 for none
       real(dp) :: original(widths(1))   ! diagonal entries
@@ -211,6 +212,8 @@ contains
                end if
                if (least >= 0.0_dp) smallest = min(smallest, block(i, i)/entry)
             end associate
+            ! Whoever takes any pivot sees by the solutions that there is none.
+            if (.not. abs(block(i, i)) > 0.0_dp) block(i, i) = ieee_value(1.0_dp, ieee_quiet_nan)
             self%pivot(self%first_column(p) + i - 1) = block(i, i)
             self%inverse(self%first_column(p) + i - 1) = 1.0_dp/block(i, i)
          end if

@@ -196,18 +196,8 @@ contains
       real(dp), intent(in) :: matrix(:, :)     !! (m, n)
       real(dp), intent(in) :: columns(:, :)    !! (n, columns)
       real(dp) :: product(size(matrix, 1), size(columns, 2))
-      integer :: m, n
 
-      m = size(matrix, 1)
-      n = size(matrix, 2)
-      product = 0.0_dp
-      if (size(product) == 0 .or. n == 0) return
-      if (size(columns, 2) == 1) then
-         call dgemv('N', m, n, 1.0_dp, matrix, m, columns, 1, 0.0_dp, product, 1)
-      else
-         call dgemm('N', 'N', m, size(columns, 2), n, 1.0_dp, matrix, m, columns, n, 0.0_dp, &
-            product, m)
-      end if
+      call multiply('N', matrix, columns, product)
    end function product_of
 
    !> matrix^T columns, without a copy of either.
@@ -215,19 +205,28 @@ contains
       real(dp), intent(in) :: matrix(:, :)     !! (n, m)
       real(dp), intent(in) :: columns(:, :)    !! (n, columns)
       real(dp) :: product(size(matrix, 2), size(columns, 2))
+
+      call multiply('T', matrix, columns, product)
+   end function transposed_product
+
+   pure subroutine multiply(operation, matrix, columns, product)
+      character, intent(in) :: operation       ! N or T, as of BLAS
+      real(dp), intent(in) :: matrix(:, :), columns(:, :)
+      real(dp), intent(out) :: product(:, :)
       integer :: m, n
 
-      n = size(matrix, 1)
-      m = size(matrix, 2)
+      m = size(product, 1)
+      n = size(columns, 1)
       product = 0.0_dp
       if (size(product) == 0 .or. n == 0) return
       if (size(columns, 2) == 1) then
-         call dgemv('T', n, m, 1.0_dp, matrix, n, columns, 1, 0.0_dp, product, 1)
+         call dgemv(operation, size(matrix, 1), size(matrix, 2), 1.0_dp, matrix, &
+            size(matrix, 1), columns, 1, 0.0_dp, product, 1)
       else
-         call dgemm('T', 'N', m, size(columns, 2), n, 1.0_dp, matrix, n, columns, n, 0.0_dp, &
-            product, m)
+         call dgemm(operation, 'N', m, size(columns, 2), n, 1.0_dp, matrix, size(matrix, 1), &
+            columns, n, 0.0_dp, product, m)
       end if
-   end function transposed_product
+   end subroutine multiply
 
    !> The shortest x for which |matrix x - rhs| is least; columns that depend on others to rounding
    !> do not count. 0 where matrix or right-hand side overflowed.

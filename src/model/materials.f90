@@ -274,8 +274,7 @@ contains
       integer :: i
 
       associate (heat => material%heat)
-         i = 1 + row_below(heat%from(2:), temperature)
-         x = temperature - heat%from(i)
+         call find_part(heat, temperature, i, x)
          content = heat%content(i) + x*(heat%capacity(1, i) + x*(heat%capacity(2, i)/2 + &
             x*heat%capacity(3, i)/3))
       end associate
@@ -289,11 +288,21 @@ contains
       integer :: i
 
       associate (heat => material%heat)
-         i = 1 + row_below(heat%from(2:), temperature)
-         x = temperature - heat%from(i)
+         call find_part(heat, temperature, i, x)
          capacity = heat%capacity(1, i) + x*(heat%capacity(2, i) + x*heat%capacity(3, i))
       end associate
    end function heat_capacity_at
+
+   !> The part of a table with a temperature, and how far it is into it.
+   pure subroutine find_part(heat, temperature, part, x)
+      type(heat_table_type), intent(in) :: heat
+      real(dp), intent(in) :: temperature
+      integer, intent(out) :: part
+      real(dp), intent(out) :: x
+
+      part = 1 + row_below(heat%from(2:), temperature)
+      x = temperature - heat%from(part)
+   end subroutine find_part
 
    !> Integrates rho c of the properties that the material has.
    pure subroutine integrate_capacity(material)
@@ -339,19 +348,13 @@ contains
       type(material_type), intent(in) :: material
       real(dp), intent(out) :: least                    !! [energy/(volume temperature)]
       real(dp), intent(out) :: temperature              !! 0 of a material without tables
-      real(dp), allocatable :: rows(:)
-      real(dp) :: there
       integer :: i
 
-      least = heat_capacity(material)
-      temperature = 0.0_dp
-      rows = content_rows(material)
-      do i = 1, size(rows)
-         there = capacity_at(material, rows(i))
-         if (i > 1 .and. there >= least) cycle
-         least = there
-         temperature = rows(i)
-      end do
+      associate (heat => material%heat)
+         i = 1 + minloc(heat%capacity(1, 2:), dim=1)
+         least = heat%capacity(1, i)
+         temperature = heat%from(i)
+      end associate
    end subroutine least_heat_capacity
 
    !> Temperatures of the rows of density and specific heat, ascending.

@@ -155,12 +155,12 @@ contains
             associate (errors => record%body_errors(i))
                if (is_node) then
                   if (errors%no_estimate(q) /= no_reason) holds(errors%no_estimate(q)) = .true.
-                  outcome%no_estimate = first_reason(holds)
                else if (.not. ieee_is_nan(errors%value(q))) then
                   if (errors%value(q) >= outcome%found) call take(errors, q)
                end if
             end associate
          end do
+         if (any(holds)) outcome%no_estimate = first_reason(holds)
          if (is_node .and. allocated(record%check_bounds)) then
             if (.not. ieee_is_nan(record%check_bounds(c))) outcome%bound = record%check_bounds(c)
          end if

@@ -88,11 +88,8 @@ contains
                status_no_convergence, 'the increment leads to another branch')
          end if
          if (.not. step%is_transient .or. allocated(error)) return
-         if (allocated(first%next%stored)) then
-            call measure_changes(run, model, start, first%next%stored, attempt%next, attempt%record)
-         else
-            call measure_changes(run, model, start, start%stored, attempt%next, attempt%record)
-         end if
+         call measure_changes(run, model, start, last%data%before%stored, attempt%next, &
+            attempt%record)
          if (run%control%increments_of_step == 0) call note_shock(model, stage%jump, &
             run%control%size_to(clock), attempt%record)
       end associate

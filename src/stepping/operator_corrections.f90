@@ -222,8 +222,8 @@ contains
 
       n = size(temperature)
       allocate (values(4*n), source=0.0_dp)
-      if (size(self%elements) > 0) call gather_excess(self, model, bodies, temperature, &
-         displacement, values(n + 1:2*n), values(2*n + 1:))
+      values(n + 1:2*n) = heat_beyond(self, model, bodies, temperature)
+      values(2*n + 1:) = forces_beyond(self, model, bodies, temperature, displacement)
       if (stage%duration <= 0.0_dp) return
       if (allocated(stage%content)) values(:n) = true_contents(self, model, temperature) - &
          stage%content - merge(bodies%capacity%multiply(temperature - stage%temperature), 0.0_dp, &
@@ -240,57 +240,55 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
       real(dp) :: heat(size(temperature))                    !! (nodes) [power]
-      real(dp) :: forces(2*size(temperature)), rest(2*size(temperature))
-
-      rest = 0.0_dp
-      heat = 0.0_dp
-      if (size(self%elements) > 0) call gather_excess(self, model, bodies, temperature, rest, &
-         heat, forces)
-   end function heat_beyond
-
-   !> Heat and forces of the operators over those of the bodies.
-   subroutine gather_excess(self, model, bodies, temperature, displacement, heat, forces)
-      class(corrections_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      real(dp), intent(in) :: temperature(:), displacement(:)
-      real(dp), intent(out) :: heat(:), forces(:)            ! (nodes), (2 nodes)
-      real(dp) :: flux(most, 2), stress(most, 4), of_nodes(2, 8)
-      real(dp) :: u(2, size(temperature)), balance(2, size(temperature))
-      real(dp) :: warming(size(temperature))
-      logical :: conducts, strains
+      real(dp) :: flux(most, 2), of_nodes(8)
       integer :: i
 
-      warming = temperature - model%initial_temperature
-      conducts = allocated(bodies%thermal%matrix%value)
-      strains = allocated(bodies%mechanical%matrix%value)
       heat = 0.0_dp
-      balance = 0.0_dp
-      if (conducts) heat = bodies%thermal%matrix%multiply(temperature)
-      if (strains) balance = reshape(of_operators(), shape(balance))
-      u = reshape(displacement, shape(u))
+      if (size(self%elements) == 0 .or. .not. allocated(bodies%thermal%matrix%value)) return
+      call set_points(self, model, temperature)
+      heat = bodies%thermal%matrix%multiply(temperature)
       flux = 0.0_dp
-      stress = 0.0_dp
-      call self%points%set_temperature(model%mesh, model%sections, model%materials, &
-         model%orientations, temperature, model%initial_temperature)
       do i = 1, size(self%elements)
          associate (mesh => model%mesh, e => self%elements(i), nodes => model%mesh%element_nodes( &
             :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
-            if (conducts) then
-               call self%points%heat_flux(mesh, e, temperature, flux)
-               of_nodes(1, :) = self%points%nodal_heat(mesh, e, flux)
-               heat(nodes) = heat(nodes) - of_nodes(1, :size(nodes))
-            end if
-            if (.not. strains) cycle
+            call self%points%heat_flux(mesh, e, temperature, flux)
+            of_nodes = self%points%nodal_heat(mesh, e, flux)
+            heat(nodes) = heat(nodes) - of_nodes(:size(nodes))
+         end associate
+      end do
+      heat = merge(heat, 0.0_dp, self%follows)
+   end function heat_beyond
+
+   !> Forces that the stiffness and the thermal load have beyond the bodies.
+   function forces_beyond(self, model, bodies, temperature, displacement) result(forces)
+      type(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: temperature(:)                 ! (nodes)
+      real(dp), intent(in) :: displacement(:)                ! (2 nodes) [length]
+      real(dp) :: forces(size(displacement))                 ! (2 nodes) [force]
+      real(dp), dimension(2, size(temperature)) :: balance, u
+      real(dp) :: stress(most, 4), of_nodes(2, 8), warming(size(temperature))
+      integer :: i
+
+      forces = 0.0_dp
+      if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
+      call set_points(self, model, temperature)
+      warming = temperature - model%initial_temperature
+      u = reshape(displacement, shape(u))
+      balance = reshape(of_operators(), shape(balance))
+      stress = 0.0_dp
+      do i = 1, size(self%elements)
+         associate (mesh => model%mesh, e => self%elements(i), nodes => model%mesh%element_nodes( &
+            :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
             call self%points%stress(mesh, e, u, warming, stress)
             of_nodes = self%points%nodal_forces(mesh, e, stress)
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
          end associate
       end do
-      heat = merge(heat, 0.0_dp, self%follows)
       forces = reshape(merge(balance, 0.0_dp, spread(self%follows, 1, 2)), shape(forces))
    contains
-      !> Forces that the operators of the bodies alone have for the stresses at the points.
+      !> What the operators have, bars aside, for the forces of the stresses.
       function of_operators() result(sums)
          real(dp) :: sums(2*size(temperature))
 
@@ -302,7 +300,17 @@ contains
          if (allocated(bodies%bar_load%value)) sums = sums + bodies%bar_load%multiply(warming)
          if (allocated(bodies%initial_force)) sums = sums - bodies%initial_force
       end function of_operators
-   end subroutine gather_excess
+   end function forces_beyond
+
+   !> Gives the integration points the properties at temperatures.
+   subroutine set_points(self, model, temperature)
+      type(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)
+
+      call self%points%set_temperature(model%mesh, model%sections, model%materials, &
+         model%orientations, temperature, model%initial_temperature)
+   end subroutine set_points
 
    !> Heat contents of the bodies whose properties follow temperatures, on the nodes; consistent in
    !> elements with nodes between corners, else lumped, as the capacity matrix is.

@@ -160,18 +160,14 @@ contains
       class(simulation_type), intent(inout) :: self       !! the run
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
+      real(dp), allocatable :: at(:)                      ! (nodes) [temperature]
 
       call self%loads%move_to(self%control%present_instant(model), model)
       if (.not. allocated(self%bodies%operators_at)) return
-      associate (at => model%initial_temperature)
-         if (.not. allocated(self%state%operators_at)) then
-            if (all(abs(self%bodies%operators_at - at) <= 0.0_dp)) return
-            call self%bodies%move_operators(model, at)
-         else
-            if (all(abs(self%bodies%operators_at - self%state%operators_at) <= 0.0_dp)) return
-            call self%bodies%move_operators(model, self%state%operators_at)
-         end if
-      end associate
+      at = model%initial_temperature
+      if (allocated(self%state%operators_at)) at = self%state%operators_at
+      if (all(abs(self%bodies%operators_at - at) <= 0.0_dp)) return
+      call self%bodies%move_operators(model, at)
       call self%reduce(model, error)
    end subroutine take_back
 

@@ -104,8 +104,9 @@ contains
             taken(m) = max(taken(m), here)
          end do
          do m = 1, size(taken)
+            if (taken(m) <= 0.0_dp) cycle
             call least_heat_capacity(model%materials(m), least, row)
-            if (taken(m) <= 0.0_dp .or. least > taken(m)) cycle
+            if (least > taken(m)) cycle
             at_row = ''
             if (any([follows_temperature(model%materials(m), of_density), &
                follows_temperature(model%materials(m), of_specific_heat)])) at_row = &
