@@ -2,6 +2,7 @@
 !> sides of a tie agrees with it, and leaves contact points open whose motion it determines.
 module constraint_checks
    use connections, only: connections_type
+   use contact_pairs, only: touching
    use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_support, of_tie, &
       origins_of, row_origin_type
    use field_constraints, only: displacement_rows, find_prescribed, temperature_rows
@@ -21,9 +22,6 @@ module constraint_checks
    !> Part of the prescribed values by which they may miss what a tie asks for. Decks give them to a
    !> few digits.
    real(dp), parameter :: agreed = 1.0e-6_dp
-
-   !> Gap that is rounding, as part of the largest coordinate: a sum of a few of them.
-   real(dp), parameter :: touching = 64*epsilon(1.0_dp)
 
 contains
 

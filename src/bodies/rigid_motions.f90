@@ -1,23 +1,18 @@
 !> Motions without strain of the bodies that supports and contacts leave free.
 !>
-!> A body, or each of the parts that it hinges together from, is rigid. In a plane model it shifts
-!> along x and y and turns about the middle of its nodes; in an axisymmetric one it shifts along the
-!> axis y. Every support and every direction in which a contact point holds is one linear condition
-!> on these few unknowns, and so is each component at a hinge; the motions that are free span the
-!> null space of all conditions. Nodes of no body that joints take move by themselves. That space
-!> comes from a singular value decomposition and is brought to echelon form, so that a motion names
-!> as few bodies as possible. Turns count by the displacement that they give at the farthest node of
-!> the body. A part of one element with reduced integration deforms, too, without any strain at its
-!> integration points: its hourglass mode.
+!> In a plane model a rigid part (rigid_parts) shifts along x and y and turns; in an axisymmetric
+!> one it shifts along the axis y. Every support and every direction in which a contact point holds
+!> is one linear condition on these few unknowns, and so is each component at a hinge; the motions
+!> that are free span the null space of all conditions. Nodes of no body that joints take move by
+!> themselves. That space comes from a singular value decomposition and is brought to echelon form,
+!> so that a motion names as few bodies as possible.
 module rigid_motions
    use mesh_bodies, only: bodies_on_axis
    use dense, only: null_space
-   use element_kinds, only: axisymmetric, element_node_count, quad8_reduced
    use equations, only: equation_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use quadrature, only: integration_rule
-   use shape_functions, only: element_gradients
+   use rigid_parts, only: find_rigid_parts, rigid_parts_type
    use text, only: to_text
    use connections, only: tie_points_type
    implicit none
@@ -46,23 +41,6 @@ module rigid_motions
       procedure :: verb
    end type free_motion_type
 
-   !> The bodies as rigid parts. Unknowns are two shifts and a turn of each part, the amplitudes of
-   !> hourglass modes, and the degrees of freedom of no body.
-   type :: rigid_bodies_type
-      integer, allocatable :: body(:)           !! (parts) body of each
-      integer, allocatable :: first(:)          !! (parts) first element, 0 for all of the body
-      integer, allocatable :: part(:)           !! (nodes) a part that has it, or 0
-      integer, allocatable :: hinge(:, :)       !! (2, hinges) node, another part that has it
-      real(dp), allocatable :: middle(:, :)     !! (2, parts) mean of the nodes [length]
-      real(dp), allocatable :: extent(:)        !! (parts) distance of the farthest node [length]
-      integer, allocatable :: soft(:)           !! (modes) part that has an hourglass mode
-      integer, allocatable :: corner(:, :)      !! (8, modes) nodes of its element
-      real(dp), allocatable :: mode(:, :, :)    !! (2, 8, modes) their displacements
-      integer, allocatable :: lone(:) !! degrees of freedom, of no body, that joints take
-   contains
-      procedure :: unknowns
-   end type rigid_bodies_type
-
    !> Conditions of ties and equations.
    interface joints_of
       module procedure :: joints_of_ties, joints_of_equations
@@ -76,7 +54,7 @@ contains
       logical, intent(in) :: held(:)                  !! (2 nodes) prescribed displacements
       type(joint_type), intent(in) :: joints(:)   !! what contact points and ties hold
       type(free_motion_type), allocatable, intent(out) :: motions(:)
-      type(rigid_bodies_type) :: bodies
+      type(rigid_parts_type) :: bodies
       real(dp), allocatable :: basis(:, :)
       integer :: i
 
@@ -97,7 +75,7 @@ contains
       type(joint_type), intent(in) :: joints(:)            !! what ties and equations hold
       integer, intent(in) :: references(:)  !! nodes of no body that contact points take, each once
       real(dp), allocatable, intent(out) :: fields(:, :)   !! (2 nodes, motions)
-      type(rigid_bodies_type) :: bodies
+      type(rigid_parts_type) :: bodies
       real(dp), allocatable :: basis(:, :)
       integer :: c, k, node
 
@@ -108,7 +86,7 @@ contains
          if (bodies%part(node) == 0) cycle
          associate (p => bodies%part(node))
             do c = 1, 2
-               fields(2*(node - 1) + c, :) = matmul(at_point(bodies, p, &
+               fields(2*(node - 1) + c, :) = matmul(bodies%at_point(p, &
                   mesh%coordinates(:, node), unit(:, c)), basis(3*p - 2:3*p, :))
             end do
          end associate
@@ -131,7 +109,7 @@ contains
    !> that the others do not have.
    pure function free_basis(mesh, bodies, held, joints) result(basis)
       type(mesh_type), intent(in) :: mesh
-      type(rigid_bodies_type), intent(in) :: bodies
+      type(rigid_parts_type), intent(in) :: bodies
       logical, intent(in) :: held(:)
       type(joint_type), intent(in) :: joints(:)
       !> (unknowns, motions)
@@ -156,7 +134,7 @@ contains
    !> Supports, axes and joints as conditions on the rigid motions, a row each.
    pure function conditions(mesh, bodies, held, joints) result(rows)
       type(mesh_type), intent(in) :: mesh
-      type(rigid_bodies_type), intent(in) :: bodies
+      type(rigid_parts_type), intent(in) :: bodies
       logical, intent(in) :: held(:)
       type(joint_type), intent(in) :: joints(:)
       real(dp), allocatable :: rows(:, :)
@@ -199,7 +177,7 @@ contains
    !> Displacement of a node along a direction by the unknowns; a node of no body has its own.
    pure function displacement_row(mesh, bodies, node, direction) result(row)
       type(mesh_type), intent(in) :: mesh
-      type(rigid_bodies_type), intent(in) :: bodies
+      type(rigid_parts_type), intent(in) :: bodies
       integer, intent(in) :: node
       real(dp), intent(in) :: direction(2)
       real(dp) :: row(bodies%unknowns())
@@ -216,43 +194,24 @@ contains
    !> The same by the unknowns of a part that has the node.
    pure function row_in_part(mesh, bodies, part, node, direction) result(row)
       type(mesh_type), intent(in) :: mesh
-      type(rigid_bodies_type), intent(in) :: bodies
+      type(rigid_parts_type), intent(in) :: bodies
       integer, intent(in) :: part, node
       real(dp), intent(in) :: direction(2)
       real(dp) :: row(bodies%unknowns())
       integer :: k
 
       row = 0.0_dp
-      row(3*part - 2:3*part) = at_point(bodies, part, mesh%coordinates(:, node), direction)
+      row(3*part - 2:3*part) = bodies%at_point(part, mesh%coordinates(:, node), direction)
       k = findloc(bodies%soft, part, dim=1)
       if (k > 0) row(3*size(bodies%body) + k) = dot_product(direction, &
          bodies%mode(:, findloc(bodies%corner(:, k), node, dim=1), k))
    end function row_in_part
 
-   !> Number of unknowns.
-   pure integer function unknowns(self)
-      class(rigid_bodies_type), intent(in) :: self
-
-      unknowns = 3*size(self%body) + size(self%soft) + size(self%lone)
-   end function unknowns
-
-   !> Displacement along a direction by unit shifts and the unit turn of a part.
-   pure function at_point(bodies, part, position, direction) result(displacement)
-      type(rigid_bodies_type), intent(in) :: bodies
-      integer, intent(in) :: part
-      real(dp), intent(in) :: position(2), direction(2)
-      real(dp) :: displacement(3)
-      real(dp) :: arm(2)
-
-      arm = (position - bodies%middle(:, part))/bodies%extent(part)
-      displacement = [direction, direction(2)*arm(1) - direction(1)*arm(2)]
-   end function at_point
-
    pure function measure(mesh, joints, references) result(bodies)
       type(mesh_type), intent(in) :: mesh
       type(joint_type), intent(in) :: joints(:)
       integer, intent(in) :: references(:)
-      type(rigid_bodies_type) :: bodies
+      type(rigid_parts_type) :: bodies
       integer :: c, i, k
 
       bodies%lone = [((2*(references(i) - 1) + c, c=1, 2), i=1, size(references))]
@@ -267,124 +226,13 @@ contains
             end do
          end do
       end do
-      call divide(mesh, bodies)
-      call place(mesh, bodies)
-      call find_modes(mesh, bodies)
+      call find_rigid_parts(mesh, bodies)
    end function measure
-
-   !> The parts of the bodies and their hinges: nodes that several parts have.
-   pure subroutine divide(mesh, bodies)
-      type(mesh_type), intent(in) :: mesh
-      type(rigid_bodies_type), intent(inout) :: bodies
-      integer :: e, p, q
-
-      bodies%part = mesh%node_body
-      allocate (bodies%hinge(2, 0))
-      if (.not. allocated(mesh%element_part)) then
-         bodies%body = [(p, p=1, mesh%body_count)]
-         bodies%first = 0*bodies%body
-         return
-      end if
-      bodies%first = [(findloc(mesh%element_part, p, dim=1), p=1, maxval(mesh%element_part))]
-      bodies%body = mesh%element_body(bodies%first)
-      bodies%part = 0
-      do e = 1, size(mesh%element_part)
-         do q = 1, element_node_count(mesh%element_kind(e))
-            associate (own => bodies%part(mesh%element_nodes(q, e)), part => mesh%element_part(e))
-               if (own == 0) own = part
-               if (own == part) cycle
-               if (any(bodies%hinge(1, :) == mesh%element_nodes(q, e) .and. &
-                  bodies%hinge(2, :) == part)) cycle
-               bodies%hinge = reshape([bodies%hinge, mesh%element_nodes(q, e), part], &
-                  [2, size(bodies%hinge, 2) + 1])
-            end associate
-         end do
-      end do
-   end subroutine divide
-
-   !> The middles and extents of the parts.
-   pure subroutine place(mesh, bodies)
-      type(mesh_type), intent(in) :: mesh
-      type(rigid_bodies_type), intent(inout) :: bodies
-      integer :: nodes(size(bodies%body)), node
-
-      allocate (bodies%middle(2, size(nodes)), bodies%extent(size(nodes)), source=0.0_dp)
-      nodes = 0
-      do node = 1, size(bodies%part)
-         if (bodies%part(node) == 0) cycle
-         associate (p => bodies%part(node))
-            nodes(p) = nodes(p) + 1
-            bodies%middle(:, p) = bodies%middle(:, p) + mesh%coordinates(:, node)
-         end associate
-      end do
-      bodies%middle = bodies%middle/spread(real(nodes, dp), 1, 2)
-      do node = 1, size(bodies%part)
-         if (bodies%part(node) == 0) cycle
-         associate (p => bodies%part(node))
-            bodies%extent(p) = max(bodies%extent(p), &
-               norm2(mesh%coordinates(:, node) - bodies%middle(:, p)))
-         end associate
-      end do
-   end subroutine place
-
-   !> The hourglass modes of plane parts that are one element with four points for eight nodes.
-   pure subroutine find_modes(mesh, bodies)
-      type(mesh_type), intent(in) :: mesh
-      type(rigid_bodies_type), intent(inout) :: bodies
-      integer :: elements(size(bodies%body)), e, p
-      integer, allocatable :: part(:)
-
-      allocate (bodies%soft(0), bodies%corner(8, 0), bodies%mode(2, 8, 0))
-      if (.not. allocated(mesh%element_kind)) return
-      part = mesh%element_body
-      if (allocated(mesh%element_part)) part = mesh%element_part
-      elements = 0
-      do e = 1, size(part)
-         elements(part(e)) = elements(part(e)) + 1
-      end do
-      do e = 1, size(part)
-         p = part(e)
-         if (elements(p) > 1 .or. mesh%element_kind(e) /= quad8_reduced .or. &
-            mesh%element_plane(e) == axisymmetric) cycle
-         bodies%soft = [bodies%soft, p]
-         bodies%corner = reshape([bodies%corner, mesh%element_nodes(:, e)], [8, size(bodies%soft)])
-         bodies%mode = reshape([bodies%mode, hourglass(mesh%coordinates(:, &
-            mesh%element_nodes(:, e)))], [2, 8, size(bodies%soft)])
-      end do
-   end subroutine find_modes
-
-   !> Displacements, across the rigid motions, that no integration point of such an element strains
-   !> by; the largest one is 1.
-   pure function hourglass(coordinates) result(mode)
-      real(dp), intent(in) :: coordinates(:, :)   ! (2, 8) [length]
-      real(dp) :: mode(2, 8)
-      real(dp) :: gradients(2, 8), jacobian, points(2, 4), rows(15, 16), weights(4)
-      real(dp), allocatable :: basis(:, :)
-      integer :: i
-
-      call integration_rule(quad8_reduced, points, weights)
-      rows = 0.0_dp
-      associate (extent => maxval(coordinates) - minval(coordinates))
-         do i = 1, 4
-            call element_gradients(quad8_reduced, coordinates, points(:, i), gradients, jacobian)
-            rows(3*i - 2, 1::2) = gradients(1, :)*extent
-            rows(3*i - 1, 2::2) = gradients(2, :)*extent
-            rows(3*i, 1::2) = gradients(2, :)*extent
-            rows(3*i, 2::2) = gradients(1, :)*extent
-         end do
-         rows(13, 1::2) = 1.0_dp
-         rows(14, 2::2) = 1.0_dp
-         rows(15, 1::2) = -(coordinates(2, :) - sum(coordinates(2, :))/8)/extent
-         rows(15, 2::2) = (coordinates(1, :) - sum(coordinates(1, :))/8)/extent
-      end associate
-      basis = null_space(rows)
-      mode = reshape(basis(:, 1)/maxval(abs(basis(:, 1))), [2, 8])
-   end function hourglass
 
    !> A motion in words.
    pure function motion_of(mesh, bodies, unknown) result(motion)
       type(mesh_type), intent(in) :: mesh
-      type(rigid_bodies_type), intent(in) :: bodies
+      type(rigid_parts_type), intent(in) :: bodies
       real(dp), intent(in) :: unknown(:)          !! (unknowns)
       type(free_motion_type) :: motion
       type(free_motion_type) :: other

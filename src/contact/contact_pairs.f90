@@ -22,7 +22,7 @@ module contact_pairs
    use text, only: to_text
    implicit none
    private
-   public :: make_contact_points, make_tie_points
+   public :: make_contact_points, make_tie_points, touching
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
    !> Part of the largest coordinate within which faces touch. Coordinates written with 15 digits,
