@@ -3,6 +3,7 @@
 !> Contact points may rest: gamma = p = 0 with a conductance between the values of a law that jumps
 !> there. Without them some increments have no solution, (1.8) asking for a law without a jump.
 module increment_iteration
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use contact_heat, only: at_own_temperatures, derivative_by_temperature, jump_derivatives, &
       jump_derivatives_type
    use contact_operator, only: contact_operator_pass, load_derivative, opening_derivative, &
@@ -141,9 +142,10 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: jump(:)
 
-      associate (expansion => bodies%largest_expansion)
-         runs_away = expansion > 0.0_dp .and. .not. all(abs(jump)*expansion <= no_strain)
-      end associate
+      runs_away = .false.
+      if (bodies%largest_expansion <= 0.0_dp) return
+      runs_away = .not. all(ieee_is_finite(jump))
+      if (.not. runs_away) runs_away = any(abs(jump)*bodies%largest_expansion > no_strain)
    end function runs_away
 
    !> Names the interface with the largest jump, in place of an error, where the heat runs away.
@@ -155,7 +157,7 @@ contains
       integer :: i, k
 
       if (.not. runs_away(bodies, jump)) return
-      k = findloc(abs(jump) <= huge(1.0_dp), .false., dim=1)
+      k = findloc(ieee_is_finite(jump), .false., dim=1)
       if (k == 0) k = maxloc(abs(jump), dim=1)
       i = count(bodies%points%interface_start <= k)
       record%runaway = 'thermal runaway in contact pair '//bodies%interfaces(i)%name// &

@@ -5,7 +5,7 @@
 !> Each panel takes from the earlier ones what these eliminate, left-looking like Crout's method by
 !> columns. Until its rows are divided by their pivots it holds D U.
 module column_panels
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use blas_lapack, only: daxpy, ddot, dgemm, dtrsm
    use kinds, only: dp, long
    implicit none
@@ -206,14 +206,17 @@ contains
       do i = 1, n
          if (i > before) then
             associate (entry => abs(original(i - before)))
-               if (least >= 0.0_dp .and. .not. block(i, i) > least*entry) then
-                  bad_column = self%first_column(p) + i - 1
-                  return
+               if (least >= 0.0_dp) then
+                  if (.not. block(i, i) > least*entry) then
+                     bad_column = self%first_column(p) + i - 1
+                     return
+                  end if
+                  smallest = min(smallest, block(i, i)/entry)
+               else if (.not. ieee_is_nan(block(i, i))) then
+                  ! Solutions then are no numbers either, which is seen where they are checked.
+                  if (abs(block(i, i)) <= 0.0_dp) block(i, i) = ieee_value(1.0_dp, ieee_quiet_nan)
                end if
-               if (least >= 0.0_dp) smallest = min(smallest, block(i, i)/entry)
             end associate
-            ! Whoever takes any pivot sees by the solutions that there is none.
-            if (.not. abs(block(i, i)) > 0.0_dp) block(i, i) = ieee_value(1.0_dp, ieee_quiet_nan)
             self%pivot(self%first_column(p) + i - 1) = block(i, i)
             self%inverse(self%first_column(p) + i - 1) = 1.0_dp/block(i, i)
          end if
