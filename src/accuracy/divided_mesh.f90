@@ -338,7 +338,7 @@ contains
       call self%run%recovery%prepare(self%model, parts_of(self, also))
       if (allocated(state%stress_temperature)) call self%run%recovery%recover_stress(self%model, &
          reshape(state%displacement, [2, size(state%temperature)]), state%stress_temperature - &
-         self%model%initial_temperature, self%fields%stress, estimate)
+         self%model%initial_temperature, state%history, self%fields%stress, estimate)
    end subroutine keep_fields
 
    !> Orders unknowns as the run does. A new node comes with the first one of its side, or of its

@@ -15,7 +15,7 @@ module reduced_bodies
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use loads, only: loads_type
-   use materials, only: follows_temperature, heat_capacity, heat_capacity_at
+   use materials, only: follows_temperature, heat_capacity, heat_capacity_at, varies
    use model, only: model_type
    use held_points, only: held_directions
    use point_materials, only: point_materials_type
@@ -23,7 +23,7 @@ module reduced_bodies
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
-   use stiffness_matrix, only: assemble_initial_force, assemble_stiffness, assemble_thermal_load
+   use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_capacity, assemble_conduction
    implicit none
    private
@@ -46,13 +46,14 @@ module reduced_bodies
       type(sparse_matrix_type) :: capacity
       type(dilatation_type) :: dilatation                     !! heat that strains take up
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
-      real(dp), allocatable :: initial_force(:)               !! (2 nodes) of stresses, or none
       ! What springs and trusses have of the matrices of equilibrium; without values for none.
       type(sparse_matrix_type) :: bar_stiffness, bar_load
       type(equilibrium_reduction_type) :: equilibrium         !! the partial solution of (2.4)
       real(dp) :: largest_expansion = 0.0_dp !! of all bodies [1/temperature]
-      !> (nodes) that the operators were formed with, where properties follow them [temperature]
+      !> (nodes) that the operators were formed with, where materials vary [temperature]
       real(dp), allocatable :: operators_at(:)
+      !> (16*materials of the points) of stress by strain, likewise; unallocated for elasticity
+      real(dp), allocatable :: tangent(:)
       real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
@@ -70,6 +71,7 @@ module reduced_bodies
       procedure :: assemble
       procedure :: form_operators
       procedure :: move_operators
+      procedure :: has_operators_of
       procedure :: reduce
    end type reduced_bodies_type
 
@@ -267,8 +269,6 @@ contains
       logical, intent(in) :: with_heat                       !! whether any step solves heat
       logical, intent(in) :: with_strain !! whether temperatures strain the bodies in any step
 
-      if (with_mechanics .and. allocated(model%mesh%initial_stress)) self%initial_force = &
-         assemble_initial_force(model%mesh, model%sections)
       call self%form_operators(model, model%initial_temperature, with_mechanics, with_heat, &
          with_strain)
       if (any(model%steps%dilates)) call self%dilatation%prepare(model)
@@ -282,17 +282,15 @@ contains
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
       logical, intent(in) :: with_mechanics, with_heat, with_strain   !! as in assemble
       type(point_materials_type) :: points
-      logical :: follows
 
       associate (mesh => model%mesh, sections => model%sections, materials => model%materials)
          points%has_inverses = .false.
          call points%place(mesh, sections, materials, model%orientations, integration_rules())
-         follows = any(follows_temperature(materials(sections%material)))
-         if (follows) then
-            call points%set_temperature(mesh, sections, materials, model%orientations, &
-               temperature, model%initial_temperature)
+         if (any(varies(materials(sections%material)))) then
+            call points%set_temperature(mesh, temperature, model%initial_temperature)
             self%operators_at = temperature
          end if
+         if (allocated(self%tangent)) call points%take_tangents(mesh, self%tangent)
          if (with_mechanics) call self%mechanical%set_matrix(assemble_stiffness(mesh, sections, &
             points))
          if (with_strain) self%thermal_load = assemble_thermal_load(mesh, sections, points)
@@ -321,15 +319,29 @@ contains
       end associate
    end subroutine add_bars
 
-   !> Forms the operators that there are at other temperatures.
-   subroutine move_operators(self, model, temperature)
+   !> Forms the operators that there are at other temperatures and tangents.
+   subroutine move_operators(self, model, temperature, tangent)
       class(reduced_bodies_type), intent(inout) :: self !! assembled
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp), allocatable, intent(in) :: tangent(:)        !! of stress at points, or none
 
+      if (allocated(self%tangent)) deallocate (self%tangent)
+      if (allocated(tangent)) self%tangent = tangent
       call self%form_operators(model, temperature, allocated(self%mechanical%matrix%value), &
          allocated(self%thermal%matrix%value), allocated(self%thermal_load%value))
    end subroutine move_operators
+
+   !> Whether the operators are those of temperatures and tangents.
+   pure logical function has_operators_of(self, temperature, tangent) result(has)
+      class(reduced_bodies_type), intent(in) :: self !! assembled
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp), allocatable, intent(in) :: tangent(:)        !! of stress at points, or none
+
+      has = allocated(tangent) .eqv. allocated(self%tangent)
+      if (has) has = all(abs(self%operators_at - temperature) <= 0.0_dp)
+      if (has .and. allocated(tangent)) has = all(abs(self%tangent - tangent) <= 0.0_dp)
+   end function has_operators_of
 
    !> rho c of the elements at the means of temperatures of their nodes.
    pure function capacities(model, temperature) result(capacity)

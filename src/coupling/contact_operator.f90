@@ -223,20 +223,19 @@ contains
       touches = contact_state /= contact_open .or. gap <= 0.0_dp
    end function touches
 
-   !> Nodal forces of the stresses that the bodies have without strains: of temperatures, and the
-   !> initial ones; and what the stiffness has beyond the bodies.
-   pure function unstrained_forces(bodies, warming, excess) result(forces)
+   !> Nodal forces beside those of the stiffness: of thermal strains, and of all that the bodies have
+   !> beyond their operators.
+   pure function unstrained_forces(bodies, warming, beyond) result(forces)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: warming(:)         !! (nodes) since the initial state [temperature]
-      real(dp), allocatable, intent(in) :: excess(:)            !! (2 nodes), or none [force]
+      real(dp), allocatable, intent(in) :: beyond(:)            !! (2 nodes), or none [force]
       real(dp) :: forces(2*size(warming))                       !! (2 nodes) [force]
 
       forces = 0.0_dp
       if (allocated(bodies%thermal_load%value)) then
          forces = bodies%thermal_load%multiply(warming)
       end if
-      if (allocated(bodies%initial_force)) forces = forces + bodies%initial_force
-      if (allocated(excess)) forces = forces + excess
+      if (allocated(beyond)) forces = forces + beyond
    end function unstrained_forces
 
    !> Nodal forces that elongate the springs and trusses, as they are.

@@ -64,7 +64,10 @@ module increment_data
       type(step_clock_type) :: clock = step_clock_type()   !! its end
       type(step_clock_type) :: of_increment = step_clock_type()   !! end of the increment
       real(dp) :: size = 0.0_dp                            !! from the end of the one before [time]
-      real(dp) :: duration = 0.0_dp                        !! dt of its equation [time]
+      real(dp) :: duration = 0.0_dp                        !! dt of its equations [time]
+      logical :: stores_heat = .false.                     !! whether it is one of a transient
+      real(dp), allocatable :: history(:)                  !! h* of the laws of materials, or none
+      ! The next three of transients.
       real(dp), allocatable :: temperature(:)              !! (nodes) T* of its equation
       real(dp), allocatable :: displacement(:)             !! (2 nodes) u* likewise
       !> (nodes) heat contents likewise, where properties follow temperatures [energy]

@@ -354,7 +354,7 @@ contains
       real(dp) :: thermal(2*size(next%temperature))
 
       thermal = unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
-         next%force_excess)
+         next%forces_beyond)
       workspace%force = bodies%equilibrium%load_of(bodies%mechanical, &
          next%force_load + thermal, loads%displacement%value)
       call bodies%equilibrium%condense_load(bodies%mechanical, workspace%force, &
@@ -393,7 +393,7 @@ contains
             workspace%friction%parts(2, :)*workspace%friction%made))
          workspace%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
             unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
-            next%force_excess), &
+            next%forces_beyond), &
             loads%displacement%value)
       end if
       allocate (on_tail(bodies%mechanical%map%tail))

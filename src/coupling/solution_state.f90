@@ -33,10 +33,12 @@ module solution_state
       !> Lowest and highest temperature of the transient step so far [temperature]
       real(dp), allocatable :: extremes(:)
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
-      !> (2 nodes) what the stiffness has beyond the bodies; none where it follows them [force]
-      real(dp), allocatable :: force_excess(:)
-      ! The next three where properties follow temperatures.
+      !> (2 nodes) what the stiffness has beyond the bodies, initial stresses included, or none [force]
+      real(dp), allocatable :: forces_beyond(:)
+      real(dp), allocatable :: history(:)           !! what all integration points remember, or none
+      ! The next four where materials vary.
       real(dp), allocatable :: operators_at(:)      !! (nodes) temperatures of the operators
+      real(dp), allocatable :: tangent(:)           !! of their stress, or none of elasticity
       !> (4 nodes) corrections of the operators by corrections_type, now and an increment earlier
       real(dp), allocatable :: corrections(:), corrections_before(:)
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
@@ -83,6 +85,8 @@ contains
       call reals(self, 'temperature', state%temperature)
       call reals(self, 'stored', state%stored)
       call reals(self, 'operators_at', state%operators_at)
+      call reals(self, 'tangent', state%tangent)
+      call reals(self, 'history', state%history)
       call reals(self, 'corrections', state%corrections)
       call reals(self, 'corrections_before', state%corrections_before)
       call reals(self, 'extremes', state%extremes)

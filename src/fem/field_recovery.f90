@@ -10,19 +10,21 @@
 !> the element's shape functions. Not the 2 x 2 points at which s of elements of eight nodes is
 !> best: there s* is s, but for what smoothing leaves, and their sum would be near zero.
 module field_recovery
-   use element_kinds, only: element_node_count, kind_count, quad8, quad8_reduced, triangle6
+   use element_kinds, only: element_node_count, kind_count, quad8, quad8_reduced, triangle3, &
+      triangle6
    use kinds, only: dp
    use materials, only: material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
-   use point_fields, only: point_fields_type
+   use material_points, only: material_points_type
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule, point_rule, &
       point_rule_type
-   use quadrature, only: recovery_count, recovery_points, recovery_weights
+   use quadrature, only: integration_rule, point_count, recovery_count, recovery_points, &
+      recovery_weights
    use shape_functions, only: node_position
    implicit none
    private
    public :: point_map_type, make_points, recovery_rules, prepare_samples, stress_samples, &
-      heat_flux_samples, average_samples, element_error_type, measure_stress, measure_heat_flux, &
+      heat_flux_samples, average_samples, fit_of_points, element_error_type, measure_stress, measure_heat_flux, &
       error_rules, error_record_type
 
    !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
@@ -97,7 +99,7 @@ contains
       type(section_type), intent(in) :: sections(:)
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
-      type(point_fields_type), intent(out) :: fields
+      type(material_points_type), intent(out) :: fields
 
       call fields%prepare(mesh, sections, materials, orientations, recovery_rules())
    end subroutine prepare_samples
@@ -115,7 +117,7 @@ contains
 
    !> Stress at all recovery points along x and y, eq. (1.5).
    pure subroutine stress_samples(fields, mesh, displacement, temperature, samples)
-      type(point_fields_type), intent(in) :: fields   !! of prepare_samples
+      type(material_points_type), intent(in) :: fields   !! of prepare_samples
       type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: displacement(:, :)      !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
@@ -134,7 +136,7 @@ contains
 
    !> Heat flux at all recovery points along x and y, eq. (1.4).
    pure subroutine heat_flux_samples(fields, mesh, temperature, samples)
-      type(point_fields_type), intent(in) :: fields   !! of prepare_samples
+      type(material_points_type), intent(in) :: fields   !! of prepare_samples
       type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: temperature(:)          !! (nodes) [temperature]
       real(dp), intent(out) :: samples(:, :)          !! (2, recovery points) [power/length^2]
@@ -149,6 +151,41 @@ contains
          end do
       end do
    end subroutine heat_flux_samples
+
+   !> Values at the recovery points by the linear or bilinear fit of values at the integration points,
+   !> weighted as the integration. On the square 1, xi, eta and xi eta are orthogonal; in triangles
+   !> the fit is that through all points, or their mean.
+   pure function fit_of_points(kind) result(fit)
+      integer, intent(in) :: kind                    !! kind of the element
+      real(dp) :: fit(recovery_count(kind), point_count(kind))
+      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
+      real(dp) :: there(4, point_count(kind)), here(4, recovery_count(kind))
+      integer :: i, j
+
+      call integration_rule(kind, points, weights)
+      fit = 0.0_dp
+      if (kind == triangle6) then
+         fit = reshape([((merge(1.0_dp, 0.0_dp, i == j), i=1, 3), j=1, 3)], [3, 3])
+      else if (kind == triangle3) then
+         fit(1, :) = weights/sum(weights)
+      else
+         there = bilinear(points)
+         here = bilinear(recovery_points(kind))
+         do i = 1, 4
+            here(i, :) = here(i, :)/sum(weights*there(i, :)**2)
+         end do
+         fit = matmul(transpose(here), there)*spread(weights, 1, recovery_count(kind))
+      end if
+   contains
+      pure function bilinear(at) result(values)
+         real(dp), intent(in) :: at(:, :)
+         real(dp) :: values(4, size(at, 2))
+
+         values(1, :) = 1.0_dp
+         values(2:3, :) = at
+         values(4, :) = at(1, :)*at(2, :)
+      end function bilinear
+   end function fit_of_points
 
    !> Values at the points: extrapolated in each element to its nodes, then averaged.
    pure function average_samples(mesh, points, samples) result(values)

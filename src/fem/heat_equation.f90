@@ -59,7 +59,7 @@ module heat_equation
       real(dp), allocatable :: taken_up(:)
       !> (nodes) heat that K conducts beyond the bodies at t_i and t_i+1; unallocated where K
       !> follows their temperatures [power]
-      real(dp), allocatable :: excess_old(:), excess(:)
+      real(dp), allocatable :: beyond_old(:), beyond(:)
    contains
       procedure :: takes_past_conductance
       procedure :: takes_past_field
@@ -225,7 +225,7 @@ contains
          rhs = rhs + (c(1)*self%old%load + c(2)*self%new%load)/a(1)
          if (self%duration > 0.0_dp) rhs = rhs + self%content_old/self%duration
          if (allocated(self%taken_up)) rhs = rhs - self%taken_up/self%duration
-         if (allocated(self%excess)) rhs = rhs + self%excess + b(1)/a(1)*self%excess_old
+         if (allocated(self%beyond)) rhs = rhs + self%beyond + b(1)/a(1)*self%beyond_old
       end associate
    end function history
 
@@ -308,8 +308,8 @@ contains
       end associate
       if (self%duration > 0.0_dp) rates%stored = self%scheme%a(1)/whole/self%duration* &
          gain(self, capacity, temperature)
-      if (allocated(self%excess)) rates%conducted = rates%conducted - self%scheme%a(1)* &
-         self%excess - self%scheme%b(1)*self%excess_old
+      if (allocated(self%beyond)) rates%conducted = rates%conducted - self%scheme%a(1)* &
+         self%beyond - self%scheme%b(1)*self%beyond_old
       rates%conducted = rates%conducted/whole
       rates%entering = rates%entering/whole
       rates%crossing = rates%crossing/whole
@@ -322,7 +322,7 @@ contains
       type(heat_rates_type) :: rates
 
       rates%conducted = conduction%multiply(self%temperature_old)
-      if (allocated(self%excess)) rates%conducted = rates%conducted - self%excess_old
+      if (allocated(self%beyond)) rates%conducted = rates%conducted - self%beyond_old
       rates%entering = self%old%net_heat(self%temperature_old)
       rates%crossing = heat_across(self%weight, self%omega_old, self%jump_old)
    end function rates_at_start

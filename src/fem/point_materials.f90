@@ -3,9 +3,9 @@
 module point_materials
    use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain
    use kinds, only: dp
-   use materials, only: follows_temperature, material_axes, material_type, of_conductivity, &
-      of_elasticity, of_expansion, orientation_type, properties_type, section_type, &
-      strain_rotation, thermal_strain
+   use materials, only: follows_temperature, has_law, material_axes, material_type, &
+      of_conductivity, of_elasticity, of_expansion, orientation_type, properties_type, &
+      section_type, strain_rotation, thermal_strain, varies
    use mesh, only: mesh_type
    use point_properties, only: are_x_and_y, conductivity_in, elasticity_in, thermal_modulus_in
    use point_rules, only: point_rule_type
@@ -30,18 +30,23 @@ module point_materials
       type(point_material_type), allocatable :: materials(:)
       integer, allocatable :: material(:)                !! (elements) first of its materials
       logical, allocatable :: one_material(:)            !! (elements) one for all of its points
+      ! Of the model, as they are.
+      type(section_type), allocatable :: sections(:)
+      type(material_type), allocatable :: given(:)
+      type(orientation_type), allocatable :: orientations(:)   !! axes of the materials
       logical :: has_inverses = .true.   !! whether compliance and resistivity are asked for
       real(dp), allocatable :: temperature(:)   !! (nodes) that they were set to last [temperature]
    contains
       procedure :: place
       procedure :: set_temperature
+      procedure :: take_tangents
       procedure :: at_point
    end type point_materials_type
 
 contains
 
    !> One material for a section and plane, or one a point where axes may turn or properties follow
-   !> the temperature. These are as of their first rows until they are set.
+   !> the temperature or the strain. These are as of their first rows until they are set.
    pure subroutine place(self, mesh, sections, materials, orientations, rules)
       class(point_materials_type), intent(inout) :: self
       type(mesh_type), intent(in) :: mesh
@@ -53,9 +58,12 @@ contains
       real(dp) :: axes(2, 2), position(2)
 
       self%rules = rules
+      self%sections = sections
+      self%given = materials
+      self%orientations = orientations
       allocate (self%material(size(mesh%element_kind)))
       self%one_material = sections(mesh%element_section)%orientation == 0 .and. &
-         .not. follows_temperature(materials(sections(mesh%element_section)%material))
+         .not. varies(materials(sections(mesh%element_section)%material))
       ! First counted, then made.
       do pass = 1, 2
          shared = 0
@@ -91,16 +99,12 @@ contains
 
    !> Gives points whose properties follow the temperature those of theirs. Their thermal modulus is
    !> the slope by temperature, and what it leaves out is thermal stress.
-   pure subroutine set_temperature(self, mesh, sections, materials, orientations, temperature, &
-      initial)
+   pure subroutine set_temperature(self, mesh, temperature, initial)
       class(point_materials_type), intent(inout) :: self    !! placed
       type(mesh_type), intent(in) :: mesh
-      type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       real(dp), intent(in) :: temperature(:), initial(:)    !! (nodes) [temperature]
-      type(properties_type) :: properties(size(materials))
-      logical, dimension(size(materials)) :: conducts, strains   ! otherwise with the temperature
+      type(properties_type) :: properties(size(self%given))
+      logical, dimension(size(self%given)) :: conducts, strains   ! otherwise with the temperature
       real(dp) :: axes(2, 2)
       integer :: e, g, m
 
@@ -108,28 +112,28 @@ contains
          if (all(abs(self%temperature - temperature) <= 0.0_dp)) return
       end if
       self%temperature = temperature
-      conducts = follows_temperature(materials, of_conductivity)
-      strains = follows_temperature(materials, of_elasticity) .or. &
-         follows_temperature(materials, of_expansion)
-      do m = 1, size(materials)
-         properties(m) = materials(m)%properties_type
+      conducts = follows_temperature(self%given, of_conductivity)
+      strains = follows_temperature(self%given, of_elasticity) .or. &
+         follows_temperature(self%given, of_expansion)
+      do m = 1, size(self%given)
+         properties(m) = self%given(m)%properties_type
       end do
       do e = 1, size(mesh%element_kind)
-         associate (section => sections(mesh%element_section(e)), plane => mesh%element_plane(e), &
+         associate (section => self%sections(mesh%element_section(e)), plane => mesh%element_plane(e), &
             rule => self%rules(mesh%element_kind(e)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
             m = section%material
             if (.not. (conducts(m) .or. strains(m))) cycle
             do g = 1, rule%count
                associate (psi => rule%shape(g, :rule%nodes))
-                  if (g == 1 .or. section%orientation > 0) axes = material_axes(orientations, &
+                  if (g == 1 .or. section%orientation > 0) axes = material_axes(self%orientations, &
                      section%orientation, matmul(mesh%coordinates(:, nodes), psi))
                   associate (at => [dot_product(psi, initial(nodes)), dot_product(psi, &
                      temperature(nodes))], there => self%materials(self%material(e) + g - 1))
-                     call materials(m)%set_to(at(2), properties(m))
+                     call self%given(m)%set_to(at(2), properties(m))
                      if (conducts(m)) call set_conduction(properties(m), axes, &
                         self%has_inverses, there)
-                     if (strains(m)) call set_strain(plane, materials(m), properties(m), axes, &
+                     if (strains(m)) call set_strain(plane, self%given(m), properties(m), axes, &
                         at, self%has_inverses, there)
                   end associate
                end associate
@@ -137,6 +141,21 @@ contains
          end associate
       end do
    end subroutine set_temperature
+
+   !> Gives points with a law the tangents of their stress for their elasticity.
+   pure subroutine take_tangents(self, mesh, tangent)
+      class(point_materials_type), intent(inout) :: self    !! placed
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: tangent(:)                    !! (4*4*materials) [stress]
+      integer :: e, g
+
+      do e = 1, size(self%material)
+         if (.not. has_law(self%given(self%sections(mesh%element_section(e))%material))) cycle
+         do g = self%material(e), self%material(e) + self%rules(mesh%element_kind(e))%count - 1
+            self%materials(g)%elasticity = reshape(tangent(16*g - 15:16*g), [4, 4])
+         end do
+      end do
+   end subroutine take_tangents
 
    !> Elasticity and expansion at a temperature.
    pure subroutine set_strain(plane, material, properties, axes, temperature, with_inverses, there)

@@ -3,6 +3,7 @@
 module point_rules
    use element_kinds, only: element_node_count, kind_count
    use kinds, only: dp
+   use material_laws, only: most_points_of_law
    use mesh, only: nodes_per_element
    use quadrature, only: integration_rule, load_point_count, load_rule, point_count
    use shape_functions, only: element_gradients, element_shape, node_position
@@ -10,7 +11,7 @@ module point_rules
    private
    public :: point_rule_type, point_rule, integration_rules, load_rules, most_points_of_rule
 
-   integer, parameter :: most_points_of_rule = 10  !! of an element, made even
+   integer, parameter :: most_points_of_rule = most_points_of_law  !! of an element, made even
    integer, parameter :: most = most_points_of_rule
 
    !> Points of a kind of element, with what its shape functions are there.

@@ -4,13 +4,14 @@ module materials
       orthotropic_elasticity
    use element_kinds, only: plane_stress
    use kinds, only: dp
+   use material_laws, only: material_law_type
    use named_items, only: named_type
    implicit none
    private
    public :: material_type, properties_type, section_type, property_type, orientation_type
    public :: material_axes, strain_rotation, heat_capacity, least_heat_capacity
    public :: set_property, isotropic, engineering, orthotropic, anisotropic
-   public :: follows_temperature, thermal_strain, heat_content, heat_capacity_at, expansion_heat
+   public :: follows_temperature, has_law, varies, thermal_strain, heat_content, heat_capacity_at, expansion_heat
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
       of_specific_heat
 
@@ -73,6 +74,7 @@ module materials
       !> All properties as the deck gives them; unallocated for none
       type(property_type), allocatable :: given(:)
       type(heat_table_type) :: heat                   !! of density and specific heat
+      type(material_law_type) :: law                  !! beyond thermoelasticity
    contains
       procedure :: set_to
    end type material_type
@@ -109,6 +111,20 @@ contains
          follows_temperature = .true.
       end do
    end function follows_temperature
+
+   !> Whether stress is more than thermoelasticity.
+   elemental logical function has_law(material)
+      type(material_type), intent(in) :: material
+
+      has_law = associated(material%law%respond)
+   end function has_law
+
+   !> Whether heat and stress are more than constants times temperatures and displacements.
+   elemental logical function varies(material)
+      type(material_type), intent(in) :: material
+
+      varies = follows_temperature(material) .or. has_law(material)
+   end function varies
 
    !> Keeps a property, in place of that of an earlier card; what the material inherits is of its
    !> first row. Rows that are all alike are one.

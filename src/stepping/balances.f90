@@ -67,7 +67,7 @@ contains
 
       omega = joined_conductance(next%omega, next%edge)
       rates%conducted = bodies%thermal%matrix%multiply(next%temperature)
-      if (allocated(data%equation%excess)) rates%conducted = rates%conducted - data%equation%excess
+      if (allocated(data%equation%beyond)) rates%conducted = rates%conducted - data%equation%beyond
       rates%entering = next%sources%net_heat(next%temperature)
       rates%crossing = heat_across(bodies%points%weight, next%carrying, next%jump)
       record%heat_stored = ieee_value(1.0_dp, ieee_quiet_nan)
@@ -224,7 +224,7 @@ contains
       end if
       internal = bodies%mechanical%matrix%multiply(next%displacement) - &
          unstrained_forces(bodies, next%temperature - model%initial_temperature, &
-         next%force_excess)
+         next%forces_beyond)
       stiffness = bodies%mechanical%largest_entry
       ! What contact points drop as rounding is no imbalance, not even if a body sums all of it.
       dropped = size(next%contact%force)*bodies%equilibrium%contact%least_force()

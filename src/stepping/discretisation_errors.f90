@@ -1,17 +1,20 @@
 !> Stress and flux of an increment, and how far they are from smooth ones (Zienkiewicz & Zhu): what
 !> geometry and materials give is formed once a run.
 module discretisation_errors
-   use element_kinds, only: element_node_count
+   use element_kinds, only: element_node_count, kind_count
    use field_recovery, only: average_samples, element_error_type, error_record_type, error_rules, &
-      heat_flux_samples, make_points, measure_heat_flux, measure_stress, point_map_type, &
+      fit_of_points, heat_flux_samples, make_points, measure_heat_flux, measure_stress, point_map_type, &
       prepare_samples, stress_samples
    use kinds, only: dp
-   use materials, only: follows_temperature
+   use material_laws, only: law_points_type
+   use materials, only: has_law, varies
    use mesh, only: mesh_type, nodes_per_element
    use model, only: model_type
    use patch_recovery, only: patch_recovery_type
-   use point_fields, only: point_fields_type
-   use point_rules, only: most => most_points_of_rule
+   use material_points, only: material_points_type, point_history_type
+   use point_rules, only: integration_rules, most => most_points_of_rule
+   use quadrature, only: point_count, recovery_count, recovery_weights
+   use shape_functions, only: node_position
    implicit none
    private
    public :: recovery_type
@@ -26,8 +29,12 @@ module discretisation_errors
    type :: recovery_type
       private
       type(point_map_type), public :: points     !! where averaged fields live
-      type(point_fields_type) :: samples         !! recovery points
-      type(point_fields_type) :: quadrature      !! points at which errors are integrated
+      type(material_points_type) :: samples         !! recovery points
+      type(material_points_type) :: quadrature      !! points at which errors are integrated
+      !> Integration points, where laws of materials are or points of elements are asked for
+      type(material_points_type), allocatable, public :: integration
+      !> (recovery points, points of integration or quadrature, kinds) bilinear fits
+      real(dp) :: fits(4, most, kind_count) = 0.0_dp, at_quadrature(4, most, kind_count) = 0.0_dp
       type(patch_recovery_type) :: patches       !! smooth nodal values from the recovery points
       !> (elements) factors of displacements, of temperatures over the natural state, and of
       !> temperatures in stress, stress and heat flux, at most
@@ -63,7 +70,31 @@ contains
       call self%patches%prepare(model%mesh, self%points, self%samples%first, position, &
          counts)
       call measure_factors(self)
+      if (any(has_law(model%materials)) .or. any([(allocated(model%steps(e)%element_prints), &
+         e=1, size(model%steps))])) call prepare_integration(self, model)
    end subroutine prepare
+
+   !> Forms what stays of integration points.
+   subroutine prepare_integration(self, model)
+      type(recovery_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      real(dp) :: points(2, most)
+      integer :: g, k
+
+      allocate (self%integration)
+      call self%integration%prepare(model%mesh, model%sections, model%materials, &
+         model%orientations, integration_rules())
+      do k = 1, kind_count
+         self%fits(:recovery_count(k), :point_count(k), k) = fit_of_points(k)
+         associate (rule => self%quadrature%rules(k))
+            points(:, :rule%count) = matmul(node_position(k), transpose(rule%shape(:rule%count, &
+               :rule%nodes)))
+            do g = 1, rule%count
+               self%at_quadrature(:recovery_count(k), g, k) = recovery_weights(k, points(:, g))
+            end do
+         end associate
+      end do
+   end subroutine prepare_integration
 
    subroutine measure_factors(self)
       type(recovery_type), intent(inout) :: self
@@ -85,11 +116,13 @@ contains
    end subroutine measure_factors
 
    !> Stress, averaged at the points, and its estimated error.
-   pure subroutine recover_stress(self, model, displacement, temperature, stress, estimate)
+   pure subroutine recover_stress(self, model, displacement, temperature, remembered, stress, &
+      estimate)
       class(recovery_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: displacement(:, :)           !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      real(dp), allocatable, intent(in) :: remembered(:)   !! by all points, or none
       real(dp), allocatable, intent(out) :: stress(:, :)   !! (4, points) xx, yy, zz, xy [stress]
       type(error_record_type), intent(out) :: estimate
       type(element_error_type) :: errors(size(model%mesh%element_kind))
@@ -102,12 +135,15 @@ contains
       allocate (samples(4, self%samples%first(size(self%samples%first)) - 1))
       allocate (smooth(4, size(self%points%node)))
       call stress_samples(self%samples, model%mesh, displacement, temperature, samples)
+      if (allocated(remembered)) call follow_laws(self, model, displacement, temperature, &
+         remembered, samples)
       stress = average_samples(model%mesh, self%points, samples)
       call self%patches%recover(4, samples, smooth)
       call self%patches%improve(4, samples, smooth, stress)
       scale = scale_of(samples)
       do e = 1, size(errors)
          call self%quadrature%stress(model%mesh, e, displacement, temperature, values)
+         if (allocated(remembered)) call take_fit(self, model%mesh, e, samples, values)
          call compare(self, model, e, 1/scale, smooth, values, errors(e))
       end do
       estimate = sum_up(model, scale, errors)
@@ -116,6 +152,46 @@ contains
          largest_term(model%mesh, self%of_expansion, temperature)
       call drop_rounding(model, self%samples%first, samples, rounding*least, estimate%body)
    end subroutine recover_stress
+
+   !> Stress by the laws of materials: the fit of that at the integration points.
+   pure subroutine follow_laws(self, model, displacement, temperature, remembered, samples)
+      type(recovery_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: displacement(:, :), temperature(:), remembered(:)
+      real(dp), intent(inout) :: samples(:, :)             ! (4, recovery points)
+      type(point_history_type) :: history
+      type(law_points_type) :: points
+      integer :: e, n
+
+      history%before = remembered
+      history%after = remembered
+      do e = 1, size(model%mesh%element_kind)
+         if (self%integration%has_no_law(model%mesh, e)) cycle
+         call self%integration%respond(model%mesh, e, displacement, temperature, history, points)
+         associate (kind => model%mesh%element_kind(e), first => self%samples%first(e))
+            n = recovery_count(kind)
+            samples(:, first:first + n - 1) = transpose(matmul(self%fits(:n, :points%count, &
+               kind), points%stress(:points%count, :)))
+         end associate
+      end do
+   end subroutine follow_laws
+
+   !> Stress by the law of a material at the points at which errors are integrated.
+   pure subroutine take_fit(self, mesh, e, samples, values)
+      type(recovery_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      real(dp), intent(in) :: samples(:, :)
+      real(dp), intent(inout) :: values(most, 4)
+
+      if (self%integration%has_no_law(mesh, e)) return
+      associate (kind => mesh%element_kind(e), first => self%samples%first(e))
+         associate (n => self%quadrature%rules(kind)%count, m => recovery_count(kind))
+            values(:n, :) = transpose(matmul(samples(:, first:first + m - 1), &
+               self%at_quadrature(:m, :n, kind)))
+         end associate
+      end associate
+   end subroutine take_fit
 
    !> Heat flux, averaged at the points, and its estimated error.
    pure subroutine recover_heat_flux(self, model, temperature, flux, estimate)
@@ -154,13 +230,11 @@ contains
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)               ! (nodes) [temperature]
 
-      if (.not. any(follows_temperature(model%materials))) return
-      associate (mesh => model%mesh, sections => model%sections, materials => model%materials)
-         call self%samples%set_temperature(mesh, sections, materials, model%orientations, &
-            temperature, model%initial_temperature)
-         call self%quadrature%set_temperature(mesh, sections, materials, model%orientations, &
-            temperature, model%initial_temperature)
-      end associate
+      if (.not. any(varies(model%materials))) return
+      call self%samples%set_temperature(model%mesh, temperature, model%initial_temperature)
+      call self%quadrature%set_temperature(model%mesh, temperature, model%initial_temperature)
+      if (allocated(self%integration)) call self%integration%set_temperature(model%mesh, &
+         temperature, model%initial_temperature)
    end subroutine set_temperature
 
    !> The largest of the terms whose sum a field is.

@@ -41,6 +41,7 @@ contains
       associate (step => model%steps(run%control%step))
          stage%size = run%control%size_to(stage%clock)
          stage%duration = stage%size
+         stage%stores_heat = .true.
          stage%dilates = step%dilates
          if (run%control%increments_of_step == 0) call begin_storage(run, model, before)
          if (run%corrections%corrects) stage%content = run%corrections%true_contents(model, &
@@ -69,6 +70,8 @@ contains
 
       stage%temperature = before%temperature + weight*(next%temperature - before%temperature)
       stage%displacement = before%displacement + weight*(next%displacement - before%displacement)
+      if (allocated(stage%history)) stage%history = stage%history + weight*(next%history - &
+         stage%history)
       if (run%corrections%corrects) stage%content = stage%content + weight* &
          (run%corrections%true_contents(model, next%temperature) - stage%content)
       if (allocated(run%bodies%points%heated)) stage%slip_before = slips_before(run%bodies, &

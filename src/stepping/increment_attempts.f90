@@ -69,6 +69,8 @@ contains
       stage%clock = clock
       stage%of_increment = clock
       stage%size = clock%step_time - run%control%step_time
+      stage%duration = stage%size
+      if (allocated(start%history)) stage%history = start%history
       associate (step => model%steps(run%control%step))
          if (step%is_transient) call begin_first_stage(run, model, stage, start)
          if (stage%is_last) then
@@ -183,7 +185,7 @@ contains
             trial%record%solution_report_type = trial%workspace%record
          end if
          trial%record%corrections = corrections%passes
-         trial%record%has_new_operators = corrections%is_renewed
+         trial%record%has_new_operators = corrections%renewed_at > 0
       end associate
    end subroutine solve_corrected
 
@@ -197,7 +199,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (bodies => run%bodies)
-         call bodies%move_operators(model, next%temperature)
+         call bodies%move_operators(model, next%temperature, run%corrections%tangents(model, next))
          call run%corrections%renew(model, bodies, stage, before, next)
          if (solves_mechanics(model%steps(run%control%step)%analysis)) call bodies%reduce(model, &
             run%heats(run%in_use)%node_rank, error)

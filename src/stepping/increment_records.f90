@@ -16,9 +16,10 @@ module increment_records
    use kinds, only: dp
    use loads, only: loads_type
    use model, only: model_type
-   use materials, only: follows_temperature, material_axes
-   use point_fields, only: point_fields_type
-   use point_rules, only: integration_rules, most => most_points_of_rule
+   use material_laws, only: law_points_type
+   use materials, only: material_axes, varies
+   use material_points, only: material_points_type, point_history_type
+   use point_rules, only: most => most_points_of_rule
    use point_properties, only: along_axes
    use print_requests, only: print_request_type
    use quadrature, only: point_count
@@ -76,8 +77,8 @@ contains
             if (allocated(model%couplings)) record%pre_tension = &
                record%fields%external_force(1, section_nodes(model%couplings))
             if (recovers) call recovery%recover_stress(model, record%fields%displacement, &
-               next%stress_temperature - model%initial_temperature, record%fields%stress, &
-               record%stress_error)
+               next%stress_temperature - model%initial_temperature, next%history, &
+               record%fields%stress, record%stress_error)
          end if
          call warn_of_floor(step, record)
          call warn_of_slides(model, bodies, record)
@@ -96,7 +97,7 @@ contains
             record%contacts%heat_rate = record%heat_in
          end if
          if (allocated(step%element_prints)) then
-            record%element_points = points_of_elements(model, step, next, record)
+            record%element_points = points_of_elements(model, recovery, step, next, record)
          end if
       end associate
    end subroutine complete_record
@@ -259,8 +260,9 @@ contains
    end subroutine measure_contact
 
    !> One record for each *EL PRINT of a step; empty where its table is not due.
-   pure function points_of_elements(model, step, state, increment) result(records)
+   pure function points_of_elements(model, recovery, step, state, increment) result(records)
       type(model_type), intent(in) :: model
+      type(recovery_type), intent(in) :: recovery
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: state            !! state at the end
       type(increment_record_type), intent(in) :: increment      !! position of the increment
@@ -271,25 +273,31 @@ contains
       do i = 1, size(records)
          if (.not. table_is_due(step%element_prints(i)%frequency, &
             step%element_prints(i)%points, increment, model)) cycle
-         records(i) = points_of_set(model, step%element_prints(i), solves_heat(step%analysis), &
-            state)
+         records(i) = points_of_set(model, recovery%integration, step%element_prints(i), &
+            solves_heat(step%analysis), state)
       end do
    end function points_of_elements
 
    !> The points of the elements of a set. Stress belongs to the temperatures with which equilibrium
    !> was solved last.
-   pure function points_of_set(model, request, with_heat, state) result(record)
+   pure function points_of_set(model, points, request, with_heat, state) result(record)
       type(model_type), intent(in) :: model
+      type(material_points_type), intent(in) :: points          ! of integration
       type(print_request_type), intent(in) :: request
       logical, intent(in) :: with_heat
       type(solution_state_type), intent(in) :: state
       type(element_points_record_type) :: record
-      type(point_fields_type) :: fields
-      real(dp) :: stress(most, 4), flux(most, 2)
+      type(material_points_type) :: fields
+      type(point_history_type) :: history
+      type(law_points_type) :: response
+      real(dp) :: flux(most, 2)
       integer :: first, g, i, last, n
 
-      call fields%prepare(model%mesh, model%sections, model%materials, model%orientations, &
-         integration_rules())
+      fields = points
+      if (allocated(state%history)) then
+         history%before = state%history
+         history%after = state%history
+      end if
       associate (mesh => model%mesh, members => request%members(model%mesh%element_sets, &
          size(model%mesh%element_kind)))
          n = sum(point_count(mesh%element_kind(members)))
@@ -297,26 +305,35 @@ contains
          if (state%has_mechanics) allocate (record%stress(4, n))
          if (with_heat) allocate (record%heat_flux(2, n))
          last = 0
-         if (any(follows_temperature(model%materials))) call fields%set_temperature(mesh, &
-            model%sections, model%materials, model%orientations, state%temperature, &
-            model%initial_temperature)
          do i = 1, size(members)
             first = last + 1
             last = last + point_count(mesh%element_kind(members(i)))
             record%element(first:last) = members(i)
             record%point(first:last) = [(g, g=1, last - first + 1)]
             record%position(:, first:last) = fields%positions(mesh, members(i))
-            if (state%has_mechanics) then
-               call fields%stress(mesh, members(i), reshape(state%displacement, &
-                  [2, size(state%temperature)]), state%stress_temperature - &
-                  model%initial_temperature, stress)
-               record%stress(:, first:last) = transpose(stress(:last - first + 1, :))
-            end if
-            if (with_heat) then
-               call fields%heat_flux(mesh, members(i), state%temperature, flux)
-               record%heat_flux(:, first:last) = transpose(flux(:last - first + 1, :))
-            end if
          end do
+         if (state%has_mechanics) then
+            if (any(varies(model%materials))) call fields%set_temperature(mesh, &
+               state%stress_temperature, model%initial_temperature)
+            do i = 1, n
+               if (record%point(i) > 1) cycle
+               call fields%respond(mesh, record%element(i), reshape(state%displacement, &
+                  [2, size(state%temperature)]), state%stress_temperature - &
+                  model%initial_temperature, history, response)
+               last = i - 1 + point_count(mesh%element_kind(record%element(i)))
+               record%stress(:, i:last) = transpose(response%stress(:last - i + 1, :))
+            end do
+         end if
+         if (with_heat) then
+            if (any(varies(model%materials))) call fields%set_temperature(mesh, &
+               state%temperature, model%initial_temperature)
+            do i = 1, n
+               if (record%point(i) > 1) cycle
+               call fields%heat_flux(mesh, record%element(i), state%temperature, flux)
+               last = i - 1 + point_count(mesh%element_kind(record%element(i)))
+               record%heat_flux(:, i:last) = transpose(flux(:last - i + 1, :))
+            end do
+         end if
       end associate
       if (request%local_axes) call turn(model, record)
    end function points_of_set

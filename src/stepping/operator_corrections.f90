@@ -1,5 +1,5 @@
 !> Heat and forces of bodies beyond their linear operators K, B and C, of (3.3) and (2.4), which
-!> were formed at earlier temperatures. They stand on the right of the equations of a stage, and are
+!> were formed at earlier temperatures, strains and histories. They stand on the right of the equations of a stage, and are
 !> corrected until they are those of its solution.
 !>
 !> True fluxes and stresses are taken at the integration points and gathered on the nodes; what the
@@ -16,12 +16,14 @@ module operator_corrections
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
    use kinds, only: dp
-   use materials, only: follows_temperature, heat_content
+   use materials, only: follows_temperature, has_law, varies
    use model, only: model_type
-   use point_fields, only: point_fields_type
+   use material_laws, only: law_points_type
+   use material_points, only: material_points_type, point_history_type
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
+   use stiffness_matrix, only: assemble_initial_force
    use text, only: to_text
    implicit none
    private
@@ -34,12 +36,14 @@ module operator_corrections
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
 
-   !> Fields at points, and the elements of the bodies in which properties follow temperatures.
+   !> Fields at points, and the elements of the bodies whose materials vary.
    type :: corrections_type
       private
       !> Integration points, and points of heat contents
-      type(point_fields_type), allocatable :: points, contents
+      type(material_points_type), allocatable :: points, contents
       integer, allocatable :: elements(:)
+      type(point_history_type) :: history          !! of the stage
+      real(dp), allocatable :: initial_force(:)    !! (2 nodes) of initial stresses, or none [force]
       logical, allocatable :: follows(:)           !! (nodes) of these bodies
       !> (4 nodes) of a stage: rate of heat taken up, heat beyond conduction, forces along x and y
       real(dp), allocatable :: values(:)
@@ -51,7 +55,7 @@ module operator_corrections
       integer, public :: passes = 0                !! of the stage
       logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
       logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
-      logical, public :: is_renewed = .false.      !! whether they were, in the stage
+      integer, public :: renewed_at = 0            !! pass after which they were last, in the stage
       logical, public :: corrects = .false.        !! whether the run has anything to correct
    contains
       procedure :: prepare
@@ -62,6 +66,7 @@ module operator_corrections
       procedure :: heat_beyond
       procedure :: true_contents
       procedure :: keep
+      procedure :: tangents
    end type corrections_type
 
 contains
@@ -76,12 +81,14 @@ contains
       follows = .false.
       associate (mesh => model%mesh)
          do e = 1, size(mesh%element_body)
-            if (follows_temperature(model%materials(model%sections(mesh%element_section(e))% &
+            if (varies(model%materials(model%sections(mesh%element_section(e))% &
                material))) follows(mesh%element_body(e)) = .true.
          end do
          self%elements = pack([(e, e=1, size(mesh%element_body))], follows(mesh%element_body))
          self%follows = follows(mesh%node_body)
       end associate
+      if (allocated(model%mesh%initial_stress)) self%initial_force = assemble_initial_force( &
+         model%mesh, model%sections)
       self%corrects = any(follows) .or. any(model%steps%dilates)
       if (.not. any(follows)) return
       allocate (self%points, self%contents)
@@ -105,16 +112,21 @@ contains
       logical :: goes_on
 
       self%passes = 0
-      self%is_renewed = .false.
+      self%renewed_at = 0
       self%left_over = 0.0_dp
       self%mixing = mixing_type()
       if (allocated(self%scale)) deallocate (self%scale)
       if (allocated(self%strain_before)) deallocate (self%strain_before)
+      self%history%duration = stage%duration
+      if (allocated(stage%history)) then
+         self%history%before = stage%history
+         self%history%after = stage%history
+      end if
       if (stage%dilates) self%strain_before = bodies%dilatation%taken_up(bodies%thermal_load, &
          stage%displacement, stage%temperature)
       goes_on = allocated(before%corrections)
       if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
-         all(abs(before%operators_at - bodies%operators_at) <= 0.0_dp)
+         bodies%has_operators_of(before%operators_at, before%tangent)
       if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
          before%temperature)
       if (.not. goes_on) then
@@ -140,9 +152,9 @@ contains
          if (equation%duration > 0.0_dp) equation%taken_up = equation%duration/ &
             equation%scheme%a(1)*self%values(:n)
          if (size(self%elements) == 0) return
-         equation%excess_old = self%heat_before
-         equation%excess = self%values(n + 1:2*n)
-         next%force_excess = self%values(2*n + 1:)
+         equation%beyond_old = self%heat_before
+         equation%beyond = self%values(n + 1:2*n)
+         next%forces_beyond = self%values(2*n + 1:)
       end associate
    end subroutine give
 
@@ -167,8 +179,10 @@ contains
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
       self%is_settled = self%left_over <= settled
-      self%asks_operators = .not. (self%is_settled .or. self%is_renewed) .and. self%passes > 1 &
-         .and. self%left_over > contracts*last .and. size(self%elements) > 0
+      self%asks_operators = .not. self%is_settled .and. self%passes > self%renewed_at + 1 .and. &
+         self%left_over > contracts*last .and. size(self%elements) > 0
+      if (self%renewed_at > 0 .and. .not. any(has_law(model%materials))) &
+         self%asks_operators = .false.
       if (self%is_settled .or. self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
          call set_error(error, status_no_convergence, 'heat and stress of bodies do not follow '// &
@@ -188,7 +202,7 @@ contains
       type(solution_state_type), intent(in) :: before        !! state at the start of the stage
       type(solution_state_type), intent(in) :: at            !! the solution
 
-      self%is_renewed = .true.
+      self%renewed_at = self%passes
       self%mixing = mixing_type()
       deallocate (self%scale)
       self%heat_before = self%heat_beyond(model, bodies, before%temperature)
@@ -204,10 +218,12 @@ contains
 
       next%corrections = self%values
       if (allocated(next%corrections_before)) deallocate (next%corrections_before)
-      if (.not. self%is_renewed .and. allocated(before%corrections)) then
+      if (self%renewed_at == 0 .and. allocated(before%corrections)) then
          next%corrections_before = before%corrections
       end if
       if (allocated(bodies%operators_at)) next%operators_at = bodies%operators_at
+      if (allocated(bodies%tangent)) next%tangent = bodies%tangent
+      if (allocated(self%history%after)) next%history = self%history%after
    end subroutine keep
 
    !> Corrections that temperatures and displacements at the end of a stage ask for.
@@ -224,7 +240,7 @@ contains
       allocate (values(4*n), source=0.0_dp)
       values(n + 1:2*n) = heat_beyond(self, model, bodies, temperature)
       values(2*n + 1:) = forces_beyond(self, model, bodies, temperature, displacement)
-      if (stage%duration <= 0.0_dp) return
+      if (.not. stage%stores_heat) return
       if (allocated(stage%content)) values(:n) = true_contents(self, model, temperature) - &
          stage%content - merge(bodies%capacity%multiply(temperature - stage%temperature), 0.0_dp, &
          self%follows)
@@ -268,25 +284,26 @@ contains
       real(dp), intent(in) :: displacement(:)                ! (2 nodes) [length]
       real(dp) :: forces(size(displacement))                 ! (2 nodes) [force]
       real(dp), dimension(2, size(temperature)) :: balance, u
-      real(dp) :: stress(most, 4), of_nodes(2, 8), warming(size(temperature))
+      type(law_points_type) :: points
+      real(dp) :: of_nodes(2, 8), warming(size(temperature))
       integer :: i
 
       forces = 0.0_dp
+      if (allocated(self%initial_force)) forces = self%initial_force
       if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
       call set_points(self, model, temperature)
       warming = temperature - model%initial_temperature
       u = reshape(displacement, shape(u))
       balance = reshape(of_operators(), shape(balance))
-      stress = 0.0_dp
       do i = 1, size(self%elements)
          associate (mesh => model%mesh, e => self%elements(i), nodes => model%mesh%element_nodes( &
             :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
-            call self%points%stress(mesh, e, u, warming, stress)
-            of_nodes = self%points%nodal_forces(mesh, e, stress)
+            call self%points%respond(mesh, e, u, warming, self%history, points)
+            of_nodes = self%points%nodal_forces(mesh, e, points%stress)
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
          end associate
       end do
-      forces = reshape(merge(balance, 0.0_dp, spread(self%follows, 1, 2)), shape(forces))
+      forces = merge([balance], forces, [spread(self%follows, 1, 2)])
    contains
       !> What the operators have, bars aside, for the forces of the stresses.
       function of_operators() result(sums)
@@ -298,9 +315,36 @@ contains
          if (allocated(bodies%thermal_load%value)) sums = sums - &
             bodies%thermal_load%multiply(warming)
          if (allocated(bodies%bar_load%value)) sums = sums + bodies%bar_load%multiply(warming)
-         if (allocated(bodies%initial_force)) sums = sums - bodies%initial_force
       end function of_operators
    end function forces_beyond
+
+   !> Tangents of the stress at a solution, where materials have laws.
+   function tangents(self, model, at) result(tangent)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(in) :: at            !! the solution
+      real(dp), allocatable :: tangent(:)                    !! (16*materials of the points), or none
+      type(law_points_type) :: points
+      real(dp) :: u(2, size(at%temperature))
+      integer :: g, i
+
+      if (.not. allocated(self%history%before)) return
+      u = reshape(at%displacement, shape(u))
+      call set_points(self, model, at%temperature)
+      allocate (tangent(16*size(self%points%materials)), source=0.0_dp)
+      do i = 1, size(self%elements)
+         associate (e => self%elements(i))
+            if (self%points%has_no_law(model%mesh, e)) cycle
+            call self%points%respond(model%mesh, e, u, at%temperature - &
+               model%initial_temperature, self%history, points)
+            do g = 1, points%count
+               associate (k => 16*(self%points%at_point(e, g) - 1))
+                  tangent(k + 1:k + 16) = [points%tangent(:, :, g)]
+               end associate
+            end do
+         end associate
+      end do
+   end function tangents
 
    !> Gives the integration points the properties at temperatures.
    subroutine set_points(self, model, temperature)
@@ -308,42 +352,20 @@ contains
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)
 
-      call self%points%set_temperature(model%mesh, model%sections, model%materials, &
-         model%orientations, temperature, model%initial_temperature)
+      call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
    end subroutine set_points
 
-   !> Heat contents of the bodies whose properties follow temperatures, on the nodes; consistent in
-   !> elements with nodes between corners, else lumped, as the capacity matrix is.
-   pure function true_contents(self, model, temperature) result(content)
+   !> Heat contents of the bodies whose materials vary, on the nodes.
+   pure function true_contents(self, model, temperature) result(contents)
       class(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes) [temperature]
-      real(dp) :: content(size(temperature))                 !! (nodes) [energy]
-      real(dp) :: there
-      integer :: g, i, q
+      real(dp) :: contents(size(temperature))                !! (nodes) [energy]
+      integer :: i
 
-      content = 0.0_dp
+      contents = 0.0_dp
       do i = 1, size(self%elements)
-         associate (mesh => model%mesh, e => self%elements(i), fields => self%contents)
-            associate (rule => fields%rules(mesh%element_kind(e)), nodes => mesh%element_nodes( &
-               :element_node_count(mesh%element_kind(e)), e), material => model%materials( &
-               model%sections(mesh%element_section(e))%material), volume => fields%volume( &
-               fields%first(e):fields%first(e + 1) - 1))
-               if (size(nodes) <= 4) then
-                  do q = 1, size(nodes)
-                     content(nodes(q)) = content(nodes(q)) + heat_content(material, &
-                        temperature(nodes(q)))*dot_product(rule%shape(:rule%count, q), volume)
-                  end do
-                  cycle
-               end if
-               do g = 1, rule%count
-                  associate (psi => rule%shape(g, :rule%nodes))
-                     there = heat_content(material, dot_product(psi, temperature(nodes)))
-                     content(nodes) = content(nodes) + there*volume(g)*psi
-                  end associate
-               end do
-            end associate
-         end associate
+         call self%contents%add_contents(model%mesh, self%elements(i), temperature, contents)
       end do
    end function true_contents
 
@@ -358,12 +380,12 @@ contains
       real(dp) :: scale(size(self%values))
       real(dp) :: heat, force, least(2)
 
-      least = rounding/settled*largest_terms(model, bodies, stage, next)
+      least = rounding/settled*largest_terms(self, model, bodies, stage, next)
       associate (n => size(next%temperature))
          heat = max(maxval(abs(self%values(:2*n))), least(1))
          if (allocated(bodies%thermal%matrix%value)) heat = max(heat, &
             maxval(abs(bodies%thermal%matrix%multiply(next%temperature))))
-         if (stage%duration > 0.0_dp) heat = max(heat, maxval(abs(bodies%capacity%multiply( &
+         if (stage%stores_heat) heat = max(heat, maxval(abs(bodies%capacity%multiply( &
             next%temperature - stage%temperature)))/stage%duration)
          if (allocated(self%strain_before)) heat = max(heat, maxval(abs( &
             bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
@@ -378,7 +400,8 @@ contains
 
    !> Largest terms of which heat and forces are sums. They cancel where a body has one temperature,
    !> or moves as a whole.
-   pure function largest_terms(model, bodies, stage, next) result(terms)
+   pure function largest_terms(self, model, bodies, stage, next) result(terms)
+      type(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(stage_type), intent(in) :: stage
@@ -392,7 +415,7 @@ contains
       if (allocated(bodies%thermal_load%value)) thermal_load = &
          maxval(abs(bodies%thermal_load%value))
       terms(1) = bodies%thermal%largest_entry*warmth
-      if (stage%duration > 0.0_dp) then
+      if (stage%stores_heat) then
          stored = max(maxval(abs(stage%content)), maxval(bodies%capacity%multiply( &
             abs(next%temperature))))
          if (stage%dilates) stored = max(stored, maxval(bodies%capacity%multiply( &
@@ -401,8 +424,8 @@ contains
       end if
       terms(2) = max(bodies%mechanical%largest_entry*shift, thermal_load*max(warmth, &
          maxval(abs(model%initial_temperature)), maxval(abs(model%materials%no_strain))))
-      if (allocated(bodies%initial_force)) terms(2) = max(terms(2), &
-         maxval(abs(bodies%initial_force)))
+      if (allocated(self%initial_force)) terms(2) = max(terms(2), &
+         maxval(abs(self%initial_force)))
    end function largest_terms
 
 end module operator_corrections

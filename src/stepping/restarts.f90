@@ -60,7 +60,7 @@ contains
          end if
          state%force_load = loads%nodal_forces()
          if (.not. allocated(state%operators_at)) return
-         call simulation%bodies%move_operators(model, state%operators_at)
+         call simulation%bodies%move_operators(model, state%operators_at, state%tangent)
       end associate
       call simulation%reduce(model, error)
    end subroutine go_on

@@ -15,6 +15,7 @@ module simulation
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use loads, only: loads_type
+   use material_points, only: history_count
    use model, only: model_type
    use operator_corrections, only: corrections_type
    use reduced_bodies, only: reduced_bodies_type
@@ -22,6 +23,7 @@ module simulation
    use solution_state, only: solution_state_type
    use sparse_matrix, only: sparse_matrix_type
    use steps, only: solves_heat, solves_mechanics
+   use stiffness_matrix, only: assemble_initial_force
    implicit none
    private
    public :: simulation_type, make_initial_state
@@ -166,8 +168,8 @@ contains
       if (.not. allocated(self%bodies%operators_at)) return
       at = model%initial_temperature
       if (allocated(self%state%operators_at)) at = self%state%operators_at
-      if (all(abs(self%bodies%operators_at - at) <= 0.0_dp)) return
-      call self%bodies%move_operators(model, at)
+      if (self%bodies%has_operators_of(at, self%state%tangent)) return
+      call self%bodies%move_operators(model, at, self%state%tangent)
       call self%reduce(model, error)
    end subroutine take_back
 
@@ -221,6 +223,7 @@ contains
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies     !! the bodies, matched
       type(solution_state_type) :: state                          !! see above
+      integer :: numbers
 
       associate (m => size(bodies%points%slave), n => size(model%mesh%node_number), &
          contact => state%contact)
@@ -238,6 +241,10 @@ contains
          state%carrying = state%omega
          allocate (state%displacement(2*n), state%sources%load(n), source=0.0_dp)
          state%temperature = model%initial_temperature
+         if (allocated(model%mesh%initial_stress)) state%forces_beyond = assemble_initial_force( &
+            model%mesh, model%sections)
+         numbers = history_count(model%mesh, model%sections, model%materials)
+         if (numbers > 0) allocate (state%history(numbers), source=0.0_dp)
       end associate
    end function make_initial_state
 

@@ -16,7 +16,7 @@ COUPLING = {
 PARTS = {
     "heat": {
         "balances:balance_heat", "edge_heat:supplied_heat", "element_conduction",
-        "field_recovery:heat_flux_samples", "point_fields:heat_flux",
+        "field_recovery:heat_flux_samples", "material_points:heat_flux",
         "increment_checks:check_heat", "increment_solution:conduct",
         "heat_equation", "heat_reduction", "jump_loads", "loads:card_heat",
         "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_properties:conductivity_in",
@@ -31,7 +31,7 @@ PARTS = {
         "contact_tractions", "chain_geometry", "contact_pairs", "interface_checks",
         "interface_warnings", "surface_chains", "zone_edges"} | {
         "balances:contact_violation", "balances:force_residual", "equilibrium_reduction",
-        "element_elasticity", "field_recovery:stress_samples", "point_fields:stress",
+        "element_elasticity", "field_recovery:stress_samples", "material_points:stress",
         "increment_checks:check_violation", "increment_checks:warn_of_choices",
         "balances:balance_forces", "increment_solution:remember_slip",
         "increment_solution:load_mechanics", "point_properties:elasticity_in",

@@ -1,42 +1,55 @@
-!> Stress and heat flux at given points of all elements, increment after increment: what depends on
-!> geometry and materials alone is formed once. Arrays run over the points first, and points are
-!> taken two at a time, which the compiler turns into vector instructions: this is most of the time
-!> that the recovery of an increment takes. A rule of an odd number of points ends in one without
-!> weight.
-module point_fields
+!> What the materials of all elements respond at given points: the only place where stress, heat
+!> flux, heat contents and what a point remembers are found from displacements and temperatures.
+!> What depends on geometry and constants alone is formed once. Residuals sum the responses over the
+!> integration points; the operators are their tangents (stiffness_matrix, thermal_matrix).
+module material_points
    use element_integrals, only: area_factor
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4, quad4_enhanced
    use enhanced_strains, only: release_stresses
    use kinds, only: dp
-   use materials, only: material_type, orientation_type, section_type
+   use material_laws, only: law_points_type
+   use materials, only: has_law, heat_content, material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
+   use point_gradients, only: add_hoop_strain, find_fall, find_strains, set_mean_dilatation
    use point_materials, only: point_material_type, point_materials_type
    use point_rules, only: most => most_points_of_rule, point_rule_type
+   use quadrature, only: point_count
    use shape_functions, only: node_position
    implicit none
    private
-   public :: point_fields_type
+   public :: material_points_type, point_history_type, history_count
 
    !> The points of all elements.
-   type, extends(point_materials_type) :: point_fields_type
+   type, extends(point_materials_type) :: material_points_type
       integer, allocatable :: first(:)                   !! (elements + 1) first point of each
       !> (4, points) d xi/dx, d eta/dx, d xi/dy, d eta/dy [1/length]
       real(dp), allocatable :: inverse(:, :)
       real(dp), allocatable :: volume(:)                 !! (points) that each stands for [length^3]
+      integer, allocatable :: remembers(:)   !! (elements + 1) first number of the history of each
    contains
       procedure :: prepare
       procedure :: positions
       procedure :: stress
+      procedure :: respond
+      procedure :: has_no_law
       procedure :: heat_flux
+      procedure :: add_contents
       procedure :: nodal_forces
       procedure :: nodal_heat
-   end type point_fields_type
+   end type material_points_type
+
+   !> What all points remember, and for how long they respond.
+   type :: point_history_type
+      real(dp), allocatable :: before(:)   !! (numbers) at the start; unallocated for none
+      real(dp), allocatable :: after(:)    !! (numbers) at the end
+      real(dp) :: duration = 0.0_dp        !! [time]
+   end type point_history_type
 
 contains
 
    !> Forms what stays.
    pure subroutine prepare(self, mesh, sections, materials, orientations, rules)
-      class(point_fields_type), intent(inout) :: self
+      class(material_points_type), intent(inout) :: self
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
       type(material_type), intent(in) :: materials(:)
@@ -46,6 +59,7 @@ contains
 
       call self%place(mesh, sections, materials, orientations, rules)
       n = size(mesh%element_kind)
+      self%remembers = 1 + numbers_before(mesh, sections, materials)
       allocate (self%first(n + 1), source=1)
       do e = 1, n
          self%first(e + 1) = self%first(e) + rules(mesh%element_kind(e))%count
@@ -60,6 +74,32 @@ contains
          end associate
       end do
    end subroutine prepare
+
+   !> How many numbers the integration points of all elements remember.
+   pure integer function history_count(mesh, sections, materials)
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
+      integer :: before(size(mesh%element_kind) + 1)
+
+      before = numbers_before(mesh, sections, materials)
+      history_count = before(size(before))
+   end function history_count
+
+   !> Numbers of the integration points of the elements before each one.
+   pure function numbers_before(mesh, sections, materials) result(before)
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      type(material_type), intent(in) :: materials(:)
+      integer :: before(size(mesh%element_kind) + 1)
+      integer :: e
+
+      before = 0
+      do e = 1, size(mesh%element_kind)
+         before(e + 1) = before(e) + point_count(mesh%element_kind(e))* &
+            materials(sections(mesh%element_section(e))%material)%law%history_count
+      end do
+   end function numbers_before
 
    pure subroutine map_points(rule, coordinates, thickness, is_axisymmetric, inverse, volume)
       type(point_rule_type), intent(in) :: rule
@@ -83,7 +123,7 @@ contains
 
    !> Where the points of an element lie.
    pure function positions(self, mesh, element)
-      class(point_fields_type), intent(in) :: self
+      class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                 !! which element
       real(dp) :: positions(2, self%rules(mesh%element_kind(element))%count) !! x, y [length]
@@ -97,15 +137,72 @@ contains
       end associate
    end function positions
 
-   !> Stress of an element at its points along x and y, eq. (1.5).
+   !> Stress of an element at its points along x and y by thermoelasticity, eq. (1.5), with the
+   !> initial one.
    pure subroutine stress(self, mesh, element, displacement, temperature, values)
-      class(point_fields_type), intent(in) :: self
+      class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: displacement(:, :)     !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       real(dp), intent(inout) :: values(most, 4)     !! its points first; xx, yy, zz, xy [stress]
-      real(dp) :: strain(most, 4), warmth(most), u(3, nodes_per_element)
+      real(dp) :: strain(most, 4)
+
+      call elastic_stress(self, mesh, element, displacement, temperature, strain, values)
+   end subroutine stress
+
+   !> Stress of an element at its points, its tangent, and what they remember, by the law of its
+   !> material.
+   pure subroutine respond(self, mesh, element, displacement, temperature, history, points)
+      class(material_points_type), intent(in) :: self        !! at their temperatures
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                         !! which element
+      real(dp), intent(in) :: displacement(:, :)             !! (2, nodes) [length]
+      real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
+      type(point_history_type), intent(inout) :: history     !! receives that of the element
+      type(law_points_type), intent(inout) :: points
+      real(dp) :: numbers(self%given(self%sections(mesh%element_section(element))%material)%law% &
+         history_count, self%rules(mesh%element_kind(element))%count)
+      integer :: g
+
+      call elastic_stress(self, mesh, element, displacement, temperature, points%strain, &
+         points%stress)
+      associate (material => self%given(self%sections(mesh%element_section(element))%material), &
+         rule => self%rules(mesh%element_kind(element)), first => self%remembers(element), &
+         last => self%remembers(element + 1) - 1)
+         if (.not. has_law(material)) return
+         points%count = rule%count
+         points%plane = mesh%element_plane(element)
+         do g = 1, rule%count
+            points%tangent(:, :, g) = self%materials(self%at_point(element, g))%elasticity
+            points%temperature(g) = dot_product(rule%shape(g, :rule%nodes), &
+               self%temperature(mesh%element_nodes(:rule%nodes, element)))
+         end do
+         numbers = reshape(history%before(first:last), shape(numbers))
+         call material%law%respond(material%law, points, history%duration, numbers)
+         history%after(first:last) = [numbers]
+      end associate
+   end subroutine respond
+
+   !> Whether thermoelasticity is all that an element responds by.
+   pure logical function has_no_law(self, mesh, element)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                         !! which element
+
+      has_no_law = .not. has_law(self%given(self%sections(mesh%element_section(element))%material))
+   end function has_no_law
+
+   !> Stress by thermoelasticity, and the strains without those that are enhanced.
+   pure subroutine elastic_stress(self, mesh, element, displacement, temperature, strain, values)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      real(dp), intent(in) :: displacement(:, :)
+      real(dp), intent(in) :: temperature(:)
+      real(dp), intent(inout) :: strain(most, 4)
+      real(dp), intent(inout) :: values(most, 4)
+      real(dp) :: warmth(most), u(3, nodes_per_element)
       integer :: g, i, n, q
 
       associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
@@ -140,11 +237,11 @@ contains
             values(g, :) = values(g, :) + mesh%initial_stress(:, element)
          end do
       end associate
-   end subroutine stress
+   end subroutine elastic_stress
 
    !> Adds the stresses of enhanced strains.
    pure subroutine release(self, mesh, element, values)
-      class(point_fields_type), intent(in) :: self
+      class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element
       real(dp), intent(inout) :: values(most, 4)
@@ -182,7 +279,7 @@ contains
 
    !> Heat flux of an element at its points along x and y, eq. (1.4).
    pure subroutine heat_flux(self, mesh, element, temperature, values)
-      class(point_fields_type), intent(in) :: self
+      class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: temperature(:)         !! (nodes) [temperature]
@@ -203,10 +300,41 @@ contains
       end associate
    end subroutine heat_flux
 
+   !> Adds the heat contents of an element to its nodes: consistent where it has nodes between
+   !> corners, else lumped, as the capacity matrix is.
+   pure subroutine add_contents(self, mesh, element, temperature, contents)
+      class(material_points_type), intent(in) :: self   !! points of load_rules
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                    !! which element
+      real(dp), intent(in) :: temperature(:)            !! (nodes) [temperature]
+      real(dp), intent(inout) :: contents(:)            !! (nodes) [energy]
+      real(dp) :: there
+      integer :: g, q
+
+      associate (rule => self%rules(mesh%element_kind(element)), first => self%first(element), &
+         nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element), &
+         material => self%given(self%sections(mesh%element_section(element))%material))
+         if (size(nodes) <= 4) then
+            do q = 1, size(nodes)
+               contents(nodes(q)) = contents(nodes(q)) + heat_content(material, &
+                  temperature(nodes(q)))*dot_product(rule%shape(:rule%count, q), &
+                  self%volume(first:first + rule%count - 1))
+            end do
+            return
+         end if
+         do g = 1, rule%count
+            associate (psi => rule%shape(g, :rule%nodes))
+               there = heat_content(material, dot_product(psi, temperature(nodes)))
+               contents(nodes) = contents(nodes) + there*self%volume(first + g - 1)*psi
+            end associate
+         end do
+      end associate
+   end subroutine add_contents
+
    !> Nodal forces that stresses of an element balance: the integral of B^T sigma, B as in
    !> element_elasticity, but without enhanced strains, on which stresses do no work.
    pure function nodal_forces(self, mesh, element, stress) result(forces)
-      class(point_fields_type), intent(in) :: self   !! points of integration_rules
+      class(material_points_type), intent(in) :: self   !! points of integration_rules
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: stress(most, 4)        !! its points first; xx, yy, zz, xy [stress]
@@ -239,7 +367,7 @@ contains
 
    !> Heat that fluxes of an element take from its nodes: minus the integral of grad psi q.
    pure function nodal_heat(self, mesh, element, flux) result(heat)
-      class(point_fields_type), intent(in) :: self   !! points of integration_rules
+      class(material_points_type), intent(in) :: self   !! points of integration_rules
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: flux(most, 2)          !! its points first; x, y [power/length^2]
@@ -267,89 +395,4 @@ contains
       slope = rule%slope_xi(g, q)*inverse(1:3:2) + rule%slope_eta(g, q)*inverse(2:4:2)
    end function slope_of
 
-   !> Strains, but for zz, which is zero, and the temperature.
-   pure subroutine find_strains(rule, inverse, u, strain, warmth)
-      type(point_rule_type), intent(in) :: rule
-      real(dp), intent(in) :: inverse(4, *), u(3, nodes_per_element)
-      real(dp), intent(out) :: strain(most, 4), warmth(most)
-      real(dp), dimension(2) :: x_xi, x_eta, y_xi, y_eta, t
-      integer :: g, q
-
-      do g = 1, rule%count, 2
-         x_xi = 0.0_dp
-         x_eta = 0.0_dp
-         y_xi = 0.0_dp
-         y_eta = 0.0_dp
-         t = 0.0_dp
-         do q = 1, rule%nodes
-            x_xi = x_xi + rule%slope_xi(g:g + 1, q)*u(1, q)
-            x_eta = x_eta + rule%slope_eta(g:g + 1, q)*u(1, q)
-            y_xi = y_xi + rule%slope_xi(g:g + 1, q)*u(2, q)
-            y_eta = y_eta + rule%slope_eta(g:g + 1, q)*u(2, q)
-            t = t + rule%shape(g:g + 1, q)*u(3, q)
-         end do
-         strain(g:g + 1, 1) = x_xi*inverse(1, g:g + 1) + x_eta*inverse(2, g:g + 1)
-         strain(g:g + 1, 2) = y_xi*inverse(3, g:g + 1) + y_eta*inverse(4, g:g + 1)
-         strain(g:g + 1, 3) = 0.0_dp
-         strain(g:g + 1, 4) = x_xi*inverse(3, g:g + 1) + x_eta*inverse(4, g:g + 1) + &
-            y_xi*inverse(1, g:g + 1) + y_eta*inverse(2, g:g + 1)
-         warmth(g:g + 1) = t
-      end do
-   end subroutine find_strains
-
-   !> u_x/r.
-   pure subroutine add_hoop_strain(rule, nodes, coordinates, displacement, strain)
-      type(point_rule_type), intent(in) :: rule
-      integer, intent(in) :: nodes(:)
-      real(dp), intent(in) :: coordinates(:, :), displacement(:, :)
-      real(dp), intent(inout) :: strain(:)
-      integer :: g
-
-      associate (mine => nodes(:rule%nodes))
-         do g = 1, size(strain)
-            strain(g) = strain(g) + &
-               dot_product(rule%shape(g, :rule%nodes), displacement(1, mine))/ &
-               dot_product(rule%shape(g, :rule%nodes), coordinates(1, mine))
-         end do
-      end associate
-   end subroutine add_hoop_strain
-
-   !> B-bar, as in element_elasticity; the points are those of its integration.
-   pure subroutine set_mean_dilatation(volume, strain)
-      real(dp), intent(in) :: volume(:)
-      real(dp), intent(inout) :: strain(most, 4)
-      real(dp) :: mean, change
-      integer :: g
-
-      mean = 0.0_dp
-      do g = 1, size(volume)
-         mean = mean + volume(g)*sum(strain(g, :3))
-      end do
-      mean = mean/sum(volume)
-      do g = 1, size(volume)
-         change = (mean - sum(strain(g, :3)))/3
-         strain(g, :3) = strain(g, :3) + change
-      end do
-   end subroutine set_mean_dilatation
-
-   !> -grad T.
-   pure subroutine find_fall(rule, inverse, temperature, fall)
-      type(point_rule_type), intent(in) :: rule
-      real(dp), intent(in) :: inverse(4, *), temperature(nodes_per_element)
-      real(dp), intent(out) :: fall(most, 2)
-      real(dp), dimension(2) :: xi, eta
-      integer :: g, q
-
-      do g = 1, rule%count, 2
-         xi = 0.0_dp
-         eta = 0.0_dp
-         do q = 1, rule%nodes
-            xi = xi - rule%slope_xi(g:g + 1, q)*temperature(q)
-            eta = eta - rule%slope_eta(g:g + 1, q)*temperature(q)
-         end do
-         fall(g:g + 1, 1) = xi*inverse(1, g:g + 1) + eta*inverse(2, g:g + 1)
-         fall(g:g + 1, 2) = xi*inverse(3, g:g + 1) + eta*inverse(4, g:g + 1)
-      end do
-   end subroutine find_fall
-
-end module point_fields
+end module material_points
