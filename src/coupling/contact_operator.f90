@@ -223,8 +223,8 @@ contains
       touches = contact_state /= contact_open .or. gap <= 0.0_dp
    end function touches
 
-   !> Nodal forces beside those of the stiffness: of thermal strains, and of all that the bodies have
-   !> beyond their operators.
+   !> Nodal forces beside those of the stiffness: of thermal strains, and of all that the bodies
+   !> have beyond their operators.
    pure function unstrained_forces(bodies, warming, beyond) result(forces)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: warming(:)         !! (nodes) since the initial state [temperature]

@@ -33,7 +33,8 @@ module solution_state
       !> Lowest and highest temperature of the transient step so far [temperature]
       real(dp), allocatable :: extremes(:)
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
-      !> (2 nodes) what the stiffness has beyond the bodies, initial stresses included, or none [force]
+      !> (2 nodes) what the stiffness has beyond the bodies, initial stresses included; unallocated
+      !> for none [force]
       real(dp), allocatable :: forces_beyond(:)
       real(dp), allocatable :: history(:)           !! what all integration points remember, or none
       ! The next four where materials vary.

@@ -24,8 +24,8 @@ module field_recovery
    implicit none
    private
    public :: point_map_type, make_points, recovery_rules, prepare_samples, stress_samples, &
-      heat_flux_samples, average_samples, fit_of_points, element_error_type, measure_stress, measure_heat_flux, &
-      error_rules, error_record_type
+      heat_flux_samples, average_samples, fit_of_points, element_error_type, measure_stress, &
+      measure_heat_flux, error_rules, error_record_type
 
    !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
    type :: error_record_type
@@ -152,9 +152,9 @@ contains
       end do
    end subroutine heat_flux_samples
 
-   !> Values at the recovery points by the linear or bilinear fit of values at the integration points,
-   !> weighted as the integration. On the square 1, xi, eta and xi eta are orthogonal; in triangles
-   !> the fit is that through all points, or their mean.
+   !> Values at the recovery points by the linear or bilinear fit of values at the integration
+   !> points, weighted as the integration. On the square 1, xi, eta and xi eta are orthogonal; in
+   !> triangles the fit is that through all points, or their mean.
    pure function fit_of_points(kind) result(fit)
       integer, intent(in) :: kind                    !! kind of the element
       real(dp) :: fit(recovery_count(kind), point_count(kind))

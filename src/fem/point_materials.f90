@@ -119,8 +119,8 @@ contains
          properties(m) = self%given(m)%properties_type
       end do
       do e = 1, size(mesh%element_kind)
-         associate (section => self%sections(mesh%element_section(e)), plane => mesh%element_plane(e), &
-            rule => self%rules(mesh%element_kind(e)), &
+         associate (section => self%sections(mesh%element_section(e)), &
+            plane => mesh%element_plane(e), rule => self%rules(mesh%element_kind(e)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
             m = section%material
             if (.not. (conducts(m) .or. strains(m))) cycle

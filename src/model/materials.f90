@@ -11,7 +11,8 @@ module materials
    public :: material_type, properties_type, section_type, property_type, orientation_type
    public :: material_axes, strain_rotation, heat_capacity, least_heat_capacity
    public :: set_property, isotropic, engineering, orthotropic, anisotropic
-   public :: follows_temperature, has_law, varies, thermal_strain, heat_content, heat_capacity_at, expansion_heat
+   public :: follows_temperature, has_law, varies
+   public :: thermal_strain, heat_content, heat_capacity_at, expansion_heat
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
       of_specific_heat
 

@@ -3,8 +3,8 @@
 module discretisation_errors
    use element_kinds, only: element_node_count, kind_count
    use field_recovery, only: average_samples, element_error_type, error_record_type, error_rules, &
-      fit_of_points, heat_flux_samples, make_points, measure_heat_flux, measure_stress, point_map_type, &
-      prepare_samples, stress_samples
+      fit_of_points, heat_flux_samples, make_points, measure_heat_flux, measure_stress, &
+      point_map_type, prepare_samples, stress_samples
    use kinds, only: dp
    use material_laws, only: law_points_type
    use materials, only: has_law, varies

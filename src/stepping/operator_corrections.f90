@@ -1,6 +1,6 @@
 !> Heat and forces of bodies beyond their linear operators K, B and C, of (3.3) and (2.4), which
-!> were formed at earlier temperatures, strains and histories. They stand on the right of the equations of a stage, and are
-!> corrected until they are those of its solution.
+!> were formed at earlier temperatures, strains and histories. They stand on the right of the
+!> equations of a stage, and are corrected until they are those of its solution.
 !>
 !> True fluxes and stresses are taken at the integration points and gathered on the nodes; what the
 !> operators have instead is K T, and K u - B (T - T_0), so that a solution balances the true ones.
@@ -16,7 +16,7 @@ module operator_corrections
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
    use kinds, only: dp
-   use materials, only: follows_temperature, has_law, varies
+   use materials, only: has_law, varies
    use model, only: model_type
    use material_laws, only: law_points_type
    use material_points, only: material_points_type, point_history_type
@@ -181,8 +181,9 @@ contains
       self%is_settled = self%left_over <= settled
       self%asks_operators = .not. self%is_settled .and. self%passes > self%renewed_at + 1 .and. &
          self%left_over > contracts*last .and. size(self%elements) > 0
-      if (self%renewed_at > 0 .and. .not. any(has_law(model%materials))) &
-         self%asks_operators = .false.
+      ! Properties at other temperatures are no tangent, which a law has.
+      if (.not. any(has_law(model%materials))) self%asks_operators = self%asks_operators .and. &
+         self%renewed_at == 0
       if (self%is_settled .or. self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
          call set_error(error, status_no_convergence, 'heat and stress of bodies do not follow '// &
@@ -323,7 +324,7 @@ contains
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: at            !! the solution
-      real(dp), allocatable :: tangent(:)                    !! (16*materials of the points), or none
+      real(dp), allocatable :: tangent(:)                    !! (16*materials at points), or none
       type(law_points_type) :: points
       real(dp) :: u(2, size(at%temperature))
       integer :: g, i

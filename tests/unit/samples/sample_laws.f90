@@ -1,0 +1,34 @@
+!> A law of materials that remembers: linear, with a clock and a counter for its history.
+module sample_laws
+   use kinds, only: dp
+   use material_laws, only: law_points_type, material_law_type
+   implicit none
+   private
+   public :: counting_law
+
+contains
+
+   !> Stress is a part of that of thermoelasticity; a point remembers for how long, and how many
+   !> times, it responded.
+   function counting_law(part) result(law)
+      real(dp), intent(in) :: part
+      type(material_law_type) :: law
+
+      law%history_count = 2
+      law%constants = [part]
+      law%respond => respond
+   end function counting_law
+
+   pure subroutine respond(law, points, duration, history)
+      type(material_law_type), intent(in) :: law
+      type(law_points_type), intent(inout) :: points
+      real(dp), intent(in) :: duration
+      real(dp), intent(inout) :: history(:, :)
+
+      points%stress(:points%count, :) = law%constants(1)*points%stress(:points%count, :)
+      points%tangent(:, :, :points%count) = law%constants(1)*points%tangent(:, :, :points%count)
+      history(1, :) = history(1, :) + duration
+      if (duration > 0.0_dp) history(2, :) = history(2, :) + 1
+   end subroutine respond
+
+end module sample_laws
