@@ -13,6 +13,7 @@ module divided_mesh
    use errors, only: error_type
    use heat_equation, only: heat_across, heat_equation_type
    use heat_reduction, only: heat_reduction_type
+   use increments, only: accept_increment
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
    use load_histories, only: end_of_step
@@ -370,13 +371,16 @@ contains
    subroutine enter_step(self, step)
       type(divided_mesh_type), intent(inout) :: self
       integer, intent(in) :: step
+      type(solution_state_type) :: ending                 ! of the step before, as far as loads tell
 
       associate (run => self%run)
          do while (run%control%step < step)
             if (run%control%step > 0) call run%loads%move_to(end_of_step(self%model%steps, &
                run%control%step), self%model)
-            run%state%displacement = run%loads%displacement%value
-            run%state%temperature = run%loads%temperature%value
+            ending = run%state
+            ending%displacement = run%loads%displacement%value
+            ending%temperature = run%loads%temperature%value
+            call accept_increment(ending, self%model, run%state)
             call run%enter_step(self%model)
          end do
       end associate
