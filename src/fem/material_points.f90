@@ -339,7 +339,7 @@ contains
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: stress(most, 4)        !! its points first; xx, yy, zz, xy [stress]
       real(dp) :: forces(2, nodes_per_element)       !! x, y of its nodes [force]
-      real(dp) :: s(most, 4), slope(2), radius
+      real(dp) :: s(most, 4), t(most, 2, 2), hoop(most)
       integer :: g, q
 
       associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
@@ -349,18 +349,25 @@ contains
          ! The transpose of a mean dilatation is a mean of the pressure.
          if (kind == quad4 .and. plane /= plane_stress) call set_mean_dilatation( &
             self%volume(first:first + rule%count - 1), s)
-         forces = 0.0_dp
+         t = 0.0_dp
          do g = 1, rule%count
             s(g, :) = self%volume(first + g - 1)*s(g, :)
-            radius = dot_product(rule%shape(g, :rule%nodes), mesh%coordinates(1, &
+            t(g, :, 1) = along_reference(self%inverse(:, first + g - 1), s(g, 1), s(g, 4))
+            t(g, :, 2) = along_reference(self%inverse(:, first + g - 1), s(g, 4), s(g, 2))
+         end do
+         forces = 0.0_dp
+         do q = 1, rule%nodes
+            forces(1, q) = sum_along(rule, q, t(:, :, 1))
+            forces(2, q) = sum_along(rule, q, t(:, :, 2))
+         end do
+         if (plane /= axisymmetric) return
+         do g = 1, rule%count
+            hoop(g) = s(g, 3)/dot_product(rule%shape(g, :rule%nodes), mesh%coordinates(1, &
                nodes(:rule%nodes)))
-            do q = 1, rule%nodes
-               slope = slope_of(rule, self%inverse(:, first + g - 1), g, q)
-               forces(:, q) = forces(:, q) + [slope(1)*s(g, 1) + slope(2)*s(g, 4), &
-                  slope(2)*s(g, 2) + slope(1)*s(g, 4)]
-               if (plane == axisymmetric) forces(1, q) = forces(1, q) + &
-                  rule%shape(g, q)/radius*s(g, 3)
-            end do
+         end do
+         do q = 1, rule%nodes
+            forces(1, q) = forces(1, q) + dot_product(rule%shape(:rule%count, q), &
+               hoop(:rule%count))
          end do
       end associate
    end function nodal_forces
@@ -372,27 +379,41 @@ contains
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: flux(most, 2)          !! its points first; x, y [power/length^2]
       real(dp) :: heat(nodes_per_element)            !! of its nodes [power]
+      real(dp) :: t(most, 2)
       integer :: g, q
 
       heat = 0.0_dp
+      t = 0.0_dp
       associate (first => self%first(element), rule => self%rules(mesh%element_kind(element)))
          do g = 1, rule%count
-            do q = 1, rule%nodes
-               heat(q) = heat(q) - self%volume(first + g - 1)*dot_product( &
-                  slope_of(rule, self%inverse(:, first + g - 1), g, q), flux(g, :))
-            end do
+            t(g, :) = -self%volume(first + g - 1)*along_reference( &
+               self%inverse(:, first + g - 1), flux(g, 1), flux(g, 2))
+         end do
+         do q = 1, rule%nodes
+            heat(q) = sum_along(rule, q, t)
          end do
       end associate
    end function nodal_heat
 
-   !> d psi^q/dx and d psi^q/dy at a point.
-   pure function slope_of(rule, inverse, g, q) result(slope)
-      type(point_rule_type), intent(in) :: rule
-      real(dp), intent(in) :: inverse(4)
-      integer, intent(in) :: g, q
-      real(dp) :: slope(2)
+   !> A vector, x and y, along xi and eta, so that its product with a gradient stays.
+   pure function along_reference(inverse, x, y) result(along)
+      real(dp), intent(in) :: inverse(4), x, y
+      real(dp) :: along(2)
 
-      slope = rule%slope_xi(g, q)*inverse(1:3:2) + rule%slope_eta(g, q)*inverse(2:4:2)
-   end function slope_of
+      along = [inverse(1)*x + inverse(3)*y, inverse(2)*x + inverse(4)*y]
+   end function along_reference
+
+   !> Sum over the points of grad psi^q with vectors along xi and eta.
+   pure real(dp) function sum_along(rule, q, along) result(total)
+      type(point_rule_type), intent(in) :: rule
+      integer, intent(in) :: q
+      real(dp), intent(in) :: along(most, 2)
+      integer :: g
+
+      total = 0.0_dp
+      do g = 1, most
+         total = total + rule%slope_xi(g, q)*along(g, 1) + rule%slope_eta(g, q)*along(g, 2)
+      end do
+   end function sum_along
 
 end module material_points

@@ -124,9 +124,10 @@ contains
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
             m = section%material
             if (.not. (conducts(m) .or. strains(m))) cycle
+            axes = material_axes(self%orientations, 0, [0.0_dp, 0.0_dp])
             do g = 1, rule%count
                associate (psi => rule%shape(g, :rule%nodes))
-                  if (g == 1 .or. section%orientation > 0) axes = material_axes(self%orientations, &
+                  if (section%orientation > 0) axes = material_axes(self%orientations, &
                      section%orientation, matmul(mesh%coordinates(:, nodes), psi))
                   associate (at => [dot_product(psi, initial(nodes)), dot_product(psi, &
                      temperature(nodes))], there => self%materials(self%material(e) + g - 1))

@@ -203,8 +203,8 @@ contains
       stiffness = whole(:4, :4)
    end function elasticity_of
 
-   !> Elasticity, expansion and conductivity at a temperature. Those that do not vary stay as they
-   !> are; heat has a table of its own.
+   !> Elasticity and conductivity at a temperature. Those that do not vary stay as they are; heat and
+   !> thermal strain have procedures of their own.
    pure subroutine set_to(self, temperature, there)
       class(material_type), intent(in) :: self
       real(dp), intent(in) :: temperature
@@ -214,8 +214,8 @@ contains
 
       do i = 1, size(self%given)
          associate (property => self%given(i))
-            if (size(property%temperature) == 1 .or. property%kind == of_density .or. &
-               property%kind == of_specific_heat) cycle
+            if (size(property%temperature) == 1 .or. .not. (property%kind == of_elasticity .or. &
+               property%kind == of_conductivity)) cycle
             call interpolate(property, temperature, values)
             call take_values(property%kind, property%symmetry, &
                values(:size(property%values, 1)), there)
