@@ -203,8 +203,8 @@ contains
       stiffness = whole(:4, :4)
    end function elasticity_of
 
-   !> Elasticity and conductivity at a temperature. Those that do not vary stay as they are; heat and
-   !> thermal strain have procedures of their own.
+   !> Elasticity and conductivity at a temperature. Those that do not vary stay as they are; heat
+   !> and thermal strain have procedures of their own.
    pure subroutine set_to(self, temperature, there)
       class(material_type), intent(in) :: self
       real(dp), intent(in) :: temperature
