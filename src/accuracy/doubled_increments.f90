@@ -9,7 +9,7 @@ module doubled_increments
    use field_problem, only: solved_loads_type
    use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
-   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_data, only: trial_type
    use increment_solution, only: begin_increment, recover_fields, solve_points
    use increments, only: accept_increment
    use kinds, only: dp
@@ -76,11 +76,10 @@ contains
       type(simulation_type), intent(in) :: run                   !! the run at its end
       type(increment_record_type), intent(in) :: record          !! its position in the steps
       type(error_type), allocatable :: error
-      type(solution_state_type) :: before, next
+      type(solution_state_type) :: before
       type(sparse_matrix_type) :: film
       type(step_type) :: step
-      type(increment_data_type) :: data
-      type(increment_workspace_type) :: workspace
+      type(trial_type) :: trial
       type(heat_equation_type) :: equation
 
       if (.not. self%is_led .or. self%is_lost) return
@@ -92,21 +91,23 @@ contains
       self%has_doubled = self%has_doubled .or. &
          record%time - self%time > 1.5_dp*run%state%increment_size
       step = companion_step(model%steps(record%step))
-      next = self%state
-      before = self%state
-      next%increment_size = record%time - self%time
       equation = heat_equation_type(step%scheme)
-      next%contact = run%state%contact
-      next%contact%tangential = self%state%contact%tangential
+      before = self%state
+      associate (next => trial%next)
+         next = self%state
+         next%increment_size = record%time - self%time
+         next%contact = run%state%contact
+         next%contact%tangential = self%state%contact%tangential
+         next%sources = run%state%sources
+         next%force_load = run%state%force_load
+      end associate
       if (equation%is_steady()) then
          ! The run's solution is nearly right as a guess; nothing else is taken of omega.
          before%omega = run%state%omega
          before%omega_before = run%state%omega
       end if
-      next%sources = run%state%sources
-      next%force_load = run%state%force_load
-      call begin_increment(run%bodies, step, before, next, data)
-      film = data%equation%left_film(run%bodies%capacity)
+      call begin_increment(run%bodies, step, before, trial)
+      film = trial%data%equation%left_film(run%bodies%capacity)
       if (run%heats(1)%serves(run%bodies, film) .or. .not. solves_heat(step%analysis)) then
          call solve_with(run%heats(1))
       else
@@ -116,19 +117,19 @@ contains
       end if
       self%is_lost = allocated(error)
       if (self%is_lost) return
-      call accept_increment(next, model, self%state)
+      call accept_increment(trial%next, model, self%state)
       self%time = record%time
       self%waiting = 0
    contains
       subroutine solve_with(heat)
          type(heat_reduction_type), intent(in) :: heat
 
-         call move_alloc(self%known, workspace%known)
-         call solve_points(run%bodies, heat, run%loads, data, workspace, next, error)
-         call move_alloc(workspace%known, self%known)
+         call move_alloc(self%known, trial%known)
+         call solve_points(run%bodies, heat, run%loads, trial, error)
+         call move_alloc(trial%known, self%known)
          if (allocated(error)) return
          if (.not. (equation%is_steady() .and. solves_mechanics(step%analysis))) call &
-            recover_fields(run%bodies, heat, run%loads, data, workspace, next)
+            recover_fields(run%bodies, heat, run%loads, before, trial)
       end subroutine solve_with
    end subroutine follow
 
@@ -198,12 +199,12 @@ contains
 
    !> Solves the end of an increment, with all of its fields.
    !> Error: it has no solution.
-   subroutine implicit_state(simulation, own, model, step, previous, state, error)
+   subroutine implicit_state(simulation, own, model, step, before, state, error)
       type(simulation_type), intent(in) :: simulation
       type(heat_reduction_type), intent(inout) :: own        !! where the run has other films
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step                    !! from implicit_step
-      type(solution_state_type), intent(in) :: previous      !! at the start of the increment
+      type(solution_state_type), intent(in) :: before        !! at the start of the increment
       type(solution_state_type), intent(inout) :: state      !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
 
@@ -220,13 +221,14 @@ contains
    contains
       subroutine solve_end(heat)
          type(heat_reduction_type), intent(in) :: heat
-         type(increment_data_type) :: data
-         type(increment_workspace_type) :: workspace
+         type(trial_type) :: trial
 
-         call begin_increment(simulation%bodies, step, previous, state, data)
-         call solve_points(simulation%bodies, heat, simulation%loads, data, workspace, state, error)
+         trial%next = state
+         call begin_increment(simulation%bodies, step, before, trial)
+         call solve_points(simulation%bodies, heat, simulation%loads, trial, error)
          if (.not. allocated(error)) call recover_fields(simulation%bodies, heat, &
-            simulation%loads, data, workspace, state)
+            simulation%loads, before, trial)
+         state = trial%next
       end subroutine solve_end
    end subroutine implicit_state
 

@@ -51,7 +51,7 @@ contains
       type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: omega(:)                           !! (m) omega*
-      type(increment_workspace_type), intent(inout) :: workspace !! heat in, factors out
+      type(increment_workspace_type), intent(inout) :: workspace !! receives factors
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       real(dp) :: x(bodies%thermal%map%tail), diagonal(bodies%thermal%map%tail)
       real(dp) :: of_point(size(omega)), history(size(omega))
@@ -62,7 +62,7 @@ contains
          tail => workspace%tail, work => workspace%record%work)
          of_point = data%equation%contact_diagonal(omega)
          history = data%equation%contact_history(omega)
-         x = workspace%heat%condensed
+         x = data%heat%condensed
          if (allocated(workspace%friction%made)) x = x + matmul(heat%friction_heat, &
             workspace%friction%parts(2, :)*workspace%friction%made)
          diagonal = 0.0_dp
@@ -82,7 +82,7 @@ contains
          work%flops_again = work%flops_again + tail_flops(size(x), tail%first_changed)
          work%flops_full = work%flops_full + solver%full_flops + tail_flops(size(x), 1)
          if (allocated(workspace%edge%point)) then
-            call solve_with_edge(bodies, diagonal, workspace, x, of_edge)
+            call solve_with_edge(bodies, data%heat%given, diagonal, workspace, x, of_edge)
          else
             call tail%solve(x)
          end if
@@ -97,8 +97,9 @@ contains
 
    !> Solves on the tail with heat at edges. The jumps there have the diagonal of the bodies in the
    !> factors; it is taken off again, and the heat at the edges put in its place.
-   subroutine solve_with_edge(bodies, diagonal, workspace, x, jump)
+   subroutine solve_with_edge(bodies, prescribed, diagonal, workspace, x, jump)
       type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: prescribed(:)                      !! (nodes) temperatures
       real(dp), intent(in) :: diagonal(:)                        !! (tail)
       type(increment_workspace_type), intent(inout) :: workspace
       real(dp), intent(inout) :: x(:)                            !! (tail) heat in, solution out
@@ -111,7 +112,7 @@ contains
       sums = 0.0_dp
       given = 0.0_dp
       if (.not. allocated(workspace%supported)) workspace%supported = &
-         bodies%thermal%map%supported(workspace%heat%given)
+         bodies%thermal%map%supported(prescribed)
       associate (at_edge => workspace%edge, map => bodies%thermal%map)
          heat = heat_across(bodies%points%weight(at_edge%point), at_edge%conductance, 1.0_dp)
          back = -diagonal(bodies%jump_index(at_edge%point))
@@ -201,7 +202,7 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
-      !> heat, coordinates and a guess of omega in; omega, temperatures, laws and factors out
+      !> coordinates and a guess of omega in; omega, temperatures, laws and factors out
       type(increment_workspace_type), intent(inout) :: workspace
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(error_type), allocatable, intent(out) :: error

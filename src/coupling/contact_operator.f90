@@ -53,7 +53,7 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(inout) :: workspace !! loads in, factors out
+      type(increment_workspace_type), intent(inout) :: workspace !! conductance in, factors out
       real(dp), intent(out) :: jump(:)                           !! (m) T_xi - T_eta [temperature]
       type(contact_state_type), intent(inout) :: state           !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error

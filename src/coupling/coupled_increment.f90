@@ -9,7 +9,7 @@ module coupled_increment
    use contact_heat, only: changes_by_temperature, derivative_by_temperature, heat_by_omega, &
       jump_derivatives, jump_derivatives_type
    use contact_operator, only: make_graph, opening_changes, opening_derivative
-   use contact_system, only: contact_open
+   use contact_system, only: contact_open, contact_state_type
    use contact_workspace, only: contact_workspace_type
    use controls, only: method_picard, start_both, start_closed, start_given, start_open, &
       start_previous
@@ -18,7 +18,8 @@ module coupled_increment
    use fixed_point, only: predicted_conductance
    use friction_tangent, only: friction_tangent_type
    use heat_reduction, only: heat_reduction_type
-   use increment_data, only: contact_scales_type, increment_data_type, increment_workspace_type
+   use increment_data, only: contact_scales_type, increment_data_type, increment_workspace_type, &
+      trial_type
    use increment_iteration, only: iterate
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
@@ -43,31 +44,31 @@ contains
 
    !> Conductances, jumps and contact state of an increment.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies.
-   subroutine solve_coupled(bodies, heat, data, workspace, next, error)
+   subroutine solve_coupled(bodies, heat, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(inout) :: data           !! receives scales
-      type(increment_workspace_type), intent(inout) :: workspace !! loads in, the last pass out
-      type(solution_state_type), intent(inout) :: next           !! guess in, solution out
+      type(trial_type), intent(inout) :: trial   !! loaded, with a guess; the last pass out
       type(error_type), allocatable, intent(out) :: error
 
-      data%scales = contact_scales(bodies, data)
-      workspace%pass%graph = make_graph(bodies, heat, data%scales%length)
-      ! Where the edge goes over a contact point U jumps, and there is no branch.
-      workspace%resolves_edge = any(bodies%points%resolves_edge) .and. &
-         .not. (data%equation%takes_past_conductance() .or. data%follows_branch)
-      next%omega_before = data%equation%omega_old
-      if (allocated(data%omega_start)) then
-         next%omega = data%omega_start
-         call iterate(bodies, heat, data%fixed_point, data, workspace, next, error)
-      else if (data%start%kind == start_both) then
-         call solve_from_both(bodies, heat, data, workspace, next, error)
-      else
-         next%omega = starting_conductance(bodies, heat, data%start%kind, data)
-         call iterate(bodies, heat, data%fixed_point, data, workspace, next, error)
-      end if
-      if (allocated(error) .or. .not. data%fixed_point%finds_gain) return
-      call judge_solution(bodies, heat, data, next, workspace)
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next)
+         data%scales = contact_scales(bodies, data)
+         workspace%pass%graph = make_graph(bodies, heat, data%scales%length)
+         ! Where the edge goes over a contact point U jumps, and there is no branch.
+         workspace%resolves_edge = any(bodies%points%resolves_edge) .and. &
+            .not. (data%equation%takes_past_conductance() .or. data%follows_branch)
+         next%omega_before = data%equation%omega_old
+         if (allocated(data%omega_start)) then
+            next%omega = data%omega_start
+            call iterate(bodies, heat, trial, error)
+         else if (data%start%kind == start_both) then
+            call solve_from_both(bodies, heat, trial, error)
+         else
+            next%omega = starting_conductance(bodies, heat, data%start%kind, data)
+            call iterate(bodies, heat, trial, error)
+         end if
+         if (allocated(error) .or. .not. data%fixed_point%finds_gain) return
+         call judge_solution(bodies, heat, trial)
+      end associate
    end subroutine solve_coupled
 
    !> Largest values that are known at the start of an increment. Its load counts by the overlap
@@ -124,24 +125,22 @@ contains
    !> The increment from the last ones, from both ends of the conductance, and from what was found
    !> there, turned over and disturbed: do all lead to one solution? That of the first start that
    !> leads to any is the increment's. It is found last, for the factors to be its own.
-   subroutine solve_from_both(bodies, heat, data, workspace, next, error)
+   subroutine solve_from_both(bodies, heat, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
-      type(solution_state_type), intent(inout) :: next
+      type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
       integer, parameter :: kinds(3) = [start_open, start_closed, start_previous]
       character(*), parameter :: names(3) = [character(8) :: 'OPEN', 'CLOSED', 'PREVIOUS']
-      type(solution_state_type) :: guess
+      type(contact_state_type) :: guess
       type(increment_workspace_type) :: fresh
-      real(dp), dimension(size(next%omega)) :: turned
+      real(dp), dimension(size(trial%next%omega)) :: turned
       real(dp) :: omega(size(turned), 3)
       logical :: found(3), has_other
       integer :: i
 
-      guess = next
-      fresh = workspace
+      guess = trial%next%contact
+      fresh = trial%workspace
       has_other = .false.
       found = .false.
       do i = 1, 3
@@ -149,34 +148,34 @@ contains
             turned = turned_over(bodies, omega(:, findloc(found(:2), .true., dim=1)))
             call try_from(turned)
             has_other = .not. allocated(error)
-            turned = next%omega
+            turned = trial%next%omega
          end if
          call try_start(i)
          found(i) = .not. allocated(error)
-         omega(:, i) = next%omega
+         omega(:, i) = trial%next%omega
          if (allocated(error)) call append(fresh%record%notes, 'the start from '// &
             trim(names(i))//' finds no solution: '//error%message)
       end do
       if (.not. found(3) .and. any(found)) call try_start(findloc(found, .true., dim=1))
-      if (allocated(fresh%record%notes)) workspace%record%notes = fresh%record%notes
-      call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, workspace%record)
+      if (allocated(fresh%record%notes)) trial%workspace%record%notes = fresh%record%notes
+      call compare(omega(:, 1), omega(:, 2), omega(:, 3), found, trial%workspace%record)
       if (has_other) has_other = any(differ(turned, omega(:, findloc(found, .true., dim=1))))
-      if (has_other) call workspace%record%warn('a start with conductances turned over '// &
+      if (has_other) call trial%workspace%record%warn('a start with conductances turned over '// &
          'leads to a different solution; this is one of several')
    contains
       subroutine try_start(i)
          integer, intent(in) :: i
 
-         call try_from(starting_conductance(bodies, heat, kinds(i), data))
+         call try_from(starting_conductance(bodies, heat, kinds(i), trial%data))
       end subroutine try_start
 
       subroutine try_from(omega_start)
          real(dp), intent(in) :: omega_start(:)
 
-         next = guess
-         next%omega = omega_start
-         workspace = fresh
-         call iterate(bodies, heat, data%fixed_point, data, workspace, next, error)
+         trial%next%contact = guess
+         trial%next%omega = omega_start
+         trial%workspace = fresh
+         call iterate(bodies, heat, trial, error)
       end subroutine try_from
    end subroutine solve_from_both
 
@@ -228,35 +227,32 @@ contains
    end function differ
 
    !> The gain of the coupling at a solution, and what follows from it.
-   subroutine judge_solution(bodies, heat, data, next, workspace)
+   subroutine judge_solution(bodies, heat, trial)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      type(solution_state_type), intent(in) :: next
-      type(increment_workspace_type), intent(inout) :: workspace !! its last pass in, record out
+      type(trial_type), intent(inout) :: trial   !! a solution, as its last pass left it; its record
       type(arnoldi_type) :: gains
       logical :: is_negative                                     ! det(I - U')
 
-      workspace%record%coupling_gain = 0.0_dp
-      workspace%record%coupling_gain_max = 0.0_dp
-      associate (graph => workspace%pass%graph, opening => workspace%pass%opening)
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next, &
+         record => trial%workspace%record, graph => trial%workspace%pass%graph, &
+         opening => trial%workspace%pass%opening)
+         record%coupling_gain = 0.0_dp
+         record%coupling_gain_max = 0.0_dp
          if (.not. (any(abs(graph%derivative(graph%coordinate_of_opening(opening))) > 0.0_dp) .or. &
             any(next%resting) .or. bodies%points%vary_with_temperature() .or. &
             allocated(workspace%friction%made))) return
-      end associate
-      if (.not. all(next%resting) .or. allocated(workspace%friction%made)) then
-         workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
-         workspace%record%coupling_gain_max = workspace%record%coupling_gain
-         call find_gains(bodies, heat, data, workspace, next, gains)
-         if (.not. gains%found) return
-         workspace%record%coupling_gain = real(gains%largest, dp)
-         if (gains%largest_real > -huge(1.0_dp)) workspace%record%coupling_gain_max = &
-            gains%largest_real
-      end if
-      associate (record => workspace%record)
+         if (.not. all(next%resting) .or. allocated(workspace%friction%made)) then
+            record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
+            record%coupling_gain_max = record%coupling_gain
+            call find_gains(bodies, heat, data, workspace, next, gains)
+            if (.not. gains%found) return
+            record%coupling_gain = real(gains%largest, dp)
+            if (gains%largest_real > -huge(1.0_dp)) record%coupling_gain_max = gains%largest_real
+         end if
          ! Where all gains are below 1 in modulus, det(I - U') is positive.
          is_negative = any(next%resting) .or. abs(gains%largest) >= 1.0_dp
-         if (is_negative) is_negative = is_unstable(bodies, heat, data, workspace, next)
+         if (is_negative) is_negative = is_unstable(bodies, heat, trial)
          record%is_unstable = is_negative .and. data%equation%duration <= 0.0_dp
          ! The points of a branch say so themselves.
          if (data%follows_branch) return
@@ -319,29 +315,28 @@ contains
    end function alternates
 
    !> Whether det(I - U') < 0.
-   logical function is_unstable(bodies, heat, data, workspace, next)
+   logical function is_unstable(bodies, heat, trial)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
-      type(solution_state_type), intent(in) :: next
+      type(trial_type), intent(in) :: trial                    !! as the last pass left it
       real(dp), allocatable :: derivative(:, :), body(:), by_temperature(:, :)
       type(jump_derivatives_type) :: by_omega
       type(friction_tangent_type) :: of_friction
 
       is_unstable = .false.
-      call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
-      call opening_derivative(bodies, heat, workspace, by_omega, next%contact, derivative, body)
-      if (.not. allocated(derivative)) return
-      associate (graph => workspace%pass%graph, opening => workspace%pass%opening)
+      associate (workspace => trial%workspace, next => trial%next, &
+         graph => trial%workspace%pass%graph, opening => trial%workspace%pass%opening)
+         call jump_derivatives(bodies, trial%data, workspace, next%jump, by_omega)
+         call opening_derivative(bodies, heat, workspace, by_omega, next%contact, derivative, body)
+         if (.not. allocated(derivative)) return
          if (bodies%points%vary_with_temperature()) by_temperature = derivative_by_temperature( &
             bodies, heat, workspace, graph%coordinate_of_opening(opening), by_omega)
          is_unstable = is_one_of_several(graph, opening, derivative, next%resting, by_temperature)
+         if (.not. allocated(workspace%friction%made)) return
+         ! The determinant is that of I - U' with the heat of friction following, times that of the
+         ! heat at constant conductances.
+         call of_friction%make(bodies, heat, workspace, next%contact)
       end associate
-      if (.not. allocated(workspace%friction%made)) return
-      ! The determinant is that of I - U' with the heat of friction following, times that of the
-      ! heat at constant conductances.
-      call of_friction%make(bodies, heat, workspace, next%contact)
       if (of_friction%exists) is_unstable = is_unstable .neqv. of_friction%lu%negative_determinant()
    end function is_unstable
 

@@ -1,4 +1,4 @@
-!> Data of an increment, and the workspace of its trial solutions.
+!> A trial solution of an increment: its data, its workspace, and the state at its end.
 module increment_data
    use contact_system, only: contact_state_type
    use contact_workspace, only: contact_workspace_type
@@ -17,7 +17,7 @@ module increment_data
    implicit none
    private
    public :: contact_scales_type, increment_data_type, increment_workspace_type, load_rate_type, &
-      stage_type
+      stage_type, trial_type
 
    !> Largest values of an increment, by which gaps and pressures are small.
    type :: contact_scales_type
@@ -38,17 +38,20 @@ module increment_data
       integer :: analysis = 0                        !! one of the analysis_* constants of steps
       type(start_type) :: start                      !! where its fixed point starts
       type(fixed_point_type) :: fixed_point          !! controls of its fixed point
-      type(solution_state_type) :: before            !! state at the start of the increment
-      ! The next five are of the start of the increment, under the laws of its step.
+      ! The next six are of the start of the increment, under the laws of its step.
       type(heat_equation_type) :: equation           !! eq. (3.4)
       type(contact_state_type) :: previous           !! contact state
       real(dp), allocatable :: omega_before(:)       !! (m) omega_(i-1)
       logical, allocatable :: resting(:)             !! (m) contact points that rest
+      !> Whether the increment before solved heat by a scheme that keeps an imbalance for ever
+      logical :: kept_imbalance = .false.
       type(edge_heat_type) :: edge   !! heat at edges; none where (3.4) takes past conductances
       type(friction_heating_type) :: friction        !! heat of friction, made as the trial found
       real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
       !> (m) omega*^0 where the increment was solved before with other corrections of its operators
       real(dp), allocatable :: omega_start(:)
+      type(field_load_type) :: heat         !! load of (3.4)
+      type(field_load_type) :: force        !! load of (2.4)
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
       real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
       real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
@@ -79,13 +82,9 @@ module increment_data
       logical :: is_last = .true.                          !! whether the increment ends with it
    end type stage_type
 
-   !> Workspace of a trial solution; only its own increment changes it.
+   !> Workspace of a trial solution: all that its passes change, but the state.
    type :: increment_workspace_type
-      type(field_load_type) :: heat                  !! load of (3.4)
-      type(field_load_type) :: force                 !! load of (2.4)
       type(friction_heating_type) :: friction        !! heat of friction; nothing allocated for none
-      !> Loads of earlier increments, of (3.4) and of (2.4).
-      type(solved_loads_type), allocatable :: known(:)
       real(dp), allocatable :: supported(:) !! (nodes) what prescribed temperatures alone make
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
       real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution
@@ -102,6 +101,17 @@ module increment_data
       procedure :: of_motions
    end type increment_workspace_type
 
+   !> A trial solution. A procedure that reads only a part takes that part.
+   type :: trial_type
+      type(increment_data_type) :: data
+      !> Loads that were solved, those of earlier increments too, of (3.4) and of (2.4)
+      type(solved_loads_type), allocatable :: known(:)
+      type(increment_workspace_type) :: workspace
+      type(solution_state_type) :: next              !! guess and loads at its end; the solution
+   contains
+      procedure :: clear
+   end type trial_type
+
 contains
 
    !> What small motions about the solution need of it.
@@ -114,5 +124,18 @@ contains
       part%friction = self%friction
       part%contact = self%contact
    end function of_motions
+
+   !> Leaves nothing but known loads and the state.
+   pure subroutine clear(self)
+      class(trial_type), intent(inout) :: self
+
+      call forget(self%data, self%workspace)
+   end subroutine clear
+
+   !> What nothing was done with.
+   pure subroutine forget(data, workspace)
+      type(increment_data_type), intent(out) :: data
+      type(increment_workspace_type), intent(out) :: workspace
+   end subroutine forget
 
 end module increment_data

@@ -16,7 +16,8 @@ module increment_iteration
    use fixed_point, only: accelerator_type, anderson_type, pass_type, picard_type, point_residual, &
       zaitsev_type
    use heat_reduction, only: heat_reduction_type
-   use increment_data, only: contact_scales_type, increment_data_type, increment_workspace_type
+   use increment_data, only: contact_scales_type, increment_data_type, increment_workspace_type, &
+      trial_type
    use interruption, only: check_overdue
    use kinds, only: dp
    use newton, only: newton_type
@@ -51,56 +52,66 @@ contains
    !> failure means.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies;
    !> status_interrupted where a signal left no more time.
-   subroutine iterate(bodies, heat, controls, data, workspace, next, error)
+   subroutine iterate(bodies, heat, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(fixed_point_type), intent(in) :: controls
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(inout) :: workspace !! loads in, passes out
-      type(solution_state_type), intent(inout) :: next           !! omega*^0 and guess in
+      type(trial_type), intent(inout) :: trial   !! loaded, omega*^0 and guess in; last pass out
       type(error_type), allocatable, intent(out) :: error
-      type(solution_state_type) :: start
+      type(contact_state_type) :: guess
+      real(dp) :: omega_start(size(trial%next%omega))
       integer :: before
 
-      allocate (workspace%record%iterations(0))
-      next%edge = edge_heat_type()
-      start = next
-      if (workspace%resolves_edge) then
-         call use_method(bodies, heat, controls, data, workspace, next, error)
+      associate (controls => trial%data%fixed_point, workspace => trial%workspace, &
+         next => trial%next)
+         allocate (workspace%record%iterations(0))
+         next%edge = edge_heat_type()
+         guess = next%contact
+         omega_start = next%omega
+         if (workspace%resolves_edge) then
+            call use_method(bodies, heat, controls, trial, error)
+            if (.not. allocated(error)) return
+            if (error%status /= status_no_convergence) return
+            call append(workspace%record%notes, 'the position of the edge of contact in its '// &
+               'element side does not converge; in this increment heat crosses the undivided side')
+            call start_again()
+            workspace%resolves_edge = .false.
+            workspace%edge = edge_heat_type()
+         end if
+         before = size(workspace%record%iterations)
+         call use_method(bodies, heat, controls, trial, error)
+         if (allocated(error) .and. size(workspace%record%iterations) == before) then
+            ! Not even the contact zones of the start were found: those of the last increment may
+            ! be.
+            next%contact = guess
+            next%omega = trial%data%equation%omega_old
+            call use_method(bodies, heat, controls, trial, error)
+         end if
          if (.not. allocated(error)) return
          if (error%status /= status_no_convergence) return
-         deallocate (error)
-         call append(workspace%record%notes, 'the position of the edge of contact in its '// &
-            'element side does not converge; in this increment heat crosses the undivided side')
-         next = start
-         workspace%resolves_edge = .false.
-         workspace%edge = edge_heat_type()
-      end if
-      before = size(workspace%record%iterations)
-      call use_method(bodies, heat, controls, data, workspace, next, error)
-      if (allocated(error) .and. size(workspace%record%iterations) == before) then
-         ! Not even the contact zones of the start were found: those of the last increment may be.
-         next%contact = start%contact
-         next%omega = data%equation%omega_old
-         call use_method(bodies, heat, controls, data, workspace, next, error)
-      end if
-      if (.not. allocated(error)) return
-      ! Newton's method needs the loads of all jumps.
-      if (heat%forms_on_demand) return
-      if (controls%method /= method_newton) then
-         if (any(workspace%pass%graph%width > 0.0_dp)) then
-            deallocate (error)
-            call append(workspace%record%notes, &
-               'the method of the deck finds no state for a contact point whose conductance '// &
-               'jumps; NEWTON solves this increment')
-            next = start
-            call use_method(bodies, heat, by_newton(controls), data, workspace, next, error)
-            if (.not. allocated(error)) return
-         else if (.not. (runs_away(bodies, next%jump) .or. workspace%contact%driven)) then
-            call explain_failure(bodies, heat, by_newton(controls), data, start, workspace, error)
+         ! Newton's method needs the loads of all jumps.
+         if (heat%forms_on_demand) return
+         if (controls%method /= method_newton) then
+            if (any(workspace%pass%graph%width > 0.0_dp)) then
+               call append(workspace%record%notes, &
+                  'the method of the deck finds no state for a contact point whose conductance '// &
+                  'jumps; NEWTON solves this increment')
+               call start_again()
+               call use_method(bodies, heat, by_newton(controls), trial, error)
+               if (.not. allocated(error)) return
+            else if (.not. (runs_away(bodies, next%jump) .or. workspace%contact%driven)) then
+               call start_again()
+               call explain_failure(bodies, heat, trial, error)
+               return
+            end if
          end if
-      end if
-      call name_runaway(bodies, next%jump, workspace%record, error)
+         call name_runaway(bodies, next%jump, workspace%record, error)
+      end associate
+   contains
+      !> Contact and conductances as at the start; passes read nothing else of the state.
+      subroutine start_again()
+         trial%next%contact = guess
+         trial%next%omega = omega_start
+      end subroutine start_again
    end subroutine iterate
 
    !> The controls with Newton's method.
@@ -114,23 +125,20 @@ contains
 
    !> Says of an increment in which another method failed what Newton's finds in it: a solution, or
    !> that the heat runs away.
-   subroutine explain_failure(bodies, heat, controls, data, start, workspace, error)
+   subroutine explain_failure(bodies, heat, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(fixed_point_type), intent(in) :: controls
-      type(increment_data_type), intent(in) :: data
-      type(solution_state_type), intent(in) :: start
-      type(increment_workspace_type), intent(inout) :: workspace
+      type(trial_type), intent(inout) :: trial     !! at its start again; keeps the record it has
       type(error_type), intent(inout) :: error
-      type(increment_workspace_type) :: other_workspace
-      type(solution_state_type) :: other
+      type(solution_report_type) :: record
       type(error_type), allocatable :: other_error
 
-      other = start
-      other_workspace = workspace
-      call use_method(bodies, heat, controls, data, other_workspace, other, other_error)
+      record = trial%workspace%record
+      call use_method(bodies, heat, by_newton(trial%data%fixed_point), trial, other_error)
+      trial%workspace%record = record
+      trial%workspace%contact%driven = .false.
       if (allocated(other_error)) then
-         call name_runaway(bodies, other%jump, workspace%record, error)
+         call name_runaway(bodies, trial%next%jump, trial%workspace%record, error)
       else
          error%message = error%message//'; *FIXED POINT, METHOD=NEWTON solves it'
       end if
@@ -168,27 +176,26 @@ contains
    end subroutine name_runaway
 
    !> The iteration by one method.
-   subroutine use_method(bodies, heat, controls, data, workspace, next, error)
+   subroutine use_method(bodies, heat, controls, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(fixed_point_type), intent(in) :: controls
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
-      type(solution_state_type), intent(inout) :: next
+      type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
       class(accelerator_type), allocatable :: accelerator
       type(iteration_record_type), allocatable :: passes(:)
       type(contact_state_type) :: good
-      integer :: turns(size(next%omega)), away, i
+      integer :: turns(size(trial%next%omega)), away, i
       real(dp) :: wanted
 
       turns = 0
       away = 0
       wanted = controls%tolerance
       allocate (passes(0))
-      call begin_passes(bodies, data, next%omega, workspace)
-      call make_accelerator(controls, size(next%omega), accelerator)
-      associate (pass => workspace%pass, record => workspace%record)
+      call begin_passes(bodies, trial%data, trial%next%omega, trial%workspace)
+      call make_accelerator(controls, size(turns), accelerator)
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next, &
+         pass => trial%workspace%pass, record => trial%workspace%record)
          do i = 1, huge(i) - 1
             if ((i - 1)/merge(on_path, 1, accelerator%follows_path) >= controls%max_iterations) exit
             ! Where the edge goes over a contact point U jumps, and there is no path.
@@ -222,11 +229,11 @@ contains
                (good%contact_state == contact_open)) turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &
                pass%graph%width > 0.0_dp)) exit
-            call take_step(bodies, heat, data, next, accelerator, workspace)
+            call take_step(bodies, heat, trial, accelerator)
          end do
          call close_passes(record, passes, i, wanted, error)
       end associate
-      if (.not. allocated(error)) call settle(next%resting, next%contact)
+      if (.not. allocated(error)) call settle(trial%next%resting, trial%next%contact)
    end subroutine use_method
 
    !> Starts passes from omega*^0 without anything that passes of another method left.
@@ -295,34 +302,29 @@ contains
    end subroutine close_passes
 
    !> The next omega*, from the derivative of the pass where the accelerator asks for it.
-   subroutine take_step(bodies, heat, data, next, accelerator, workspace)
+   subroutine take_step(bodies, heat, trial, accelerator)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      type(solution_state_type), intent(inout) :: next
+      type(trial_type), intent(inout) :: trial
       class(accelerator_type), intent(inout) :: accelerator
-      type(increment_workspace_type), intent(inout) :: workspace
 
-      associate (pass => workspace%pass)
+      associate (pass => trial%workspace%pass)
          if (allocated(pass%derivative)) deallocate (pass%derivative)
-         if (accelerator%asks_derivative(pass)) call find_derivative(bodies, heat, data, next, &
-            workspace)
+         if (accelerator%asks_derivative(pass)) call find_derivative(bodies, heat, trial)
          call accelerator%next(pass)
-         next%omega = pass%omega
+         trial%next%omega = pass%omega
       end associate
    end subroutine take_step
 
    !> Derivative of the openings that the last pass found by the conductances.
-   subroutine find_derivative(bodies, heat, data, next, workspace)
+   subroutine find_derivative(bodies, heat, trial)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      type(solution_state_type), intent(in) :: next
-      type(increment_workspace_type), intent(inout) :: workspace
+      type(trial_type), intent(inout) :: trial
       type(jump_derivatives_type) :: by_omega
 
-      associate (pass => workspace%pass)
-         call jump_derivatives(bodies, data, workspace, next%jump, by_omega)
+      associate (workspace => trial%workspace, next => trial%next, pass => trial%workspace%pass)
+         call jump_derivatives(bodies, trial%data, workspace, next%jump, by_omega)
          call opening_derivative(bodies, heat, workspace, by_omega, next%contact, &
             pass%derivative, pass%body)
          if (bodies%points%vary_with_temperature() .and. allocated(pass%derivative)) then
@@ -335,26 +337,26 @@ contains
    !> One pass at coordinates of a branch, workspace%pass%coordinate, with its derivatives; they are
    !> unallocated where they do not exist.
    !> Errors: as contact_operator_pass.
-   subroutine pass_on_branch(bodies, heat, data, workspace, next, residual, error)
+   subroutine pass_on_branch(bodies, heat, trial, residual, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(inout) :: workspace !! loads, graphs, coordinates in
-      type(solution_state_type), intent(inout) :: next           !! guess of the contact in
-      real(dp), intent(out) :: residual                          !! over the one wanted
+      type(trial_type), intent(inout) :: trial   !! loaded, graphs, coordinates, contact guess in
+      real(dp), intent(out) :: residual          !! over the one wanted
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: coordinate(:)
 
-      coordinate = workspace%pass%coordinate
-      call begin_passes(bodies, data, workspace%pass%graph%omega(coordinate), workspace)
-      workspace%pass%coordinate = coordinate
-      call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, error)
-      if (allocated(error)) return
-      call measure_pass(bodies, data, workspace, next, residual)
-      residual = residual/max(data%fixed_point%tolerance, workspace%record%residual_floor)
-      call find_derivative(bodies, heat, data, next, workspace)
-      if (allocated(workspace%pass%derivative)) call load_derivative(bodies, heat, data, &
-         next%contact, workspace)
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next)
+         coordinate = workspace%pass%coordinate
+         call begin_passes(bodies, data, workspace%pass%graph%omega(coordinate), workspace)
+         workspace%pass%coordinate = coordinate
+         call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, error)
+         if (allocated(error)) return
+         call measure_pass(bodies, data, workspace, next, residual)
+         residual = residual/max(data%fixed_point%tolerance, workspace%record%residual_floor)
+         call find_derivative(bodies, heat, trial)
+         if (allocated(workspace%pass%derivative)) call load_derivative(bodies, heat, data, &
+            next%contact, workspace)
+      end associate
    end subroutine pass_on_branch
 
    !> The accelerator that the deck asks for.

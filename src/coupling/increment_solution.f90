@@ -17,7 +17,7 @@ module increment_solution
    use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
    use held_points, only: tangential_positions
-   use increment_data, only: increment_data_type, increment_workspace_type
+   use increment_data, only: increment_data_type, increment_workspace_type, trial_type
    use kinds, only: dp
    use loads, only: loads_type
    use reduced_bodies, only: reduced_bodies_type
@@ -38,83 +38,76 @@ contains
    !> belong to welded contacts. A field that the step does not solve stays.
    !> Errors: no convergence of the fixed point or of the contact zones, unconstrained bodies,
    !> loads that overflow.
-   subroutine solve_points(bodies, heat, loads, data, workspace, next, error)
+   subroutine solve_points(bodies, heat, loads, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(increment_data_type), intent(inout) :: data           !! as begun; completed
-      type(increment_workspace_type), intent(inout) :: workspace !! a fresh one, but for known loads
-      !> guess and loads at the end in, solution out
-      type(solution_state_type), intent(inout) :: next
+      type(loads_type), intent(in) :: loads            !! loads at the end
+      !> data as begun and a fresh workspace in; data completed, solution out
+      type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. allocated(workspace%known)) allocate (workspace%known(2))
-      next%edge = data%edge
-      next%keeps_imbalance = solves_heat(data%analysis) .and. data%equation%never_damps()
-      call adapt_contact(bodies, next%contact)
-      workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
-      workspace%record%coupling_gain_max = workspace%record%coupling_gain
-      if (solves_heat(data%analysis)) then
-         call load_heat(bodies, heat, loads, data, workspace, next, error)
-         if (allocated(error)) return
-         if (size(next%omega) > 0 .and. .not. bodies%is_coupled) then
-            call conduct(bodies, heat, data, workspace, next, error)
-            if (.not. allocated(error)) call check_absolute_zero(bodies, workspace, error)
+      if (.not. allocated(trial%known)) allocate (trial%known(2))
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next)
+         next%edge = data%edge
+         next%keeps_imbalance = solves_heat(data%analysis) .and. data%equation%never_damps()
+         call adapt_contact(bodies, next%contact)
+         workspace%record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
+         workspace%record%coupling_gain_max = workspace%record%coupling_gain
+         if (solves_heat(data%analysis)) then
+            call load_heat(bodies, heat, loads, trial, error)
             if (allocated(error)) return
+            if (size(next%omega) > 0 .and. .not. bodies%is_coupled) then
+               call conduct(bodies, heat, trial, error)
+               if (.not. allocated(error)) call check_absolute_zero(bodies, workspace, error)
+               if (allocated(error)) return
+            end if
          end if
-      end if
-      if (solves_heat(data%analysis) .and. bodies%is_coupled) workspace%friction = data%friction
-      if (solves_mechanics(data%analysis)) call solve_equilibrium(bodies, heat, loads, data, &
-         workspace, next, error)
-      if (allocated(error)) return
-      if (allocated(workspace%friction%made)) data%friction%made = workspace%friction%made
-      if (allocated(data%friction%made)) next%friction_heat = data%friction%made
-      next%carrying = data%equation%carrying(joined_conductance(next%omega, next%edge))
+         if (solves_heat(data%analysis) .and. bodies%is_coupled) workspace%friction = data%friction
+         if (solves_mechanics(data%analysis)) call solve_equilibrium(bodies, heat, loads, trial, &
+            error)
+         if (allocated(error)) return
+         if (allocated(workspace%friction%made)) data%friction%made = workspace%friction%made
+         if (allocated(data%friction%made)) next%friction_heat = data%friction%made
+         next%carrying = data%equation%carrying(joined_conductance(next%omega, next%edge))
+      end associate
    end subroutine solve_points
 
    !> Loads of an increment in which heat and mechanics are coupled, as solve_points has them.
    !> Error: they overflow.
-   subroutine load_points(bodies, heat, loads, data, workspace, next, error)
+   subroutine load_points(bodies, heat, loads, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(increment_data_type), intent(inout) :: data           !! as begun
-      type(increment_workspace_type), intent(inout) :: workspace !! with places for known loads
-      type(solution_state_type), intent(inout) :: next
+      type(loads_type), intent(in) :: loads            !! loads at the end
+      type(trial_type), intent(inout) :: trial         !! data as begun, places for known loads in
       type(error_type), allocatable, intent(out) :: error
 
-      call adapt_contact(bodies, next%contact)
-      call load_heat(bodies, heat, loads, data, workspace, next, error)
+      call adapt_contact(bodies, trial%next%contact)
+      call load_heat(bodies, heat, loads, trial, error)
       if (allocated(error)) return
-      workspace%friction = data%friction
-      next%contact%reference = data%before%contact%tangential
-      call load_mechanics(bodies, loads, next, workspace, data%welded_load)
-      call check_finite([workspace%force%rhs(:, 1), data%welded_load], 'forces', &
-         status_no_convergence, error)
+      trial%workspace%friction = trial%data%friction
+      call load_mechanics(bodies, loads, trial, error)
    end subroutine load_points
 
    !> Heat load of an increment, condensed, and the temperatures that belong to welded contacts.
    !> Error: they overflow.
-   subroutine load_heat(bodies, heat, loads, data, workspace, next, error)
+   subroutine load_heat(bodies, heat, loads, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(in) :: loads
-      type(increment_data_type), intent(inout) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
-      type(solution_state_type), intent(inout) :: next
+      type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
 
-      associate (given => loads%temperature%value)
-         workspace%heat = heat%load_of(bodies%thermal, history_of_heat(bodies, data), given)
-         call heat%condense_load(bodies%thermal, workspace%heat, workspace%known(of_heat), &
-            next%temperature)
+      associate (data => trial%data, temperature => trial%next%temperature, &
+         given => loads%temperature%value)
+         data%heat = heat%load_of(bodies%thermal, history_of_heat(bodies, data), given)
+         call heat%condense_load(bodies%thermal, data%heat, trial%known(of_heat), temperature)
          data%held_jump = bodies%points%jumps(given)
+         where (bodies%jump_index > 0) data%held_jump = 0.0_dp
+         if (bodies%points%vary_with_temperature()) data%welded_mean = &
+            bodies%points%means(temperature)
+         call check_finite([data%heat%condensed, temperature], 'heat and temperatures', &
+            status_no_convergence, error)
       end associate
-      where (bodies%jump_index > 0) data%held_jump = 0.0_dp
-      if (bodies%points%vary_with_temperature()) data%welded_mean = &
-         bodies%points%means(next%temperature)
-      call check_finite([workspace%heat%condensed, next%temperature], 'heat and temperatures', &
-         status_no_convergence, error)
    end subroutine load_heat
 
    !> Right-hand side of (3.4) divided by a1, with the heat of friction that is known before.
@@ -130,77 +123,77 @@ contains
 
    !> Contact and conductance of an increment whose heat is loaded or solved.
    !> Errors: as solve_points.
-   subroutine solve_equilibrium(bodies, heat, loads, data, workspace, next, error)
+   subroutine solve_equilibrium(bodies, heat, loads, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(in) :: loads
-      type(increment_data_type), intent(inout) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
-      type(solution_state_type), intent(inout) :: next
+      type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: jump(size(next%jump))
+      real(dp) :: jump(size(trial%next%jump))
 
-      next%contact%reference = data%before%contact%tangential
-      if (.not. solves_heat(data%analysis)) then
-         call loads%set_temperatures(next%temperature)
-         jump = bodies%points%jumps(next%temperature)
-         where (abs(jump - bodies%points%jumps(data%before%temperature)) > 0.0_dp) next%jump = jump
-      end if
-      call load_mechanics(bodies, loads, next, workspace, data%welded_load)
-      call check_finite([workspace%force%rhs(:, 1), data%welded_load], 'forces', &
-         status_no_convergence, error)
-      if (allocated(error)) return
-      if (.not. bodies%is_coupled) then
-         call solve_mechanics(bodies, data, workspace, next, error)
-      else if (data%equation%is_explicit()) then
-         call pass_once(bodies, heat, data, workspace, next, error)
-      else
-         call solve_coupled(bodies, heat, data, workspace, next, error)
-      end if
-      next%has_mechanics = .true.
-      if (allocated(error)) return
-      ! Idle contact points count as open without a gap; where their law jumps they rest. For the
-      ! next increment they are closed still: the body stays where it touches.
-      next%idle = workspace%contact%idle
-      next%resting = next%resting .or. (next%idle .and. law_jumps(bodies%laws%conductance))
-      if (bodies%is_coupled) call check_absolute_zero(bodies, workspace, error)
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next)
+         if (.not. solves_heat(data%analysis)) then
+            call loads%set_temperatures(next%temperature)
+            jump = bodies%points%jumps(next%temperature)
+            where (abs(jump - bodies%points%jumps(data%equation%temperature_old)) > 0.0_dp) &
+               next%jump = jump
+         end if
+         call load_mechanics(bodies, loads, trial, error)
+         if (allocated(error)) return
+         if (.not. bodies%is_coupled) then
+            call solve_mechanics(bodies, data, workspace, next, error)
+         else if (data%equation%is_explicit()) then
+            call pass_once(bodies, heat, trial, error)
+         else
+            call solve_coupled(bodies, heat, trial, error)
+         end if
+         next%has_mechanics = .true.
+         if (allocated(error)) return
+         ! Idle contact points count as open without a gap; where their law jumps they rest. For the
+         ! next increment they are closed still: the body stays where it touches.
+         next%idle = workspace%contact%idle
+         next%resting = next%resting .or. (next%idle .and. law_jumps(bodies%laws%conductance))
+         if (bodies%is_coupled) call check_absolute_zero(bodies, workspace, error)
+      end associate
    end subroutine solve_equilibrium
 
-   !> The start of an increment under the laws of its step: contact points that the step removes or
-   !> adds have other conductances.
-   pure subroutine begin_increment(bodies, step, previous, next, data)
+   !> Begins a trial: the start of its increment under the laws of its step, whose contact points
+   !> that it removes or adds have other conductances, and a fresh workspace.
+   pure subroutine begin_increment(bodies, step, before, trial)
       type(reduced_bodies_type), intent(in) :: bodies
       type(step_type), intent(in) :: step
-      type(solution_state_type), intent(in) :: previous    !! state at the start
-      type(solution_state_type), intent(in) :: next        !! loads and size of the increment
-      type(increment_data_type), intent(out) :: data
-      real(dp) :: omega(size(previous%omega))
-      logical :: is_new(size(previous%omega))
+      type(solution_state_type), intent(in) :: before      !! state at the start
+      !> loads and size of the increment in its next state in; that and known loads stay
+      type(trial_type), intent(inout) :: trial
+      real(dp) :: omega(size(before%omega))
+      logical :: is_new(size(before%omega))
 
-      data%analysis = step%analysis
-      data%start = step%start
-      data%fixed_point = step%fixed_point
-      data%follows_branch = step%continuation%is_on
-      data%before = previous
-      data%displacement_scale = maxval(abs(previous%displacement))
-      data%previous = previous%contact
-      call adapt_contact(bodies, data%previous)
-      omega = law_conductance(bodies, previous%temperature, previous%jump, &
-         data%previous)
-      is_new = bodies%laws%removed .or. previous%omega <= 0.0_dp
-      data%equation = heat_equation_type(step%scheme, previous%sources, next%sources, &
-         previous%temperature, bodies%points%weight, merge(omega, previous%omega, is_new), &
-         previous%jump)
-      data%omega_before = merge(omega, previous%omega_before, is_new)
-      data%resting = previous%resting .and. .not. bodies%laws%removed
-      if (.not. data%equation%takes_past_conductance()) data%edge = &
-         previous%edge%without(bodies%laws%removed)
-      if (previous%increment_size > 0.0_dp) data%size_ratio = &
-         next%increment_size/previous%increment_size
-      if (.not. allocated(bodies%points%heated)) return
-      call begin_friction(bodies, data%equation, step%analysis, data%previous, &
-         previous%friction_heat, data%friction)
-      data%friction%duration = next%increment_size
+      call trial%clear()
+      associate (data => trial%data)
+         data%analysis = step%analysis
+         data%start = step%start
+         data%fixed_point = step%fixed_point
+         data%follows_branch = step%continuation%is_on
+         data%kept_imbalance = before%keeps_imbalance
+         data%displacement_scale = maxval(abs(before%displacement))
+         data%previous = before%contact
+         call adapt_contact(bodies, data%previous)
+         omega = law_conductance(bodies, before%temperature, before%jump, data%previous)
+         is_new = bodies%laws%removed .or. before%omega <= 0.0_dp
+         data%equation = heat_equation_type(step%scheme, before%sources, trial%next%sources, &
+            before%temperature, bodies%points%weight, merge(omega, before%omega, is_new), &
+            before%jump)
+         data%omega_before = merge(omega, before%omega_before, is_new)
+         data%resting = before%resting .and. .not. bodies%laws%removed
+         if (.not. data%equation%takes_past_conductance()) data%edge = &
+            before%edge%without(bodies%laws%removed)
+         if (before%increment_size > 0.0_dp) data%size_ratio = &
+            trial%next%increment_size/before%increment_size
+         if (.not. allocated(bodies%points%heated)) return
+         call begin_friction(bodies, data%equation, step%analysis, data%previous, &
+            before%friction_heat, data%friction)
+         data%friction%duration = trial%next%increment_size
+      end associate
    end subroutine begin_increment
 
    !> Contact points that the step removes are open, those without friction slip freely.
@@ -246,31 +239,29 @@ contains
    !> or because the conductance is constant: it is that of the contact state that stays, at both
    !> ends of the increment; or it follows the temperatures.
    !> Error: no convergence to these.
-   subroutine conduct(bodies, heat, data, workspace, next, error)
+   subroutine conduct(bodies, heat, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(inout) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
-      type(solution_state_type), intent(inout) :: next
+      type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
 
-      associate (before => data%before)
-         next%omega = law_conductance(bodies, before%temperature, before%jump, &
-            data%previous)
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next)
+         next%omega = law_conductance(bodies, data%equation%temperature_old, &
+            data%equation%jump_old, data%previous)
+         where (data%resting) next%omega = data%equation%omega_old
+         data%equation%omega_old = next%omega
+         workspace%edge = data%edge
+         if (bodies%points%vary_with_temperature()) then
+            call begin_graphs(bodies, data, next%omega, workspace%pass)
+            call settle_conductance(bodies, heat, data, workspace, next%jump, error)
+            if (allocated(error)) return
+            next%omega = workspace%pass%omega
+         else
+            call temperature_jumps(bodies, heat, data, next%omega, workspace, next%jump)
+         end if
+         next%omega_before = next%omega
+         call add_jumps(bodies, heat, workspace%on_tail, next%temperature)
       end associate
-      where (data%resting) next%omega = data%equation%omega_old
-      data%equation%omega_old = next%omega
-      workspace%edge = data%edge
-      if (bodies%points%vary_with_temperature()) then
-         call begin_graphs(bodies, data, next%omega, workspace%pass)
-         call settle_conductance(bodies, heat, data, workspace, next%jump, error)
-         if (allocated(error)) return
-         next%omega = workspace%pass%omega
-      else
-         call temperature_jumps(bodies, heat, data, next%omega, workspace, next%jump)
-      end if
-      next%omega_before = next%omega
-      call add_jumps(bodies, heat, workspace, next%temperature)
    end subroutine conduct
 
    !> A pass with given conductances, the graphs of the laws, and the coordinates of a contact state
@@ -283,8 +274,8 @@ contains
 
       pass%omega = omega
       allocate (pass%graph(size(omega)))
-      pass%graph%law = bodies%laws%conductance_at(bodies%points%means(data%before%temperature), &
-         data%before%jump)
+      pass%graph%law = bodies%laws%conductance_at( &
+         bodies%points%means(data%equation%temperature_old), data%equation%jump_old)
       where (law_jumps(bodies%laws%conductance)) pass%graph%width = 1.0_dp
       associate (contact => data%previous)
          pass%coordinate = merge(-pass%graph%width - law_pressure(bodies, contact), contact%gap, &
@@ -314,23 +305,23 @@ contains
 
    !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,
    !> then the conductance at its end. Nothing is iterated.
-   subroutine pass_once(bodies, heat, data, workspace, next, error)
+   subroutine pass_once(bodies, heat, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(inout) :: workspace
-      type(solution_state_type), intent(inout) :: next
+      type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
 
-      workspace%pass%omega = data%equation%omega_old
-      allocate (workspace%pass%graph(size(workspace%pass%omega)))
-      workspace%pass%graph%law = bodies%laws%conductance
-      call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, error)
-      if (allocated(error)) return
-      next%omega = workspace%pass%image
-      next%omega_before = data%equation%omega_old
-      next%resting = .false.
-      workspace%record%iterations = [only_pass(workspace%record, data%previous, next%contact)]
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next)
+         workspace%pass%omega = data%equation%omega_old
+         allocate (workspace%pass%graph(size(workspace%pass%omega)))
+         workspace%pass%graph%law = bodies%laws%conductance
+         call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, error)
+         if (allocated(error)) return
+         next%omega = workspace%pass%image
+         next%omega_before = data%equation%omega_old
+         next%resting = .false.
+         workspace%record%iterations = [only_pass(workspace%record, data%previous, next%contact)]
+      end associate
    end subroutine pass_once
 
    !> Record of the only pass of an increment.
@@ -345,59 +336,60 @@ contains
 
    !> Mechanical load of the increment, with the temperatures of welded contacts or those that stay;
    !> and what it makes on the contact without jumps.
-   subroutine load_mechanics(bodies, loads, next, workspace, welded_load)
+   !> Error: it overflows.
+   subroutine load_mechanics(bodies, loads, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(in) :: next
-      type(increment_workspace_type), intent(inout) :: workspace
-      real(dp), allocatable, intent(out) :: welded_load(:)
-      real(dp) :: thermal(2*size(next%temperature))
+      type(trial_type), intent(inout) :: trial
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: thermal(2*size(trial%next%temperature))
 
-      thermal = unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
-         next%forces_beyond)
-      workspace%force = bodies%equilibrium%load_of(bodies%mechanical, &
-         next%force_load + thermal, loads%displacement%value)
-      call bodies%equilibrium%condense_load(bodies%mechanical, workspace%force, &
-         workspace%known(of_mechanics))
-      workspace%contact = contact_workspace_type(bodies%equilibrium%contact, &
-         loads%present_gaps(bodies%points), bodies%laws%nodal_friction, bodies%laws%removed, &
-         bodies%laws%overlap, bodies%points%weight)
-      workspace%contact%load_scale = max(maxval(abs(next%force_load)), maxval(abs(thermal)))
-      associate (applied => next%force_load, rigid => bodies%rigid, &
-         contact => bodies%equilibrium%contact)
-         workspace%contact%least_drive = least_drive(contact%rigid, matmul(abs(applied), &
-            abs(rigid)))
-         welded_load = balanced_load(workspace%force%condensed, contact%rigid, contact%motion, &
-            matmul(applied, rigid))
+      trial%next%contact%reference = trial%data%previous%tangential
+      thermal = unstrained_forces(bodies, trial%next%temperature - loads%temperature%rest, &
+         trial%next%forces_beyond)
+      associate (applied => trial%next%force_load, force => trial%data%force, &
+         work => trial%workspace%contact, contact => bodies%equilibrium%contact)
+         force = bodies%equilibrium%load_of(bodies%mechanical, applied + thermal, &
+            loads%displacement%value)
+         call bodies%equilibrium%condense_load(bodies%mechanical, force, &
+            trial%known(of_mechanics))
+         work = contact_workspace_type(contact, loads%present_gaps(bodies%points), &
+            bodies%laws%nodal_friction, bodies%laws%removed, bodies%laws%overlap, &
+            bodies%points%weight)
+         work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)))
+         work%least_drive = least_drive(contact%rigid, matmul(abs(applied), abs(bodies%rigid)))
+         trial%data%welded_load = balanced_load(force%condensed, contact%rigid, contact%motion, &
+            matmul(applied, bodies%rigid))
+         call check_finite([force%rhs(:, 1), trial%data%welded_load], 'forces', &
+            status_no_convergence, error)
       end associate
    end subroutine load_mechanics
 
    !> Fields of the whole bodies, from the solution on the contact points, and what contact points
    !> remember of it.
-   subroutine recover_fields(bodies, heat, loads, data, workspace, next)
+   subroutine recover_fields(bodies, heat, loads, before, trial)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(in) :: loads                      !! loads at the end
-      type(increment_data_type), intent(in) :: data              !! as solve_points left it
-      type(increment_workspace_type), intent(inout) :: workspace !! of the solution
-      type(solution_state_type), intent(inout) :: next           !! as solve_points left it
+      type(loads_type), intent(in) :: loads            !! loads at the end
+      type(solution_state_type), intent(in) :: before  !! state at the start
+      type(trial_type), intent(inout) :: trial         !! as solve_points left it
       real(dp), allocatable :: on_tail(:)
       integer :: k
 
-      next%smallest_gap = min(data%before%smallest_gap, next%contact%gap)
-      if (.not. solves_mechanics(data%analysis)) return
-      if (bodies%is_coupled) then
-         call add_jumps(bodies, heat, workspace, next%temperature)
-         if (allocated(workspace%friction%made)) next%temperature = next%temperature + &
-            heat%welded_response(bodies%thermal, nodal_friction_heat(bodies, &
-            workspace%friction%parts(2, :)*workspace%friction%made))
-         workspace%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
-            unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
-            next%forces_beyond), &
-            loads%displacement%value)
-      end if
-      allocate (on_tail(bodies%mechanical%map%tail))
-      associate (contact => bodies%equilibrium%contact)
+      associate (data => trial%data, workspace => trial%workspace, next => trial%next, &
+         contact => bodies%equilibrium%contact)
+         next%smallest_gap = min(before%smallest_gap, next%contact%gap)
+         if (.not. solves_mechanics(data%analysis)) return
+         if (bodies%is_coupled) then
+            call add_jumps(bodies, heat, workspace%on_tail, next%temperature)
+            if (allocated(workspace%friction%made)) next%temperature = next%temperature + &
+               heat%welded_response(bodies%thermal, nodal_friction_heat(bodies, &
+               workspace%friction%parts(2, :)*workspace%friction%made))
+            data%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
+               unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
+               next%forces_beyond), loads%displacement%value)
+         end if
+         allocate (on_tail(bodies%mechanical%map%tail))
          on_tail(contact%normal) = merge(next%contact%approach, &
             workspace%contact%initial_gap - next%contact%gap, next%contact%contact_state == &
             contact_open .or. workspace%contact%soft%is_soft)
@@ -405,21 +397,20 @@ contains
             if (contact%tangent(k) > 0) on_tail(contact%tangent(k)) = next%contact%tangential(k)
          end do
          on_tail(contact%link) = next%contact%link
+         next%displacement = bodies%equilibrium%recover(bodies%mechanical, data%force, on_tail)
+         next%stress_temperature = next%temperature
+         call remember_slip(bodies, workspace%contact, before, next)
       end associate
-      next%displacement = bodies%equilibrium%recover(bodies%mechanical, workspace%force, on_tail)
-      next%stress_temperature = next%temperature
-      call remember_slip(bodies, workspace%contact, data%before, next)
    end subroutine recover_fields
 
    !> Adds what the jumps make of the temperatures of welded contacts.
-   subroutine add_jumps(bodies, heat, workspace, temperature)
+   subroutine add_jumps(bodies, heat, on_tail, temperature)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
-      type(increment_workspace_type), intent(in) :: workspace
-      real(dp), intent(inout) :: temperature(:)                  !! (nodes) [temperature]
+      real(dp), intent(in) :: on_tail(:)               ! (thermal tail)
+      real(dp), intent(inout) :: temperature(:)        ! (nodes) [temperature]
 
-      associate (of_jumps => heat%extended(bodies%thermal, reshape(workspace%on_tail, &
-         [size(workspace%on_tail), 1])))
+      associate (of_jumps => heat%extended(bodies%thermal, reshape(on_tail, [size(on_tail), 1])))
          temperature = temperature + of_jumps(:, 1)
       end associate
    end subroutine add_jumps
@@ -428,27 +419,27 @@ contains
    !> carry, of contact points that are frictionless or held, are taken from the recovered
    !> displacements, and such a contact point closes where it is at that instant on the straight
    !> line between its ends.
-   pure subroutine remember_slip(bodies, solved, previous, next)
+   pure subroutine remember_slip(bodies, solved, before, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(contact_workspace_type), intent(in) :: solved      !! factors of the solution
-      type(solution_state_type), intent(in) :: previous       !! state at the start
+      type(solution_state_type), intent(in) :: before         !! state at the start
       type(solution_state_type), intent(inout) :: next        !! state at the end, with its fields
-      real(dp), dimension(size(next%contact%gap)) :: before, now
+      real(dp), dimension(size(next%contact%gap)) :: at_start, at_end
       integer :: k
 
-      before = tangential_positions(bodies%points, bodies%held_direction, previous%displacement)
-      now = tangential_positions(bodies%points, bodies%held_direction, next%displacement)
+      at_start = tangential_positions(bodies%points, bodies%held_direction, before%displacement)
+      at_end = tangential_positions(bodies%points, bodies%held_direction, next%displacement)
       associate (contact => next%contact)
-         do k = 1, size(now)
+         do k = 1, size(at_end)
             if (bodies%equilibrium%contact%tangent(k) == 0) then
-               contact%tangential(k) = now(k)
-               contact%reference(k) = before(k) + &
-                  closing_fraction(bodies%equilibrium%contact, solved, k, previous%contact%gap(k), &
-                  contact%force(k))*(now(k) - before(k))
+               contact%tangential(k) = at_end(k)
+               contact%reference(k) = at_start(k) + &
+                  closing_fraction(bodies%equilibrium%contact, solved, k, before%contact%gap(k), &
+                  contact%force(k))*(at_end(k) - at_start(k))
             end if
             if (contact%contact_state(k) == contact_open .or. next%idle(k)) then
                contact%slip_origin(k) = contact%tangential(k)
-            else if (previous%contact%contact_state(k) == contact_open) then
+            else if (before%contact%contact_state(k) == contact_open) then
                contact%slip_origin(k) = contact%reference(k)
             end if
          end do

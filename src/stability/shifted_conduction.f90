@@ -57,8 +57,8 @@ contains
       data%equation = heat_equation_type(implicit_scheme, state%sources, state%sources, &
          state%temperature, bodies%points%weight, state%omega, state%jump)
       data%held_jump = 0.0_dp*state%jump
-      workspace%heat = self%heat%load_of(bodies%thermal, none, none)
-      allocate (workspace%heat%condensed(bodies%thermal%map%tail), source=0.0_dp)
+      data%heat = self%heat%load_of(bodies%thermal, none, none)
+      allocate (data%heat%condensed(bodies%thermal%map%tail), source=0.0_dp)
       workspace%edge = state%edge
       call temperature_jumps(bodies, self%heat, data, state%omega, workspace, jump)
       self%tail = workspace%tail

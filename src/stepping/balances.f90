@@ -129,7 +129,7 @@ contains
       ! What a step that stores heat leaves over it stores.
       if (data%equation%duration > 0.0_dp) return
       at_start = 0.0_dp
-      if (data%equation%never_damps() .and. .not. data%before%keeps_imbalance) at_start = &
+      if (data%equation%never_damps() .and. .not. data%kept_imbalance) at_start = &
          start_imbalance(bodies, held, data)
       if (at_start > equilibrium) then
          call record%warn('heat starts out of equilibrium, (K + G) T - Q is ', at_start, &

@@ -9,7 +9,7 @@ module branch_trials
    use field_problem, only: solved_loads_type
    use fixed_point, only: pass_type
    use heat_reduction, only: heat_reduction_type
-   use increment_data, only: increment_data_type, increment_workspace_type, load_rate_type
+   use increment_data, only: load_rate_type, trial_type
    use increment_iteration, only: pass_on_branch
    use increment_solution, only: begin_increment, load_points
    use kinds, only: dp
@@ -57,13 +57,6 @@ module branch_trials
       procedure :: try_step
    end type branch_trial_type
 
-   !> An increment whose loads are taken.
-   type :: loaded_type
-      type(increment_data_type) :: data
-      type(increment_workspace_type) :: workspace
-      type(solution_state_type) :: next
-   end type loaded_type
-
 contains
 
    !> The instant at which loads have a load factor.
@@ -106,7 +99,7 @@ contains
       type(loads_type), intent(inout) :: loads         !! moved along
       real(dp), intent(in) :: factor                   !! load factor of the solution
       type(error_type), allocatable, intent(out) :: error
-      type(loaded_type) :: none, whole
+      type(trial_type) :: none, whole
       type(path_step_type) :: step
       integer :: k, m
 
@@ -116,7 +109,7 @@ contains
       if (allocated(error)) return
       call load_increment(self, model, bodies, heat, loads, whole, error)
       if (allocated(error)) return
-      self%rate%heat = whole%workspace%heat%condensed - none%workspace%heat%condensed
+      self%rate%heat = whole%data%heat%condensed - none%data%heat%condensed
       self%rate%force = whole%data%welded_load - none%data%welded_load
       if (allocated(whole%data%welded_mean)) self%rate%mean = whole%data%welded_mean - &
          none%data%welded_mean
@@ -156,16 +149,16 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(inout) :: loads
-      type(loaded_type), intent(out) :: loaded
+      type(trial_type), intent(out) :: loaded
       type(error_type), allocatable, intent(out) :: error
 
       call loads%move_to(self%clock_at(self%point%factor), model)
       loaded%next = self%before
       call take_loads(loads, loaded%next)
-      call begin_increment(bodies, model%steps(self%step), self%before, loaded%next, loaded%data)
-      call move_alloc(self%known, loaded%workspace%known)
-      call load_points(bodies, heat, loads, loaded%data, loaded%workspace, loaded%next, error)
-      call move_alloc(loaded%workspace%known, self%known)
+      call begin_increment(bodies, model%steps(self%step), self%before, loaded)
+      call move_alloc(self%known, loaded%known)
+      call load_points(bodies, heat, loads, loaded, error)
+      call move_alloc(loaded%known, self%known)
    end subroutine load_increment
 
    !> The pass at the point, with its derivatives.
@@ -177,7 +170,7 @@ contains
       type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(inout) :: loads
       type(error_type), allocatable, intent(out) :: error
-      type(loaded_type) :: loaded
+      type(trial_type) :: loaded
 
       call load_increment(self, model, bodies, heat, loads, loaded, error)
       if (allocated(error)) return
@@ -188,7 +181,7 @@ contains
          workspace%pass%coordinate = self%point%coordinate
          self%contact%reference = next%contact%reference
          next%contact = self%contact
-         call pass_on_branch(bodies, heat, data, workspace, next, self%residual, error)
+         call pass_on_branch(bodies, heat, loaded, self%residual, error)
          if (allocated(error)) return
          self%contact = next%contact
          self%near = max(nearest, workspace%record%residual_floor)

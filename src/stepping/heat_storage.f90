@@ -32,23 +32,23 @@ module heat_storage
 contains
 
    !> The first stage of an increment that stores heat, and the state that it finds.
-   subroutine begin_first_stage(run, model, stage, before)
+   subroutine begin_first_stage(run, model, stage, start)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(stage_type), intent(inout) :: stage            !! with the clock of the increment
-      type(solution_state_type), intent(inout) :: before    !! state of the run
+      type(solution_state_type), intent(inout) :: start    !! state of the run
 
       associate (step => model%steps(run%control%step))
          stage%size = run%control%size_to(stage%clock)
          stage%duration = stage%size
          stage%stores_heat = .true.
          stage%dilates = step%dilates
-         if (run%control%increments_of_step == 0) call begin_storage(run, model, before)
+         if (run%control%increments_of_step == 0) call begin_storage(run, model, start)
          if (run%corrections%corrects) stage%content = run%corrections%true_contents(model, &
-            before%temperature)
-         stage%jump = before%temperature - run%state%temperature
-         stage%temperature = before%temperature
-         stage%displacement = before%displacement
+            start%temperature)
+         stage%jump = start%temperature - run%state%temperature
+         stage%temperature = start%temperature
+         stage%displacement = start%displacement
          stage%is_last = step%scheme%stages /= 2
       end associate
       if (stage%is_last) return
@@ -60,22 +60,22 @@ contains
 
    !> The second stage of an increment: C (T_i+1 - T_i)/dt is (1 - gamma) of the first stage's rate
    !> and gamma of its own.
-   subroutine begin_second_stage(run, model, next, before, stage)
+   subroutine begin_second_stage(run, model, start, middle, stage)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
-      type(solution_state_type), intent(in) :: next         !! state at the end of the first one
-      type(solution_state_type), intent(in) :: before       !! and at its start
+      type(solution_state_type), intent(in) :: start        !! state at the start of the increment
+      type(solution_state_type), intent(in) :: middle       !! and at the end of the first stage
       type(stage_type), intent(inout) :: stage
       real(dp), parameter :: weight = 1/stage_part - 1
 
-      stage%temperature = before%temperature + weight*(next%temperature - before%temperature)
-      stage%displacement = before%displacement + weight*(next%displacement - before%displacement)
-      if (allocated(stage%history)) stage%history = stage%history + weight*(next%history - &
+      stage%temperature = start%temperature + weight*(middle%temperature - start%temperature)
+      stage%displacement = start%displacement + weight*(middle%displacement - start%displacement)
+      if (allocated(stage%history)) stage%history = stage%history + weight*(middle%history - &
          stage%history)
       if (run%corrections%corrects) stage%content = stage%content + weight* &
-         (run%corrections%true_contents(model, next%temperature) - stage%content)
+         (run%corrections%true_contents(model, middle%temperature) - stage%content)
       if (allocated(run%bodies%points%heated)) stage%slip_before = slips_before(run%bodies, &
-         next%contact)
+         middle%contact)
       stage%size = stage%of_increment%step_time - stage%clock%step_time
       stage%clock = stage%of_increment
       stage%is_last = .true.

@@ -11,7 +11,7 @@ module increment_attempts
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, strain_rate
    use increment_checks, only: check_heat, check_record, warn_of_choices
-   use increment_data, only: increment_data_type, increment_workspace_type, stage_type
+   use increment_data, only: increment_workspace_type, stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
    use increment_solution, only: begin_increment, recover_fields, solve_points
@@ -29,25 +29,13 @@ module increment_attempts
    private
    public :: attempt_type, attempt_increment, begin_record
 
-   !> What an attempt found.
-   type :: attempt_type
-      type(solution_state_type) :: next            !! state at its end
+   !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
+   type, extends(trial_type) :: attempt_type
       type(increment_record_type) :: record
-      type(solved_loads_type), allocatable :: known(:)  !! loads that are solved, earlier ones too
       !> What the solution left, where its stability is analysed
       type(increment_workspace_type), allocatable :: solved
       character(:), allocatable :: undecided       !! what was last warned of
    end type attempt_type
-
-   !> A stage that is being solved.
-   type :: trial_type
-      type(increment_data_type) :: data
-      type(increment_workspace_type) :: workspace
-      type(solution_state_type) :: next           !! state at its end
-      type(increment_record_type) :: record
-      !> (m) conductances of a solution with other corrections, where there is one
-      real(dp), allocatable :: omega_start(:)
-   end type trial_type
 
 contains
 
@@ -60,9 +48,11 @@ contains
       type(attempt_type), intent(out) :: attempt
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: start    ! state at its start, jumps where a step begins included
+      type(solution_state_type) :: middle   ! state between two stages
+      type(increment_record_type) :: first  ! record of the first of two
       type(stage_type) :: stage
-      type(trial_type) :: first, last
 
+      ! An attempt that fails leaves nothing behind, not even in the last digits.
       if (allocated(run%known)) attempt%known = run%known
       attempt%undecided = run%undecided
       start = run%state
@@ -73,24 +63,20 @@ contains
       if (allocated(start%history)) stage%history = start%history
       associate (step => model%steps(run%control%step))
          if (step%is_transient) call begin_first_stage(run, model, stage, start)
-         if (stage%is_last) then
-            call solve_stage(run, model, stage, start, attempt, last, error)
-         else
-            call solve_stage(run, model, stage, start, attempt, first, error)
-            attempt%record = first%record
-            if (allocated(error)) return
-            call begin_second_stage(run, model, first%next, start, stage)
-            call solve_stage(run, model, stage, first%next, attempt, last, error)
-            call add_attempts(first%record, last%record)
+         call solve_stage(run, model, stage, start, attempt, error)
+         if (.not. (stage%is_last .or. allocated(error))) then
+            middle = attempt%next
+            first = attempt%record
+            call begin_second_stage(run, model, start, middle, stage)
+            call solve_stage(run, model, stage, middle, attempt, error)
+            call add_attempts(first, attempt%record)
          end if
-         attempt%next = last%next
-         attempt%record = last%record
          if (run%branch%is_followed .and. .not. allocated(error)) then
             if (any(differ(attempt%next%omega, run%branch%point%omega))) call set_error(error, &
                status_no_convergence, 'the increment leads to another branch')
          end if
          if (.not. step%is_transient .or. allocated(error)) return
-         call measure_changes(run, model, start, last%data%before%stored, attempt%next, &
+         call measure_changes(run, model, start, attempt%data%equation%stored_old, attempt%next, &
             attempt%record)
          if (run%control%increments_of_step == 0) call note_shock(model, stage%jump, &
             run%control%size_to(clock), attempt%record)
@@ -98,23 +84,22 @@ contains
    end subroutine attempt_increment
 
    !> Solves a stage of an increment, mostly the only one; the last one is recorded.
-   subroutine solve_stage(run, model, stage, before, attempt, trial, error)
+   subroutine solve_stage(run, model, stage, before, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before
       type(attempt_type), intent(inout) :: attempt
-      type(trial_type), intent(out) :: trial
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
 
       call run%loads%move_to(stage%clock, model)
       call check_prescribed(model, run%bodies, run%loads, run%control%step, error)
-      call begin_record(run, model, stage%of_increment, trial%record)
+      call begin_record(run, model, stage%of_increment, attempt%record)
       if (allocated(error)) return
-      trial%next = before
+      attempt%next = before
       associate (step => model%steps(run%control%step), bodies => run%bodies, &
-         next => trial%next, record => trial%record)
+         next => attempt%next, record => attempt%record)
          next%increment_size = stage%size
          ! (3.4) asks for them at the start of the next increment, whether this one solves heat or
          ! not.
@@ -123,69 +108,67 @@ contains
             next%sources%film = run%loads%film_matrix()
          end if
          next%force_load = run%loads%nodal_forces()
-         ! A solution that fails leaves nothing behind, not even in the last digits.
-         if (allocated(attempt%known)) trial%workspace%known = attempt%known
-         call solve_corrected(run, model, stage, before, trial, error)
+         call solve_corrected(run, model, stage, before, attempt, error)
          if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call warn_of_choices(run, model, &
-            trial%workspace%contact, next, attempt%undecided, record)
+            attempt%workspace%contact, next, attempt%undecided, record)
          if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
          if (stage%is_last) then
             since = wall_seconds()
-            call complete_record(bodies, model, run%recovery, run%loads, trial%data, next, record)
+            call complete_record(bodies, model, run%recovery, run%loads, attempt%data, next, record)
             run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
             call warn_of_tables(model, bodies%points, record)
-            if (stability_is_due(record, model)) attempt%solved = trial%workspace%of_motions()
+            if (stability_is_due(record, model)) attempt%solved = attempt%workspace%of_motions()
             call check_record(record, step%analysis, error)
             if (allocated(error)) return
          end if
-         call move_alloc(trial%workspace%known, attempt%known)
       end associate
    end subroutine solve_stage
 
    !> Solves the fields of a stage until its corrections are those of its solution.
-   subroutine solve_corrected(run, model, stage, before, trial, error)
+   subroutine solve_corrected(run, model, stage, before, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before
-      type(trial_type), intent(inout) :: trial
+      type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: fresh
-      type(increment_workspace_type) :: fresh_workspace
+      type(solved_loads_type), allocatable :: known(:)   ! before the stage
+      real(dp), allocatable :: omega_start(:)   ! (m) of a solution with other corrections, if any
 
       associate (corrections => run%corrections, step => model%steps(run%control%step))
          if (.not. corrections%corrects) then
-            call solve_fields(run, model, stage, before, trial, error)
+            call solve_fields(run, model, stage, before, omega_start, attempt, error)
             return
          end if
-         fresh = trial%next
-         fresh_workspace = trial%workspace
+         fresh = attempt%next
+         allocate (known(2))
+         if (allocated(attempt%known)) known = attempt%known
          call corrections%begin(model, run%bodies, stage, before, &
             takes_past=abs(step%scheme%b(1)) > 0.0_dp)
          do
-            call solve_fields(run, model, stage, before, trial, error)
+            call solve_fields(run, model, stage, before, omega_start, attempt, error)
             if (allocated(error)) return
-            call corrections%correct(model, run%bodies, stage, trial%next, error)
+            call corrections%correct(model, run%bodies, stage, attempt%next, error)
             if (allocated(error)) return
             if (corrections%is_settled) exit
             if (corrections%asks_operators) then
-               call renew_operators(run, model, stage, before, trial%next, error)
+               call renew_operators(run, model, stage, before, attempt%next, error)
                if (allocated(error)) return
             end if
-            trial%omega_start = trial%next%omega
-            trial%next = fresh
-            trial%workspace = fresh_workspace
+            omega_start = attempt%next%omega
+            attempt%next = fresh
+            attempt%known = known
          end do
-         call corrections%keep(run%bodies, before, trial%next)
+         call corrections%keep(run%bodies, before, attempt%next)
          if (run%bodies%is_coupled .and. step%fixed_point%finds_gain .and. .not. &
-            trial%data%equation%is_explicit()) then
-            call judge_solution(run%bodies, run%heats(run%in_use), trial%data, trial%next, &
-               trial%workspace)
-            trial%record%solution_report_type = trial%workspace%record
+            attempt%data%equation%is_explicit()) then
+            call judge_solution(run%bodies, run%heats(run%in_use), attempt%trial_type)
+            attempt%record%solution_report_type = attempt%workspace%record
          end if
-         trial%record%corrections = corrections%passes
-         trial%record%has_new_operators = corrections%renewed_at > 0
+         attempt%record%corrections = corrections%passes
+         attempt%record%has_new_operators = corrections%renewed_at > 0
       end associate
    end subroutine solve_corrected
 
@@ -207,19 +190,20 @@ contains
    end subroutine renew_operators
 
    !> Solves the fields of a stage with the present corrections of its operators.
-   subroutine solve_fields(run, model, stage, before, trial, error)
+   subroutine solve_fields(run, model, stage, before, omega_start, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before
-      type(trial_type), intent(inout) :: trial
+      real(dp), allocatable, intent(in) :: omega_start(:)   ! (m) of an earlier solution, or none
+      type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
 
       associate (step => model%steps(run%control%step), bodies => run%bodies, &
-         data => trial%data, workspace => trial%workspace, next => trial%next)
-         workspace%record%increment = trial%record%increment
-         call begin_increment(bodies, step, before, next, data)
+         data => attempt%data, workspace => attempt%workspace, next => attempt%next)
+         call begin_increment(bodies, step, before, attempt%trial_type)
+         workspace%record%increment = attempt%record%increment
          ! The last of the corrected solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
             run%corrections%corrects
@@ -230,7 +214,7 @@ contains
             if (allocated(stage%slip_before)) data%friction%slip_before = stage%slip_before
          end if
          if (run%corrections%corrects) call run%corrections%give(data%equation, next)
-         if (allocated(trial%omega_start)) data%omega_start = trial%omega_start
+         if (allocated(omega_start)) data%omega_start = omega_start
          if (run%branch%is_followed) then
             data%omega_start = run%branch%point%omega
             data%fixed_point%method = method_newton
@@ -240,9 +224,8 @@ contains
             if (allocated(error)) return
          end if
          since = wall_seconds()
-         call solve_points(bodies, run%heats(run%in_use), run%loads, data, workspace, next, &
-            error)
-         trial%record%solution_report_type = workspace%record
+         call solve_points(bodies, run%heats(run%in_use), run%loads, attempt%trial_type, error)
+         attempt%record%solution_report_type = workspace%record
          run%seconds%iterate = run%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
             call check_heat(run, model, data%equation%contact_diagonal(next%omega) > 0.0_dp, error)
@@ -254,7 +237,7 @@ contains
             return
          end if
          since = wall_seconds()
-         call recover_fields(bodies, run%heats(run%in_use), run%loads, data, workspace, next)
+         call recover_fields(bodies, run%heats(run%in_use), run%loads, before, attempt%trial_type)
          if (step%is_transient) then
             next%stored = data%equation%stored_rate(bodies%capacity, next%temperature)
             associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
@@ -271,7 +254,7 @@ contains
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
       type(step_clock_type), intent(in) :: clock            !! its end
-      type(increment_record_type), intent(inout) :: record
+      type(increment_record_type), intent(out) :: record
 
       record%increment = run%control%increments + 1
       record%step = run%control%step
