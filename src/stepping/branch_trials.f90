@@ -99,24 +99,25 @@ contains
       type(loads_type), intent(inout) :: loads         !! moved along
       real(dp), intent(in) :: factor                   !! load factor of the solution
       type(error_type), allocatable, intent(out) :: error
-      type(trial_type) :: none, whole
+      type(trial_type) :: loaded
       type(path_step_type) :: step
       integer :: k, m
 
       allocate (self%known(2))
-      call load_increment(self, model, bodies, heat, loads, none, error)
+      call load_increment(self, model, bodies, heat, loads, loaded, error)
+      if (allocated(error)) return
+      self%rate = load_rate_type(loaded%data%heat%condensed, loaded%data%welded_load)
+      if (allocated(loaded%data%welded_mean)) self%rate%mean = loaded%data%welded_mean
       self%point%factor = 1.0_dp
+      call load_increment(self, model, bodies, heat, loads, loaded, error)
       if (allocated(error)) return
-      call load_increment(self, model, bodies, heat, loads, whole, error)
-      if (allocated(error)) return
-      self%rate%heat = whole%data%heat%condensed - none%data%heat%condensed
-      self%rate%force = whole%data%welded_load - none%data%welded_load
-      if (allocated(whole%data%welded_mean)) self%rate%mean = whole%data%welded_mean - &
-         none%data%welded_mean
-      whole%data%scales = contact_scales(bodies, whole%data)
+      self%rate%heat = loaded%data%heat%condensed - self%rate%heat
+      self%rate%force = loaded%data%welded_load - self%rate%force
+      if (allocated(loaded%data%welded_mean)) self%rate%mean = loaded%data%welded_mean - &
+         self%rate%mean
       m = size(self%before%omega)
       associate (measure => self%measure, weight => max(bodies%points%weight, 0.0_dp))
-         measure%length = whole%data%scales%length
+         measure%length = loaded%data%scales%length
          measure%graph = make_graph(bodies, heat, measure%length)
          measure%part = sqrt(weight/sum(weight))
          allocate (measure%body(m), source=1.0_dp)
@@ -149,7 +150,7 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(inout) :: loads
-      type(trial_type), intent(out) :: loaded
+      type(trial_type), intent(inout) :: loaded
       type(error_type), allocatable, intent(out) :: error
 
       call loads%move_to(self%clock_at(self%point%factor), model)
@@ -159,6 +160,7 @@ contains
       call move_alloc(self%known, loaded%known)
       call load_points(bodies, heat, loads, loaded, error)
       call move_alloc(loaded%known, self%known)
+      if (.not. allocated(error)) loaded%data%scales = contact_scales(bodies, loaded%data)
    end subroutine load_increment
 
    !> The pass at the point, with its derivatives.
@@ -175,7 +177,6 @@ contains
       call load_increment(self, model, bodies, heat, loads, loaded, error)
       if (allocated(error)) return
       associate (data => loaded%data, workspace => loaded%workspace, next => loaded%next)
-         data%scales = contact_scales(bodies, data)
          data%rate = self%rate
          workspace%pass%graph = self%measure%graph
          workspace%pass%coordinate = self%point%coordinate

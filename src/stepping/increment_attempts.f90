@@ -6,12 +6,11 @@ module increment_attempts
    use constraint_checks, only: check_prescribed
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
-   use due_output, only: stability_is_due
    use errors, only: error_type, set_error, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, strain_rate
    use increment_checks, only: check_heat, check_record, warn_of_choices
-   use increment_data, only: increment_workspace_type, stage_type, trial_type
+   use increment_data, only: stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
    use increment_solution, only: begin_increment, recover_fields, solve_points
@@ -32,8 +31,6 @@ module increment_attempts
    !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
    type, extends(trial_type) :: attempt_type
       type(increment_record_type) :: record
-      !> What the solution left, where its stability is analysed
-      type(increment_workspace_type), allocatable :: solved
       character(:), allocatable :: undecided       !! what was last warned of
    end type attempt_type
 
@@ -118,7 +115,6 @@ contains
             call complete_record(bodies, model, run%recovery, run%loads, attempt%data, next, record)
             run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
             call warn_of_tables(model, bodies%points, record)
-            if (stability_is_due(record, model)) attempt%solved = attempt%workspace%of_motions()
             call check_record(record, step%analysis, error)
             if (allocated(error)) return
          end if

@@ -1,6 +1,7 @@
 !> Increments, of which one call of advance solves one, and their acceptance.
 module increments
    use balances, only: sound_imbalance
+   use due_output, only: stability_is_due
    use errors, only: error_type, set_error, status_no_convergence
    use increment_attempts, only: attempt_increment, attempt_type, begin_record
    use kinds, only: dp
@@ -30,7 +31,7 @@ contains
       type(increment_record_type), intent(out) :: record
       type(error_type), allocatable, intent(out) :: error
       type(attempt_type) :: attempt
-      type(increment_record_type) :: before
+      type(increment_record_type) :: earlier
       type(step_clock_type) :: clock
       type(touch_search_type) :: touch
       real(dp) :: increment_size
@@ -61,7 +62,7 @@ contains
             call attempt_increment(run, model, clock, attempt, error)
             record = attempt%record
          end if
-         call add_attempts(before, record)
+         call add_attempts(earlier, record)
          if (allocated(error)) then
             touch = touch_search_type()
             call try_again(run, model, increment_size, record, error)
@@ -69,7 +70,7 @@ contains
          else
             if (keeps(run, model, clock, attempt%next, touch, record)) exit
          end if
-         before = record
+         earlier = record
          call run%take_back(model, error)
          if (allocated(error)) return
       end do
@@ -156,7 +157,7 @@ contains
       call accept_increment(attempt%next, model, run%state, record)
       call move_alloc(attempt%known, run%known)
       call move_alloc(attempt%undecided, run%undecided)
-      if (allocated(attempt%solved)) call move_alloc(attempt%solved, run%solved)
+      if (stability_is_due(record, model)) run%solved = attempt%workspace%of_motions()
    end subroutine accept_attempt
 
    !> Makes the end of an increment the state of a run, the only place where that changes. A
