@@ -80,8 +80,7 @@ contains
          before = size(workspace%record%iterations)
          call use_method(bodies, heat, controls, trial, error)
          if (allocated(error) .and. size(workspace%record%iterations) == before) then
-            ! Not even the contact zones of the start were found: those of the last increment may
-            ! be.
+            ! Not even contact zones were found from the start: those of the last increment may be.
             next%contact = guess
             next%omega = trial%data%equation%omega_old
             call use_method(bodies, heat, controls, trial, error)
