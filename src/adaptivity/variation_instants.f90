@@ -17,7 +17,7 @@ contains
    !> Instants at which variations are compared: ends of the longest increments, which shorter ones
    !> meet too, of many every n-th; where increments grow, only the instants on which they land. The
    !> first end of a step is the coarsest part of a path and left out, unless there are few.
-   pure function common_instants(model, longest_factor) result(times)
+   function common_instants(model, longest_factor) result(times)
       type(model_type), intent(in) :: model      !! as the deck is written
       real(dp), intent(in) :: longest_factor     !! on its increments; that of others is halved
       real(dp), allocatable :: times(:)          !! total times, ascending [time]

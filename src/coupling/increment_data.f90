@@ -110,6 +110,7 @@ module increment_data
       type(solution_state_type) :: next              !! guess and loads at its end; the solution
    contains
       procedure :: clear
+      procedure :: begin_again
    end type trial_type
 
 contains
@@ -131,6 +132,20 @@ contains
 
       call forget(self%data, self%workspace)
    end subroutine clear
+
+   !> Leaves, for a solution with other corrections, the contact that was found, its factors and
+   !> known loads.
+   pure subroutine begin_again(self, before)
+      class(trial_type), intent(inout) :: self
+      type(solution_state_type), intent(in) :: before   !! state at the start of the increment
+
+      self%data%omega_start = self%next%omega
+      self%next%contact%slip_origin = before%contact%slip_origin
+      self%workspace%friction = friction_heating_type()
+      self%workspace%edge = edge_heat_type()
+      self%workspace%pass = pass_type()
+      self%workspace%record = solution_report_type()
+   end subroutine begin_again
 
    !> What nothing was done with.
    pure subroutine forget(data, workspace)

@@ -353,9 +353,10 @@ contains
             loads%displacement%value)
          call bodies%equilibrium%condense_load(bodies%mechanical, force, &
             trial%known(of_mechanics))
-         work = contact_workspace_type(contact, loads%present_gaps(bodies%points), &
-            bodies%laws%nodal_friction, bodies%laws%removed, bodies%laws%overlap, &
-            bodies%points%weight)
+         ! A solution with other corrections has the factors of the one before.
+         if (.not. allocated(work%initial_gap)) work = contact_workspace_type(contact, &
+            loads%present_gaps(bodies%points), bodies%laws%nodal_friction, bodies%laws%removed, &
+            bodies%laws%overlap, bodies%points%weight)
          work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)))
          work%least_drive = least_drive(contact%rigid, matmul(abs(applied), abs(bodies%rigid)))
          trial%data%welded_load = balanced_load(force%condensed, contact%rigid, contact%motion, &

@@ -94,7 +94,7 @@ contains
    end function make_points
 
    !> Prepares the recovery points of all elements.
-   pure subroutine prepare_samples(mesh, sections, materials, orientations, fields)
+   subroutine prepare_samples(mesh, sections, materials, orientations, fields)
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
       type(material_type), intent(in) :: materials(:)

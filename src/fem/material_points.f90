@@ -48,7 +48,7 @@ module material_points
 contains
 
    !> Forms what stays.
-   pure subroutine prepare(self, mesh, sections, materials, orientations, rules)
+   subroutine prepare(self, mesh, sections, materials, orientations, rules)
       class(material_points_type), intent(inout) :: self
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)

@@ -47,7 +47,7 @@ contains
 
    !> One material for a section and plane, or one a point where axes may turn or properties follow
    !> the temperature or the strain. These are as of their first rows until they are set.
-   pure subroutine place(self, mesh, sections, materials, orientations, rules)
+   subroutine place(self, mesh, sections, materials, orientations, rules)
       class(point_materials_type), intent(inout) :: self
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)

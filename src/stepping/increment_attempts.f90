@@ -129,33 +129,34 @@ contains
       type(solution_state_type), intent(in) :: before
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
-      type(solution_state_type) :: fresh
       type(solved_loads_type), allocatable :: known(:)   ! before the stage
-      real(dp), allocatable :: omega_start(:)   ! (m) of a solution with other corrections, if any
 
+      call begin_trial(run, model, stage, before, attempt, error)
+      if (allocated(error)) return
       associate (corrections => run%corrections, step => model%steps(run%control%step))
          if (.not. corrections%corrects) then
-            call solve_fields(run, model, stage, before, omega_start, attempt, error)
+            call solve_fields(run, model, stage, before, attempt, error)
             return
          end if
-         fresh = attempt%next
          allocate (known(2))
          if (allocated(attempt%known)) known = attempt%known
          call corrections%begin(model, run%bodies, stage, before, &
             takes_past=abs(step%scheme%b(1)) > 0.0_dp)
          do
-            call solve_fields(run, model, stage, before, omega_start, attempt, error)
+            call corrections%give(attempt%data%equation, attempt%next)
+            call solve_fields(run, model, stage, before, attempt, error)
             if (allocated(error)) return
             call corrections%correct(model, run%bodies, stage, attempt%next, error)
             if (allocated(error)) return
             if (corrections%is_settled) exit
+            attempt%known = known
             if (corrections%asks_operators) then
                call renew_operators(run, model, stage, before, attempt%next, error)
+               if (.not. allocated(error)) call begin_trial(run, model, stage, before, attempt, &
+                  error)
                if (allocated(error)) return
             end if
-            omega_start = attempt%next%omega
-            attempt%next = fresh
-            attempt%known = known
+            call attempt%begin_again(before)
          end do
          call corrections%keep(run%bodies, before, attempt%next)
          if (run%bodies%is_coupled .and. step%fixed_point%finds_gain .and. .not. &
@@ -176,30 +177,29 @@ contains
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before, next
       type(error_type), allocatable, intent(out) :: error
+      real(dp), allocatable :: tangent(:)
 
+      call run%corrections%find_tangents(model, next, tangent)
       associate (bodies => run%bodies)
-         call bodies%move_operators(model, next%temperature, run%corrections%tangents(model, next))
+         call bodies%move_operators(model, next%temperature, tangent)
          call run%corrections%renew(model, bodies, stage, before, next)
          if (solves_mechanics(model%steps(run%control%step)%analysis)) call bodies%reduce(model, &
             run%heats(run%in_use)%node_rank, error)
       end associate
    end subroutine renew_operators
 
-   !> Solves the fields of a stage with the present corrections of its operators.
-   subroutine solve_fields(run, model, stage, before, omega_start, attempt, error)
+   !> Begins the trial of a stage, with the reduction of heat that its equation asks for.
+   !> Errors: as reduce_heat.
+   subroutine begin_trial(run, model, stage, before, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before
-      real(dp), allocatable, intent(in) :: omega_start(:)   ! (m) of an earlier solution, or none
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: since
 
-      associate (step => model%steps(run%control%step), bodies => run%bodies, &
-         data => attempt%data, workspace => attempt%workspace, next => attempt%next)
+      associate (step => model%steps(run%control%step), bodies => run%bodies, data => attempt%data)
          call begin_increment(bodies, step, before, attempt%trial_type)
-         workspace%record%increment = attempt%record%increment
          ! The last of the corrected solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
             run%corrections%corrects
@@ -209,16 +209,28 @@ contains
             data%friction%duration = stage%duration
             if (allocated(stage%slip_before)) data%friction%slip_before = stage%slip_before
          end if
-         if (run%corrections%corrects) call run%corrections%give(data%equation, next)
-         if (allocated(omega_start)) data%omega_start = omega_start
          if (run%branch%is_followed) then
             data%omega_start = run%branch%point%omega
             data%fixed_point%method = method_newton
          end if
-         if (solves_heat(step%analysis)) then
-            call run%reduce_heat(model, data%equation%left_film(bodies%capacity), error)
-            if (allocated(error)) return
-         end if
+         if (solves_heat(step%analysis)) call run%reduce_heat(model, data%equation%left_film( &
+            bodies%capacity), error)
+      end associate
+   end subroutine begin_trial
+
+   !> Solves the fields of a stage with the present corrections of its operators.
+   subroutine solve_fields(run, model, stage, before, attempt, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage
+      type(solution_state_type), intent(in) :: before
+      type(attempt_type), intent(inout) :: attempt
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: since
+
+      associate (step => model%steps(run%control%step), bodies => run%bodies, &
+         data => attempt%data, workspace => attempt%workspace, next => attempt%next)
+         workspace%record%increment = attempt%record%increment
          since = wall_seconds()
          call solve_points(bodies, run%heats(run%in_use), run%loads, attempt%trial_type, error)
          attempt%record%solution_report_type = workspace%record

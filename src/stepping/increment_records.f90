@@ -45,7 +45,7 @@ contains
    !> Completes the record of an increment, which has its position in the steps and its passes, with
    !> contact state, fields and balances. What the step does not solve is as the last step that
    !> did left it; stress and flux with their errors are made where needed.
-   pure subroutine complete_record(bodies, model, recovery, loads, data, next, record)
+   subroutine complete_record(bodies, model, recovery, loads, data, next, record)
       type(reduced_bodies_type), intent(in) :: bodies
       type(model_type), intent(in) :: model
       type(recovery_type), intent(inout) :: recovery          !! stress and flux with their errors
@@ -260,9 +260,9 @@ contains
    end subroutine measure_contact
 
    !> One record for each *EL PRINT of a step; empty where its table is not due.
-   pure function points_of_elements(model, recovery, step, state, increment) result(records)
+   function points_of_elements(model, recovery, step, state, increment) result(records)
       type(model_type), intent(in) :: model
-      type(recovery_type), intent(in) :: recovery
+      type(recovery_type), intent(inout) :: recovery
       type(step_type), intent(in) :: step
       type(solution_state_type), intent(in) :: state            !! state at the end
       type(increment_record_type), intent(in) :: increment      !! position of the increment
@@ -280,20 +280,18 @@ contains
 
    !> The points of the elements of a set. Stress belongs to the temperatures with which equilibrium
    !> was solved last.
-   pure function points_of_set(model, points, request, with_heat, state) result(record)
+   function points_of_set(model, fields, request, with_heat, state) result(record)
       type(model_type), intent(in) :: model
-      type(material_points_type), intent(in) :: points          ! of integration
+      type(material_points_type), intent(inout) :: fields       ! points of integration
       type(print_request_type), intent(in) :: request
       logical, intent(in) :: with_heat
       type(solution_state_type), intent(in) :: state
       type(element_points_record_type) :: record
-      type(material_points_type) :: fields
       type(point_history_type) :: history
       type(law_points_type) :: response
       real(dp) :: flux(most, 2)
       integer :: first, g, i, last, n
 
-      fields = points
       if (allocated(state%history)) then
          history%before = state%history
          history%after = state%history

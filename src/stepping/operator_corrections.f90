@@ -66,7 +66,7 @@ module operator_corrections
       procedure :: heat_beyond
       procedure :: true_contents
       procedure :: keep
-      procedure :: tangents
+      procedure :: find_tangents
    end type corrections_type
 
 contains
@@ -320,11 +320,12 @@ contains
    end function forces_beyond
 
    !> Tangents of the stress at a solution, where materials have laws.
-   function tangents(self, model, at) result(tangent)
+   subroutine find_tangents(self, model, at, tangent)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: at            !! the solution
-      real(dp), allocatable :: tangent(:)                    !! (16*materials at points), or none
+      !> (16*materials of the points), or none [stress]
+      real(dp), allocatable, intent(out) :: tangent(:)
       type(law_points_type) :: points
       real(dp) :: u(2, size(at%temperature))
       integer :: g, i
@@ -345,7 +346,7 @@ contains
             end do
          end associate
       end do
-   end function tangents
+   end subroutine find_tangents
 
    !> Gives the integration points the properties at temperatures.
    subroutine set_points(self, model, temperature)
