@@ -90,15 +90,17 @@ contains
 
    !> Width of all zones of contact, from edge to edge as the summary has it. Contact points whose
    !> zones have no width, as one that is closed alone may, have their tributary length.
-   pure real(dp) function contact_width(contact, s) result(width)
-      type(contact_record_type), intent(in) :: contact    !! state of the interface
-      real(dp), intent(in) :: s(:)                         !! (m) arc length [length]
+   pure real(dp) function contact_width(points, contact) result(width)
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
+      type(contact_record_type), intent(in) :: contact    !! its state
       integer :: edge, k
 
       width = 0.0_dp
       edge = 0
-      do k = 1, size(s) - 1
-         associate (is_closed => contact%contact_state(k:k + 1) /= contact_open)
+      do k = 1, size(points%arc_length) - 1
+         if (.not. points%on_one_piece(k, k + 1)) cycle
+         associate (is_closed => contact%contact_state(k:k + 1) /= contact_open, &
+            s => points%arc_length)
             if (is_closed(1) .neqv. is_closed(2)) then
                edge = edge + 1
                ! Edges beyond those that are kept are half-way between their contact points.
@@ -113,24 +115,26 @@ contains
             end if
          end associate
       end do
-      if (width <= 0.0_dp) width = closed_length(contact, s)
+      if (width <= 0.0_dp) width = closed_length(points, contact)
    end function contact_width
 
    !> Length of the interface that is closed, by the tributary lengths of its contact points.
-   pure real(dp) function closed_length(contact, s) result(length)
-      type(contact_record_type), intent(in) :: contact    !! state of the interface
-      real(dp), intent(in) :: s(:)                         !! (m) arc length [length]
+   pure real(dp) function closed_length(points, contact) result(length)
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
+      type(contact_record_type), intent(in) :: contact    !! its state
       integer :: k
 
       length = 0.0_dp
-      do k = 1, size(s)
+      do k = 1, size(points%arc_length)
          if (contact%contact_state(k) == contact_open) cycle
-         length = length + 0.5_dp*(s(min(k + 1, size(s))) - s(max(k - 1, 1)))
+         associate (s => points%arc_length([k, points%beside(k)]))
+            length = length + 0.5_dp*(maxval(s) - minval(s))
+         end associate
       end do
    end function closed_length
 
    !> Distance of the contact points on both sides of an edge; 0 at or beyond the last contact
-   !> point, where a zone ends with the interface.
+   !> point of a piece, where a zone ends with the face.
    pure real(dp) function edge_spacing(points, edge)
       type(contact_points_type), intent(in) :: points !! the contact points of the interface
       real(dp), intent(in) :: edge                    !! as arc length, or NaN [length]
@@ -140,7 +144,8 @@ contains
       if (ieee_is_nan(edge) .or. size(points%arc_length) < 2) return
       associate (s => points%arc_length)
          k = point_before(s, edge)
-         if (edge >= s(k) .and. edge < s(k + 1)) edge_spacing = s(k + 1) - s(k)
+         if (edge >= s(k) .and. edge < s(k + 1) .and. points%on_one_piece(k, k + 1)) &
+            edge_spacing = s(k + 1) - s(k)
       end associate
    end function edge_spacing
 
@@ -172,12 +177,14 @@ contains
       if (is_end_of_face) is_end_of_face = edge_spacing(points, value) <= 0.0_dp
    end function is_end_of_face
 
-   !> Whether the pressure is largest at the first, at the last contact point; not without pressure.
-   pure function peak_is_at_end(contact) result(at_end)
-      type(contact_record_type), intent(in) :: contact    !! state of the interface
-      logical :: at_end(2)
+   !> Whether the pressure is largest at the first, at the last contact point of each piece; not
+   !> without pressure.
+   pure function peak_is_at_end(points, contact) result(at_end)
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
+      type(contact_record_type), intent(in) :: contact    !! its state
+      logical, allocatable :: at_end(:)                   !! (2 pieces)
 
-      at_end = maxloc(contact%pressure, dim=1) == [1, size(contact%pressure)] .and. &
+      at_end = maxloc(contact%pressure, dim=1) == points%ends() .and. &
          any(contact%pressure > 0.0_dp)
    end function peak_is_at_end
 
@@ -188,7 +195,7 @@ contains
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! its state
 
-      peaks_at_corner = any(points%at_corner .and. peak_is_at_end(contact))
+      peaks_at_corner = any(points%at_corner .and. peak_is_at_end(points, contact))
    end function peaks_at_corner
 
    !> Whether friction turns round at the largest pressure: contact points beside it slip in
@@ -196,39 +203,42 @@ contains
    !> narrower than the spacing. Up to there the pressure between bodies of different stiffness
    !> rises as the logarithm of the distance, because shear jumps (J. Dundurs, J. Appl. Mech. 36
    !> (1969) 650-652).
-   pure logical function turns_at_peak(contact) result(turns)
-      type(contact_record_type), intent(in) :: contact    !! state of the interface
-      integer :: k, m
+   pure logical function turns_at_peak(points, contact) result(turns)
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
+      type(contact_record_type), intent(in) :: contact    !! its state
+      integer, allocatable :: beside(:)
+      integer :: k
 
-      m = size(contact%pressure)
-      turns = allocated(contact%shear) .and. m > 2 .and. any(contact%pressure > 0.0_dp)
+      turns = allocated(contact%shear) .and. size(contact%pressure) > 2 .and. &
+         any(contact%pressure > 0.0_dp)
       if (.not. turns) return
       k = maxloc(contact%pressure, dim=1)
-      associate (shear => contact%shear, slips => contact%contact_state == contact_slip)
-         if (k > 1 .and. k < m) then
-            turns = slips(k - 1) .and. slips(k + 1) .and. shear(k - 1)*shear(k + 1) < 0.0_dp
+      beside = points%beside(k)
+      turns = size(beside) > 0 .and. all(contact%contact_state(beside) == contact_slip)
+      if (.not. turns) return
+      associate (shear => contact%shear(beside))
+         if (size(beside) == 2) then
+            turns = shear(1)*shear(2) < 0.0_dp
          else
-            associate (next => merge(2, m - 1, k == 1))
-               turns = slips(next) .and. abs(shear(next)) > 0.0_dp .and. abs(shear(k)) <= 0.0_dp
-            end associate
+            turns = abs(shear(1)) > 0.0_dp .and. abs(contact%shear(k)) <= 0.0_dp
          end if
       end associate
    end function turns_at_peak
 
-   !> Whether the pressure is largest at an end of the face and rises to it beyond the line through
+   !> Whether the pressure is largest at an end of a piece and rises to it beyond the line through
    !> the two contact points before, as where it has no limit: by more than pressures of corners and
    !> midside nodes differ by where it is even.
    pure logical function rises_to_end(points, contact)
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! its state
       real(dp), parameter :: uneven = 0.03_dp
-      integer :: inner(3), m
+      integer :: inner(3), k, way
 
-      m = size(points%arc_length)
-      rises_to_end = m > 2 .and. any(peak_is_at_end(contact))
+      k = maxloc(contact%pressure, dim=1)
+      way = merge(1, -1, points%on_one_piece(k, k + 1))
+      rises_to_end = points%on_one_piece(k, k + 2*way) .and. any(peak_is_at_end(points, contact))
       if (.not. rises_to_end) return
-      inner = [1, 2, 3]
-      if (maxloc(contact%pressure, dim=1) == m) inner = [m, m - 1, m - 2]
+      inner = k + way*[0, 1, 2]
       associate (s => points%arc_length(inner), p => contact%pressure(inner))
          rises_to_end = p(1) > (1.0_dp + uneven)*(p(2) + (p(2) - p(3))*(s(1) - s(2))/(s(2) - s(3)))
       end associate

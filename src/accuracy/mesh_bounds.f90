@@ -76,8 +76,8 @@ contains
       is_alone = ieee_is_nan(scatter) .or. all(contact%contact_state == contact%contact_state(1))
       known_scatter = known(merge(0.0_dp, scatter, is_alone), has_hats)
       bounds = merge(of_change_alone, of_change, has_hats .or. is_alone)
-      if (any(points%at_corner .and. contact%contact_state([1, size(points%arc_length)]) /= &
-         contact_open)) bounds = max(bounds, of_change_at_corner)
+      if (any(points%at_corner .and. contact%contact_state(points%ends()) /= contact_open)) &
+         bounds = max(bounds, of_change_at_corner)
       bounds = bounds*abs(change) + known_scatter
       ! Where displacements and temperatures are prescribed, force and heat rate err as the energy,
       ! by the square of its norm's error.
@@ -87,7 +87,7 @@ contains
          bounds(force) = bounds(force) + not_halved(force)*abs(contact%normal_force)
          bounds(heat) = bounds(heat) + not_halved(heat)*abs(contact%heat_rate)
       end associate
-      length = closed_length(contact, points%arc_length)
+      length = closed_length(points, contact)
       locked = 0.0_dp
       if (length > 0.0_dp) locked = most_locked/length
       associate (force => bounds(find_quantity(estimated, 'normal_force')), &
@@ -165,14 +165,16 @@ contains
       type(contact_points_type), intent(in) :: points
       real(dp), intent(in) :: pressure(:)
       real(dp) :: square(2)
-      integer :: k, m, way
+      integer :: k, way
+      integer, allocatable :: ends(:)
 
       rise = 0.0_dp
-      m = size(pressure)
-      if (m < 3) return
-      if (.not. any(on_axis(points, [1, m]))) return
-      k = merge(1, m, on_axis(points, 1))
-      way = merge(1, -1, k == 1)
+      ends = points%ends()
+      ends = pack(ends, on_axis(points, ends))
+      if (size(ends) == 0) return
+      k = ends(1)
+      way = merge(1, -1, points%on_one_piece(k, k + 1))
+      if (.not. points%on_one_piece(k, k + 2*way)) return
       if (abs(maxloc(pressure, dim=1) - k) > 1) return
       square = (points%arc_length([k + way, k + 2*way]) - points%arc_length(k))**2
       rise = abs(pressure(k) - (pressure(k + way)*square(2) - pressure(k + 2*way)*square(1))/ &
@@ -232,7 +234,7 @@ contains
       last = 0
       do k = 1, size(points%arc_length)
          if (contact%contact_state(k) == contact_slip) cycle
-         if (last > 0) then
+         if (points%on_one_piece(k, last)) then
             ! From the middle between two points to the middle between the next two.
             if (contact%contact_state(k) /= contact%contact_state(last)) width = min(width, &
                0.5_dp*(points%arc_length(k) + points%arc_length(k - 1) - &
@@ -250,16 +252,15 @@ contains
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
       real(dp), allocatable :: slipping(:)
-      integer :: k, m
+      integer :: k
 
       missing_friction = 0.0_dp
       if (.not. allocated(contact%shear)) return
-      m = size(contact%shear)
       slipping = merge(abs(contact%shear), 0.0_dp, contact%contact_state == contact_slip)
-      do k = 1, m
+      do k = 1, size(contact%shear)
          if (contact%pressure(k) <= 0.0_dp .or. abs(contact%shear(k)) > 0.0_dp) cycle
          missing_friction = missing_friction + &
-            points%weight(k)*maxval(slipping(max(k - 1, 1):min(k + 1, m)))
+            points%weight(k)*maxval(slipping([k, points%beside(k)]))
       end do
    end function missing_friction
 

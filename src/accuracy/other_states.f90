@@ -13,6 +13,7 @@ module other_states
    use interface_quantities, only: quantities_of_state
    use kinds, only: dp
    use model, only: model_type
+   use reduced_bodies, only: reduced_bodies_type
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: step_type
@@ -51,7 +52,7 @@ contains
             call implicit_state(simulation, heat, model, from, before, state, error)
             if (allocated(error)) cycle
             if (.not. is_beside(state%contact%contact_state, &
-               simulation%state%contact%contact_state, bodies%points%interface_start)) cycle
+               simulation%state%contact%contact_state, piece_starts(bodies))) cycle
             call quantities_of_state(bodies, state, other)
             where (.not. ieee_is_nan(other - own)) spread = max(spread, abs(other - own))
          end do
@@ -59,10 +60,27 @@ contains
       call heat%release()
    end subroutine find_other_states
 
+   !> The first contact point of each piece of all interfaces, and the one behind the last.
+   pure function piece_starts(bodies) result(starts)
+      type(reduced_bodies_type), intent(in) :: bodies
+      integer, allocatable :: starts(:)
+      integer :: i
+
+      starts = [integer ::]
+      associate (start => bodies%points%interface_start)
+         do i = 1, size(bodies%interfaces)
+            associate (ends => bodies%interfaces(i)%ends())
+               starts = [starts, start(i) - 1 + ends(1::2)]
+            end associate
+         end do
+         starts = [starts, start(size(start))]
+      end associate
+   end function piece_starts
+
    !> Whether two contact states differ, and by no more than one contact point at each edge.
    pure logical function is_beside(one, other, start)
       integer, intent(in) :: one(:), other(:)       !! (m) open, slip or stick
-      integer, intent(in) :: start(:)               !! (interfaces + 1) first contact points
+      integer, intent(in) :: start(:)               !! (pieces + 1) first contact points
       integer :: i, k
 
       is_beside = any([(differs(k), k=1, size(one))])

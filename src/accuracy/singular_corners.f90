@@ -48,15 +48,16 @@ contains
       logical, intent(out) :: is_singular(:)              !! (nodes)
       type(contact_points_type) :: points
       type(outline_type) :: outline(size(is_singular))
-      integer :: ends(2), i, k
+      integer, allocatable :: ends(:)
+      integer :: i, k
 
       outline = outline_of(model, held_directions(model, simulation))
       is_singular = are_sharp(outline)
       is_singular = is_singular .or. are_loaded_alone(model%mesh, forces_act(model, record))
       do i = 1, size(record%contacts)
          call simulation%bodies%view(i, points)
-         ends = [1, size(points%slave)]
-         do k = 1, 2
+         ends = points%ends()
+         do k = 1, size(ends)
             if (.not. points%at_corner(k)) cycle
             if (record%contacts(i)%contact_state(ends(k)) == contact_open) cycle
             is_singular([points%slave(ends(k)), points%master(ends(k))]) = .true.

@@ -31,7 +31,7 @@ contains
       holds(slides_far) = contact%slide%point > 0
       of_peak = holds
       of_peak(at_corner) = peaks_at_corner(points, contact)
-      of_peak(turns_round) = is_mixed .and. turns_at_peak(contact)
+      of_peak(turns_round) = is_mixed .and. turns_at_peak(points, contact)
       call sum_up(doubled, has_fine, holds, errors, find_quantity(estimated, 'peak_pressure'), &
          of_peak)
    end subroutine sum_up_interface

@@ -138,7 +138,7 @@ contains
             value = contact_values(quantity%name, points, contact)
             scale = abs(value(1))
             if (quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(scale)) scale = &
-               contact_width(contact, points%arc_length)
+               contact_width(points, contact)
             if (ieee_is_nan(scale)) scale = 0.0_dp
             self%largest(d) = max(self%largest(d), scale)
             if (.not. allocated(record%errors)) cycle
@@ -149,7 +149,7 @@ contains
                   record%errors(self%demands(d)%interface), scale)
                finding%instead = instead_of(quantity, contact)
                if (quantity%name == 'peak_pressure') then
-                  finding%is_at_end = any(peak_is_at_end(contact))
+                  finding%is_at_end = any(peak_is_at_end(points, contact))
                   if (has_grown(self%rounds, d, record%step) .and. .not. &
                      remains(finding%no_estimate)) finding%no_estimate = grows
                end if

@@ -258,7 +258,7 @@ contains
    end function levels_of_edges
 
    !> The edges near which a quantity errs: those of stick only for what friction decides, and where
-   !> the whole face is closed its ends.
+   !> the whole face is closed the ends of its pieces.
    pure function edges_for(q, points, contact) result(edges)
       integer, intent(in) :: q
       type(contact_points_type), intent(in) :: points
@@ -266,8 +266,7 @@ contains
       real(dp), allocatable :: edges(:)
 
       edges = contact%edges_contact
-      if (all(contact%contact_state /= contact_open)) edges = points%arc_length([1, &
-         size(points%arc_length)])
+      if (all(contact%contact_state /= contact_open)) edges = points%arc_length(points%ends())
       if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
          [edges, contact%edges_stick]
    end function edges_for
@@ -284,7 +283,7 @@ contains
       weight = 1.0_dp
       if (estimated(q)%name /= 'peak_pressure') return
       peak = maxloc(contact%pressure, dim=1)
-      length = reach*closed_length(contact, points%arc_length)
+      length = reach*closed_length(points, contact)
       if (length <= 0.0_dp) return
       do e = 1, size(weight)
          n = element_corner_count(mesh%element_kind(e))
@@ -307,7 +306,8 @@ contains
          do i = 1, size(edges)
             if (ieee_is_nan(edges(i)) .or. size(s) < 2) cycle
             k = point_before(s, edges(i))
-            part_of_side = min(max((edges(i) - s(k))/(s(k + 1) - s(k)), 0.0_dp), 1.0_dp)
+            ! Two pieces may meet in one s.
+            part_of_side = min(max((edges(i) - s(k))/max(s(k + 1) - s(k), tiny(s)), 0.0_dp), 1.0_dp)
             slave = between(x(:, k), x(:, k + 1), part_of_side)
             master = slave + between(h(k)*n(:, k), h(k + 1)*n(:, k + 1), part_of_side)
             self%division%points = reshape([self%division%points, slave, master], &

@@ -6,7 +6,7 @@ module connections
    use contact_definitions, only: is_removed, latest_friction, makes_friction_heat, pairing_nodes, &
       tie_definition_type
    use contact_pairs, only: make_contact_points, make_tie_points
-   use contact_points, only: contact_points_type, contact_row_type
+   use contact_points, only: contact_points_type, contact_row_type, join_rows
    use element_kinds, only: side_node_count
    use equations, only: equation_type
    use errors, only: error_type
@@ -127,34 +127,12 @@ contains
       type(connections_type), intent(out) :: row             !! all their contact points
       integer :: i, k
 
-      row%slave = [(interfaces(i)%slave, i=1, size(interfaces))]
-      row%master = [(interfaces(i)%master, i=1, size(interfaces))]
-      row%weight = [(interfaces(i)%weight, i=1, size(interfaces))]
-      row%initial_gap = [(interfaces(i)%initial_gap, i=1, size(interfaces))]
-      row%normal = reshape([(interfaces(i)%normal, i=1, size(interfaces))], [2, size(row%slave)])
-      row%tangent = reshape([(interfaces(i)%tangent, i=1, size(interfaces))], [2, size(row%slave)])
+      call join_rows(interfaces%contact_row_type, row)
       row%interface_start = [1]
-      call row%difference%reserve(size(row%slave), 2*size(row%slave))
       do i = 1, size(interfaces)
          row%interface_start = [row%interface_start, row%interface_start(i) + &
             size(interfaces(i)%slave)]
-         call row%difference%add_sums(interfaces(i)%difference)
       end do
-      if (any([(interfaces(i)%turns(), i=1, size(interfaces))])) then
-         call row%along%reserve(size(row%slave), 2*size(row%slave))
-         call row%across%reserve(size(row%slave), 2*size(row%slave))
-         do i = 1, size(interfaces)
-            if (interfaces(i)%turns()) then
-               call row%along%add_sums(interfaces(i)%along)
-               call row%across%add_sums(interfaces(i)%across)
-               cycle
-            end if
-            call row%along%add_sums(interfaces(i)%difference)
-            do k = 1, size(interfaces(i)%slave)
-               call row%across%add([integer ::], [real(dp) ::])
-            end do
-         end do
-      end if
       if (any(varies_with_temperature(model%interactions(model%contacts%interaction)%law))) then
          call row%mean%reserve(0, 0)
          do i = 1, size(interfaces)

@@ -113,14 +113,16 @@ contains
       class(reduced_bodies_type), intent(in) :: self !! prepared
       integer, intent(in) :: i                       !! index of the interface
       type(contact_points_type), intent(out) :: points
-      integer :: ends(2)
+      integer :: first
 
       points = self%interfaces(i)
-      ends = self%points%interface_start(i:i + 1) - [0, 1]
-      points%contact_row_type = self%points%part(ends(1), ends(2))
+      first = self%points%interface_start(i)
+      points%contact_row_type = self%points%part(first, self%points%interface_start(i + 1) - 1)
       if (.not. points%is_rigid .or. .not. allocated(self%held_direction)) return
-      points%at_corner = points%at_corner .and. .not. (on_axis(points, ends - ends(1) + 1) .or. &
-         norm2(self%held_direction(:, ends), dim=1) > 0.0_dp)
+      associate (ends => points%ends())
+         points%at_corner = points%at_corner .and. .not. (on_axis(points, ends) .or. &
+            norm2(self%held_direction(:, first - 1 + ends), dim=1) > 0.0_dp)
+      end associate
    end subroutine view
 
    !> Those of all interfaces.

@@ -6,6 +6,7 @@ module contact_pairs
    use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, tributary_areas
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
+   use contact_pieces, only: join_pieces
    use contact_points, only: contact_points_type, no_radius, small_offset
    use drawn_lines, only: drawn_line_type
    use element_kinds, only: axisymmetric, element_corner_count
@@ -15,10 +16,10 @@ module contact_pairs
    use interface_warnings, only: mismatch_of_pairs
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
-   use mortar_points, only: set_mortar_points
+   use mortar_points, only: other_chains_type, set_mortar_points
    use rigid_masters, only: check_facing, follow_reference, opposite_line, sampled_line
    use sum_lists, only: differences, single_values, sum_list_type
-   use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
+   use surface_chains, only: align_chain, chain_faces, facing_chain, surface_chain_type
    use text, only: to_text
    implicit none
    private
@@ -164,43 +165,34 @@ contains
       end associate
    end subroutine set_geometry
 
-   !> The contact points of one *CONTACT PAIR. Without PAIRING= they are node pairs where the two
-   !> lines have equally many nodes that lie opposite each other.
-   !> Errors: surfaces that do not form one line each or that do not fit; PAIRING=NODES on faces
-   !> whose nodes are not opposite; faces of which none lies opposite the other surface.
+   !> The contact points of one *CONTACT PAIR. Without PAIRING= they are node pairs where the
+   !> lines of both surfaces have equally many nodes that lie opposite each other.
+   !> Errors: surfaces that do not form lines or that do not fit; PAIRING=NODES on faces whose nodes
+   !> are not opposite; faces of which none lies opposite the other surface.
    subroutine make_contact_points(mesh, definition, thickness, points, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
       real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
-      type(surface_chain_type) :: slave, master
+      type(surface_chain_type), allocatable :: masters(:), slaves(:)
       logical :: in_set(size(mesh%node_number))
-      integer :: k
 
       associate (slave_surface => mesh%surfaces(definition%slave), &
          master_surface => mesh%surfaces(definition%master))
-         call chain_faces(mesh, slave_surface, slave, error)
+         call chain_faces(mesh, slave_surface, slaves, error)
          if (allocated(error)) return
          points%name = definition%name
          points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
+         points%to_end = [huge(1.0_dp), huge(1.0_dp)]
+         points%at_corner = [.false., .false.]
          if (allocated(master_surface%drawing)) then
-            call set_rigid_points(mesh, definition, master_surface%drawing, slave, thickness, &
+            call set_rigid_points(mesh, definition, master_surface%drawing, slaves, thickness, &
                points, error)
          else
-            call chain_faces(mesh, master_surface, master, error)
+            call chain_faces(mesh, master_surface, masters, error)
             if (allocated(error)) return
-            call aligned_chains(mesh, slave, master)
-            if (definition%either_side) master%turned = .not. slave%turned
-            call check_shared(mesh, definition, slave, master, error)
-            if (allocated(error)) return
-            call find_points(mesh, definition, slave, master, thickness, points, error)
-            if (allocated(error)) return
-            associate (ends => master%nodes([1, size(master%nodes)]))
-               if (.not. master%closed) call measure_ends(mesh%coordinates(:, ends), points)
-               where ([(body_angle(mesh, ends(k)) > going_on, k=1, 2)]) &
-                  points%to_end = huge(1.0_dp)
-            end associate
+            call find_points(mesh, definition, slaves, masters, thickness, points, error)
          end if
          if (allocated(error)) return
       end associate
@@ -217,45 +209,192 @@ contains
       if (definition%has_clearance) points%initial_gap = definition%clearance
    end subroutine make_contact_points
 
-   !> The contact points of a face and the line of a rigid body: mortar points, or with
+   !> The contact points of a surface and the line of a rigid body: mortar points, or with
    !> PAIRING=NODES the slave's nodes and the points of the line that their normals meet.
    !> Errors: a line that shows its back to the slave; as find_points.
-   subroutine set_rigid_points(mesh, definition, drawing, slave, thickness, points, error)
+   subroutine set_rigid_points(mesh, definition, drawing, slaves, thickness, points, error)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition
       type(drawn_line_type), intent(in) :: drawing
-      type(surface_chain_type), intent(inout) :: slave        ! as from chain_faces
+      type(surface_chain_type), intent(in) :: slaves(:)       ! as from chain_faces
       real(dp), intent(in) :: thickness
       type(contact_points_type), intent(inout) :: points
       type(error_type), allocatable, intent(out) :: error
-      type(contact_definition_type) :: asked
+      type(contact_points_type) :: pieces(size(slaves))
       type(mesh_type) :: drawn
       type(surface_chain_type) :: master
       real(dp) :: ends(2, 2)
+      integer :: i
 
-      drawn = mesh
-      call sampled_line(drawing, slave, drawn, master)
-      call aligned_chains(drawn, slave, master)
-      ends = drawn%coordinates(:, master%nodes([1, size(master%nodes)]))
-      call check_facing(mesh, definition, drawing, slave, error)
-      if (allocated(error)) return
-      if (definition%pairing == pairing_nodes) then
+      do i = 1, size(slaves)
+         pieces(i) = points
          drawn = mesh
-         call opposite_line(drawing, slave, points%about_axis, drawn, master)
-         call set_node_pairs(drawn, definition, slave, master, thickness, points, error)
+         call sampled_line(drawing, slaves(i), drawn, master)
+         call align_chain(drawn, slaves(i), master)
+         ends = drawn%coordinates(:, master%nodes([1, size(master%nodes)]))
+         call check_facing(mesh, definition, drawing, slaves(i), error)
          if (allocated(error)) return
-         call check_covered(drawn, definition, slave, master, size(points%slave), error)
-         if (allocated(error)) return
-      else
-         asked = definition
-         asked%pairing = pairing_surfaces
-         call find_points(drawn, asked, slave, master, thickness, points, error)
-         if (allocated(error)) return
-      end if
-      if (.not. drawing%closed) call measure_ends(ends, points)
-      if (.not. slave%closed) points%at_corner = ends_alone(mesh, drawing, slave, points)
-      call follow_reference(drawing, size(mesh%node_number), drawn%coordinates, points)
+         if (definition%pairing == pairing_nodes) then
+            drawn = mesh
+            call opposite_line(drawing, slaves(i), points%about_axis, drawn, master)
+            call set_node_pairs(drawn, definition, slaves(i), master, thickness, pieces(i), error)
+            if (allocated(error)) return
+         else
+            call check_faces(drawn, definition, slaves(i), master, error)
+            if (allocated(error)) return
+            call set_mortar_points(drawn, slaves(i), master, others_of(slaves, i, [master], 1), &
+               thickness, pieces(i))
+         end if
+         if (size(pieces(i)%slave) == 0) cycle
+         if (.not. drawing%closed) call measure_ends(ends, pieces(i))
+         if (.not. slaves(i)%closed) pieces(i)%at_corner = ends_alone(mesh, drawing, slaves(i), &
+            pieces(i))
+         call follow_reference(drawing, size(mesh%node_number), drawn%coordinates, pieces(i))
+      end do
+      call check_covered(drawn, definition, slaves(i - 1), master, sum([(size(pieces(i)%slave), &
+         i=1, size(pieces))]), error)
+      if (allocated(error)) return
+      call join_pieces(mesh, definition, slaves, [(i, i=1, size(slaves))], pieces, points, error)
    end subroutine set_rigid_points
+
+   !> The contact points of the lines of two surfaces.
+   subroutine find_points(mesh, definition, slaves, masters, thickness, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      type(surface_chain_type), intent(in) :: slaves(:), masters(:)   ! as from chain_faces
+      real(dp), intent(in) :: thickness
+      type(contact_points_type), intent(inout) :: points
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_points_type) :: pieces(size(slaves)*size(masters))
+      type(surface_chain_type) :: master
+      integer :: i, j, k
+
+      do i = 1, size(slaves)
+         do j = 1, size(masters)
+            call check_shared(mesh, definition, slaves(i), aligned(i, j), error)
+            if (allocated(error)) return
+         end do
+      end do
+      if (definition%pairing /= pairing_surfaces) then
+         call pair_lines(mesh, definition, slaves, masters, thickness, points, error)
+         if (allocated(error) .or. allocated(points%slave)) return
+      end if
+      do k = 1, size(pieces)
+         i = slave_of(k)
+         j = k - (i - 1)*size(masters)
+         master = aligned(i, j)
+         call check_faces(mesh, definition, slaves(i), master, error)
+         if (allocated(error)) return
+         pieces(k) = points
+         call set_mortar_points(mesh, slaves(i), master, others_of(slaves, i, masters, j), &
+            thickness, pieces(k))
+         call find_ends(mesh, master, pieces(k))
+      end do
+      call check_covered(mesh, definition, slaves(1), aligned(1, facing_chain(mesh, slaves(1), &
+         masters)), sum([(size(pieces(k)%slave), k=1, size(pieces))]), error)
+      if (allocated(error)) return
+      call join_pieces(mesh, definition, slaves, [(slave_of(k), k=1, size(pieces))], pieces, &
+         points, error)
+   contains
+      pure integer function slave_of(piece)
+         integer, intent(in) :: piece
+
+         slave_of = (piece - 1)/size(masters) + 1
+      end function slave_of
+
+      !> A line of the master, along one of the slave.
+      function aligned(i, j) result(master)
+         integer, intent(in) :: i, j
+         type(surface_chain_type) :: master
+
+         master = masters(j)
+         call align_chain(mesh, slaves(i), master)
+         if (definition%either_side) master%turned = .not. slaves(i)%turned
+      end function aligned
+   end subroutine find_points
+
+   !> Node pairs of each line of the slave and the nearest of the master. Where some are not
+   !> opposite, no contact points but why.
+   !> Errors: as set_node_pairs; PAIRING=NODES where nodes are not opposite.
+   subroutine pair_lines(mesh, definition, slaves, masters, thickness, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      type(surface_chain_type), intent(in) :: slaves(:), masters(:)   ! as from chain_faces
+      real(dp), intent(in) :: thickness
+      type(contact_points_type), intent(inout) :: points
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_points_type) :: pieces(size(slaves))
+      type(surface_chain_type) :: master
+      character(:), allocatable :: advice, mismatch
+      integer :: i
+
+      do i = 1, size(slaves)
+         pieces(i) = points
+         master = masters(facing_chain(mesh, slaves(i), masters))
+         call align_chain(mesh, slaves(i), master)
+         if (definition%either_side) master%turned = .not. slaves(i)%turned
+         call compare_lines(mesh, definition, slaves(i), master, mismatch, advice)
+         if (len(mismatch) == 0) then
+            call set_node_pairs(mesh, definition, slaves(i), master, thickness, pieces(i), error)
+            if (allocated(error)) return
+            if (definition%pairing /= pairing_nodes) mismatch = mismatch_of_pairs(mesh, pieces(i))
+         end if
+         if (definition%pairing == pairing_nodes) then
+            if (len(mismatch) > 0) then
+               call set_error(error, status_deck, definition%title()//': '// &
+                  mismatch//advice)
+            else
+               call check_opposite(mesh, pieces(i), error)
+            end if
+            if (allocated(error)) call blame_corner(mesh, definition, slaves(i), master, error)
+            if (allocated(error)) return
+         else if (len(mismatch) > 0) then
+            points%mismatch = mismatch
+            return
+         end if
+         call find_ends(mesh, master, pieces(i))
+      end do
+      call join_pieces(mesh, definition, slaves, [(i, i=1, size(slaves))], pieces, points, error)
+   end subroutine pair_lines
+
+   !> Refuses lines without contact points: they run back, or the slave's goes round a corner.
+   subroutine check_faces(mesh, definition, slave, master, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      type(surface_chain_type), intent(in) :: slave, master
+      type(error_type), allocatable, intent(out) :: error
+
+      call check_folds(mesh, definition%title(), slave, error)
+      if (allocated(error)) return
+      call check_folds(mesh, definition%title(), master, error)
+      if (allocated(error)) return
+      call check_corner(mesh, definition, slave, error)
+   end subroutine check_faces
+
+   !> The lines beside two of them.
+   pure function others_of(slaves, i, masters, j) result(others)
+      type(surface_chain_type), intent(in) :: slaves(:), masters(:)
+      integer, intent(in) :: i, j                             ! those of the piece
+      type(other_chains_type) :: others
+      integer :: k
+
+      others%slaves = slaves([(k, k=1, i - 1), (k, k=i + 1, size(slaves))])
+      others%masters = masters([(k, k=1, j - 1), (k, k=j + 1, size(masters))])
+   end function others_of
+
+   !> How far contact points lie from the ends of the master's body.
+   subroutine find_ends(mesh, master, points)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: master          ! runs as the slave does
+      type(contact_points_type), intent(inout) :: points
+      integer :: k
+
+      if (size(points%slave) == 0) return
+      associate (ends => master%nodes([1, size(master%nodes)]))
+         if (.not. master%closed) call measure_ends(mesh%coordinates(:, ends), points)
+         where ([(body_angle(mesh, ends(k)) > going_on, k=1, 2)]) points%to_end = huge(1.0_dp)
+      end associate
+   end subroutine find_ends
 
    !> How far the first and the last contact point lie from the ends of an open master.
    pure subroutine measure_ends(ends, points)
@@ -287,51 +426,6 @@ contains
             body_angle(mesh, node) > going_on)
       end do
    end function ends_alone
-
-   !> The contact points of two lines that run the same way.
-   subroutine find_points(mesh, definition, slave, master, thickness, points, error)
-      type(mesh_type), intent(in) :: mesh
-      type(contact_definition_type), intent(in) :: definition
-      type(surface_chain_type), intent(in) :: slave, master
-      real(dp), intent(in) :: thickness
-      type(contact_points_type), intent(inout) :: points
-      type(error_type), allocatable, intent(out) :: error
-      type(contact_points_type) :: found
-      character(:), allocatable :: advice, mismatch
-
-      if (definition%pairing /= pairing_surfaces) then
-         found = points
-         call compare_lines(mesh, definition, slave, master, mismatch, advice)
-         if (len(mismatch) == 0) then
-            call set_node_pairs(mesh, definition, slave, master, thickness, found, error)
-            if (allocated(error)) return
-            if (definition%pairing /= pairing_nodes) mismatch = mismatch_of_pairs(mesh, found)
-         end if
-         if (definition%pairing == pairing_nodes) then
-            if (len(mismatch) > 0) then
-               call set_error(error, status_deck, definition%title()//': '// &
-                  mismatch//advice)
-            else
-               call check_opposite(mesh, found, error)
-            end if
-            if (allocated(error)) call blame_corner(mesh, definition, slave, master, error)
-         end if
-         if (allocated(error)) return
-         if (len(mismatch) == 0) then
-            points = found
-            return
-         end if
-         points%mismatch = mismatch
-      end if
-      call check_folds(mesh, definition%title(), slave, error)
-      if (allocated(error)) return
-      call check_folds(mesh, definition%title(), master, error)
-      if (allocated(error)) return
-      call check_corner(mesh, definition, slave, error)
-      if (allocated(error)) return
-      call set_mortar_points(mesh, slave, master, thickness, points)
-      call check_covered(mesh, definition, slave, master, size(points%slave), error)
-   end subroutine find_points
 
    !> Angle that the elements at a corner fill.
    pure real(dp) function body_angle(mesh, node)
@@ -376,7 +470,7 @@ contains
          ' of the master, the nearest one is '//to_text(nearest)//' from it', tie%faces%card)
    end subroutine make_tie_points
 
-   !> Keeps some of the contact points; s begins at the first of them.
+   !> Keeps some of the contact points.
    pure subroutine keep_points(kept, points)
       integer, intent(in) :: kept(:)
       type(contact_points_type), intent(inout) :: points
@@ -387,7 +481,6 @@ contains
       points%master = points%master(kept)
       points%position = points%position(:, kept)
       points%arc_length = points%arc_length(kept)
-      if (size(kept) > 0) points%arc_length = points%arc_length - points%arc_length(1)
       points%weight = points%weight(kept)
       points%normal = points%normal(:, kept)
       points%tangent = points%tangent(:, kept)

@@ -8,7 +8,7 @@ module contact_points
    use sum_lists, only: sum_list_type
    implicit none
    private
-   public :: contact_row_type, contact_points_type, never_approached, no_radius, on_axis, &
+   public :: contact_row_type, contact_points_type, ends_of_pieces, join_rows, never_approached, no_radius, on_axis, &
       small_offset
 
    real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
@@ -43,7 +43,8 @@ module contact_points
 
    !> The contact points of one interface, ordered along the slave from the end with the smaller x
    !> (then y); on a closed face from the corner with the smallest x (then y), with the slave on the
-   !> left.
+   !> left. Where its surfaces consist of several lines, those between one line of each are a piece;
+   !> pieces follow each other in the order of the slave's lines, and along these.
    type, extends(contact_row_type) :: contact_points_type
       character(:), allocatable :: name        !! name of the *CONTACT PAIR
       integer :: pairing = pairing_nodes       !! pairing_nodes or pairing_surfaces
@@ -54,17 +55,23 @@ module contact_points
       !> (n, m) their contact quantities, interpolated between the contact points
       type(sum_list_type) :: at_face_nodes
       real(dp), allocatable :: position(:, :)  !! (2, m) undeformed slave [length]
-      real(dp), allocatable :: arc_length(:)   !! (m) s from the first contact point [length]
+      !> (m) s from the first contact point; from a line of the slave to the next one straight on
+      !> [length]
+      real(dp), allocatable :: arc_length(:)
+      !> Contact points that are the last of their pieces, but for the last piece; unallocated where
+      !> there is one piece
+      integer, allocatable :: cuts(:)
       real(dp), allocatable :: edge(:)         !! (m) longest side of the slave there [length]
       integer :: side_nodes = 2                !! contact points of a side, 2 or 3
       integer :: node_spacings = 1             !! of the slave, from a contact point to the next
-      integer :: corners = 0                   !! corners of the slave; 0 for node pairs
-      integer :: open_corners = 0              !! those without a master opposite
-      !> How far the first contact point lies from where the master's body ends, and the last one,
-      !> along the slave, at least 0; large where the body goes on [length]
-      real(dp) :: to_end(2) = huge(1.0_dp)
-      !> Whether one face ends at the first, at the last contact point and the other goes on
-      logical :: at_corner(2) = .false.
+      !> (corners of the slave) whether no master is opposite; unallocated for node pairs
+      logical, allocatable :: is_open_corner(:)
+      !> (2 pieces) how far the first contact point of each piece lies from where the master's body
+      !> ends, and the last one, along the slave, at least 0; large where the body goes on [length]
+      real(dp), allocatable :: to_end(:)
+      !> (2 pieces) whether one face ends at the first, at the last contact point of each piece and
+      !> the other goes on
+      logical, allocatable :: at_corner(:)
       type(hat_geometry_type) :: mortar        !! of mortar points; empty for node pairs
       !> Gap that the mesh cannot tell from none: that of mortar points between chords of one curve,
       !> or of coordinates of single precision, as those of 7 to 9 digits [length]
@@ -72,6 +79,11 @@ module contact_points
       logical :: about_axis = .false.          !! whether the model is axisymmetric
       !> Whether the master is a rigid surface: the master nodes are its reference node
       logical :: is_rigid = .false.
+   contains
+      procedure :: ends
+      procedure :: on_one_piece
+      procedure :: beside
+      procedure :: length
    end type contact_points_type
 
    !> Part of the node spacing by which nodes may lie beside each other. An offset misplaces the
@@ -91,6 +103,88 @@ contains
 
       never = smallest_gap > 0.0_dp .and. smallest_gap >= initial_gap*(1.0_dp - unmoved)
    end function never_approached
+
+   !> Puts rows one behind the other.
+   pure subroutine join_rows(rows, row)
+      type(contact_row_type), intent(in) :: rows(:)
+      class(contact_row_type), intent(inout) :: row
+      integer :: i, k
+
+      row%slave = [(rows(i)%slave, i=1, size(rows))]
+      row%master = [(rows(i)%master, i=1, size(rows))]
+      row%weight = [(rows(i)%weight, i=1, size(rows))]
+      row%initial_gap = [(rows(i)%initial_gap, i=1, size(rows))]
+      row%normal = reshape([(rows(i)%normal, i=1, size(rows))], [2, size(row%slave)])
+      row%tangent = reshape([(rows(i)%tangent, i=1, size(rows))], [2, size(row%slave)])
+      call row%difference%reserve(size(row%slave), 2*size(row%slave))
+      do i = 1, size(rows)
+         call row%difference%add_sums(rows(i)%difference)
+      end do
+      row%along = sum_list_type()
+      row%across = sum_list_type()
+      if (.not. any([(rows(i)%turns(), i=1, size(rows))])) return
+      call row%along%reserve(size(row%slave), 2*size(row%slave))
+      call row%across%reserve(size(row%slave), 2*size(row%slave))
+      do i = 1, size(rows)
+         if (rows(i)%turns()) then
+            call row%along%add_sums(rows(i)%along)
+            call row%across%add_sums(rows(i)%across)
+            cycle
+         end if
+         call row%along%add_sums(rows(i)%difference)
+         do k = 1, size(rows(i)%slave)
+            call row%across%add([integer ::], [real(dp) ::])
+         end do
+      end do
+   end subroutine join_rows
+
+   !> First and last contact point of each piece.
+   pure function ends(self)
+      class(contact_points_type), intent(in) :: self
+      integer, allocatable :: ends(:)              !! (2 pieces)
+
+      ends = ends_of_pieces(size(self%arc_length), self%cuts)
+   end function ends
+
+   !> First and last of some contact points in each piece.
+   pure function ends_of_pieces(points, cuts) result(ends)
+      integer, intent(in) :: points                !! how many there are
+      integer, intent(in), optional :: cuts(:)     !! those behind which another piece begins
+      integer, allocatable :: ends(:)              !! (2 pieces)
+      integer :: i
+
+      ends = [1, points]
+      if (present(cuts)) ends = [1, (cuts(i), cuts(i) + 1, i=1, size(cuts)), points]
+   end function ends_of_pieces
+
+   !> Whether two contact points are on one piece; false for a number that is that of none.
+   pure logical function on_one_piece(self, k, other)
+      class(contact_points_type), intent(in) :: self
+      integer, intent(in) :: k                     !! a contact point
+      integer, intent(in) :: other                 !! may be out of range
+
+      on_one_piece = other >= 1 .and. other <= size(self%arc_length)
+      if (on_one_piece .and. allocated(self%cuts)) on_one_piece = .not. any(self%cuts >= &
+         min(k, other) .and. self%cuts < max(k, other))
+   end function on_one_piece
+
+   !> The contact points beside one, on its piece.
+   pure function beside(self, k)
+      class(contact_points_type), intent(in) :: self
+      integer, intent(in) :: k                     !! a contact point
+      integer, allocatable :: beside(:)            !! none to two, ascending
+
+      beside = pack([k - 1, k + 1], [self%on_one_piece(k, k - 1), self%on_one_piece(k, k + 1)])
+   end function beside
+
+   !> Length of all pieces, each from its first to its last contact point [length].
+   pure real(dp) function length(self)
+      class(contact_points_type), intent(in) :: self
+
+      associate (s => self%arc_length(self%ends()))
+         length = sum(s(2::2) - s(1::2))
+      end associate
+   end function length
 
    !> Whether a contact point lies on the axis of an axisymmetric model.
    elemental logical function on_axis(points, k)

@@ -26,17 +26,19 @@ contains
       real(dp), intent(in) :: stiffness(:)     !! (m) of a contact point, others held [force/length]
       logical :: contact(size(closed))               !! (m)
       real(dp) :: lacking, pressure(size(closed))
+      integer, allocatable :: beside(:)
       integer :: k
 
       contact = closed
       pressure = over_weight(points, force)
       do k = 1, size(closed)
          if (points%weight(k) > 0.0_dp .or. closed(k)) cycle
-         if (.not. any(closed(max(k - 1, 1):min(k + 1, size(closed))))) cycle
+         beside = points%beside(k)
+         if (.not. any(closed(beside))) cycle
          lacking = stiffness(k)*max(gap(k) - no_gap*points%edge(k), 0.0_dp)
          ! The contact points beside it have two thirds of each side, of which it has a thirtieth.
          contact(k) = lacking <= limit(points, pressure, k)* &
-            (sum(points%weight(max(k - 1, 1):min(k + 1, size(closed))))/20)
+            (sum(points%weight(beside))/20)
       end do
    end function in_contact
 
@@ -72,7 +74,7 @@ contains
 
       area = 0.0_dp
       do way = -1, 1, 2
-         if (k + 2*way < 1 .or. k + 2*way > size(points%weight)) cycle
+         if (.not. points%on_one_piece(k, k + 2*way)) cycle
          part = coordinate(points, k, k + way)/coordinate(points, k, k + 2*way)
          if (on_axis(points, k)) then
             part = part/2
@@ -97,7 +99,7 @@ contains
 
       profile_force = 0.0_dp
       do way = -1, 1, 2
-         if (k + 2*way < 1 .or. k + 2*way > size(points%weight)) cycle
+         if (.not. points%on_one_piece(k, k + 2*way)) cycle
          profile_force = profile_force + &
             (pressure(k) - pressure(k + 2*way))*points%weight(k + way)/20
       end do
@@ -145,13 +147,13 @@ contains
       limit = 0.0_dp
       sides = 0
       do way = -1, 1, 2
-         if (k + way < 1 .or. k + way > size(values)) cycle
+         if (.not. points%on_one_piece(k, k + way)) cycle
          sides = sides + 1
-         if (k + 2*way < 1 .or. k + 2*way > size(values)) then
-            limit = limit + values(k + way)
-         else
+         if (points%on_one_piece(k, k + 2*way)) then
             limit = limit + continued(values(k + [way, 2*way]), coordinate(points, k, &
                k + [way, 2*way]))
+         else
+            limit = limit + values(k + way)
          end if
       end do
       if (sides > 0) limit = limit/sides

@@ -30,6 +30,7 @@ contains
       largest = too_large
       worst = 0
       do k = 1, size(points%edge) - 1
+         if (.not. points%on_one_piece(k, k + 1)) cycle
          areas = facing_areas(points, k)
          if (minval(areas) <= 0.0_dp) cycle
          part = maxval(areas)/minval(areas) - 1.0_dp

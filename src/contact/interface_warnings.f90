@@ -147,7 +147,7 @@ contains
       gap = [(normal_distance(mesh, points, k), k=1, size(gap))]
       off = abs(gap - points%initial_gap)
       ! A face may have a single contact point.
-      length = max(maxval(points%arc_length), maxval(points%edge))
+      length = max(points%length(), maxval(points%edge))
       if (any(off <= far_off*length)) return
       k = minloc(off, dim=1)
       warning = 'overlap by '//to_text(-gap(k))

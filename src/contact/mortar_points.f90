@@ -5,17 +5,18 @@ module mortar_points
    use chain_geometry, only: arc_lengths, chord_depth, edge_lengths, side_positions
    use contact_definitions, only: pairing_surfaces
    use contact_points, only: contact_points_type, small_offset
+   use hidden_segments, only: hide_segments
    use mortar_segments, only: edge_segments_of, hats_of, integrate_segments, mortar_integrals_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use mortar_sides, only: beside_line, face_line_type, hats, opposite_coordinate, side_opposite, &
+   use mortar_sides, only: beside_line, face_line_type, hats, opposite_at, opposite_coordinate, &
       slave_side_type, sides_of
    use sparse_matrix, only: sparse_matrix_type
    use sum_lists, only: sum_list_type
    use surface_chains, only: surface_chain_type
    implicit none
    private
-   public :: set_mortar_points
+   public :: other_chains_type, set_mortar_points
 
    !> Part of its sides that the master must cover to make a corner a contact point of its own, over
    !> the part of its neighbour's. With less, a sliver of the face would have a multiplier: it goes
@@ -29,13 +30,20 @@ module mortar_points
    real(dp), parameter :: aside = 1.0e-6_dp
    real(dp), parameter :: on_normal = 1.0e-9_dp   !! part of a side's length that is rounding
 
+   !> Lines of the surfaces of an interface beside the two whose contact points are made.
+   type :: other_chains_type
+      type(surface_chain_type), allocatable :: slaves(:), masters(:)
+   end type other_chains_type
+
 contains
 
-   !> The contact points of two lines of nodes; none where no face of the master is opposite.
-   subroutine set_mortar_points(mesh, slave, master, thickness, points)
+   !> The contact points of two lines of nodes; none where no face of the master is opposite, or
+   !> another line hides it.
+   subroutine set_mortar_points(mesh, slave, master, others, thickness, points)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(in) :: slave   !! from the end with the smaller x on
       type(surface_chain_type), intent(in) :: master
+      type(other_chains_type), intent(in) :: others   !! lines beside these two
       real(dp), intent(in) :: thickness               !! not used about an axis [length]
       type(contact_points_type), intent(inout) :: points !! its name and its axis are set
       type(mortar_integrals_type) :: integrals
@@ -47,6 +55,12 @@ contains
       slave_line = line_of(slave)
       master_line = line_of(master)
       side = sides_of(slave_line, master_line)
+      do c = 1, size(others%masters)
+         call hide_segments(side, master_line, line_of(others%masters(c)), .true.)
+      end do
+      do c = 1, size(others%slaves)
+         call hide_segments(side, master_line, line_of(others%slaves(c)), .false.)
+      end do
       call integrate_segments(slave_line, master_line, side, thickness, points%about_axis, &
          integrals)
       corner = slave%nodes(1::slave%side_nodes - 1)
@@ -57,8 +71,7 @@ contains
       points%side_nodes = 2
       points%node_spacings = slave%side_nodes - 1
       points%finest_gap = max(depth_of(slave), depth_of(master))
-      points%corners = size(corner)
-      points%open_corners = count(owner == 0)
+      points%is_open_corner = owner == 0
       points%slave = corner(kept)
       points%position = integrals%position(:, kept)
       associate (x => mesh%coordinates(:, slave%nodes), n => slave%side_nodes)
@@ -67,7 +80,6 @@ contains
             points%edge = edge((n - 1)*(kept - 1) + 1)
          end associate
       end associate
-      if (size(kept) > 0) points%arc_length = points%arc_length - points%arc_length(1)
       points%normal = integrals%normal(:, kept)
       points%tangent = slave_line%outward*reshape([-points%normal(2, :), points%normal(1, :)], &
          shape(points%normal), order=[2, 1])
@@ -306,8 +318,8 @@ contains
          do i = 1, size(side)
             if (all(side(i)%nodes /= node)) cycle
             associate (at => 2.0_dp*(findloc(side(i)%nodes, node, dim=1) - 1)/per_side - 1.0_dp)
-               is_covered = is_covered .or. side_opposite(side(i), max(at - aside, -1.0_dp), &
-                  master) > 0 .or. side_opposite(side(i), min(at + aside, 1.0_dp), master) > 0
+               is_covered = is_covered .or. opposite_at(side(i), max(at - aside, -1.0_dp)) > 0 &
+                  .or. opposite_at(side(i), min(at + aside, 1.0_dp)) > 0
             end associate
          end do
       end function is_covered
@@ -381,7 +393,7 @@ contains
          real(dp), intent(in) :: from
          integer :: opposite
 
-         opposite = side_opposite(side(i), from, master)
+         opposite = opposite_at(side(i), from)
          sees = .false.
          if (opposite > 0) sees = any(side_positions(opposite, master%side_nodes, &
             size(master%x, 2)) == node)

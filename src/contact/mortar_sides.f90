@@ -6,8 +6,8 @@ module mortar_sides
    implicit none
    private
    public :: face_line_type, opposed_shapes_type, slave_side_type
-   public :: beside_line, hats, opposed_shapes, opposite_coordinate, outward_normals, project, &
-      side_opposite, sides_of
+   public :: beside_line, hats, insert_kinks, no_segment, opposed_shapes, opposite_at, opposite_coordinate, &
+      outward_normals, project, side_opposite, sides_of
 
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
    integer, parameter :: curved_parts = 4           !! of a segment between sides that are not plain
@@ -130,19 +130,11 @@ contains
    pure subroutine find_kinks(side, master)
       type(slave_side_type), intent(inout) :: side
       type(face_line_type), intent(in) :: master
-      real(dp) :: at_ends(size(master%x, 2), 2), ends(2), xi
-      integer :: j, n
+      real(dp) :: ends(2)
+      integer :: j
 
-      n = size(side%nodes)
-      at_ends(:, 1) = beside_line(side%normal(:, 1), side%x(:, 1), master%x)
-      at_ends(:, 2) = beside_line(side%normal(:, n), side%x(:, n), master%x)
       side%kinks = [-1.0_dp, 1.0_dp]
-      do j = 1, size(master%x, 2), master%side_nodes - 1
-         ends = at_ends(j, :)
-         if (ends(1)*ends(2) >= 0.0_dp) cycle
-         xi = opposite_coordinate(side, master%x(:, j), ends)
-         side%kinks = [pack(side%kinks, side%kinks <= xi), xi, pack(side%kinks, side%kinks > xi)]
-      end do
+      call insert_kinks(side, master, side%kinks)
       allocate (side%opposite(size(side%kinks) - 1), source=0)
       do j = 1, size(side%opposite)
          ends = side%kinks(j:j + 1)
@@ -153,6 +145,33 @@ contains
       end do
       call divide_segments(side, master)
    end subroutine find_kinks
+
+   !> Adds the coordinates of a slave's side at which corners of another line lie opposite.
+   pure subroutine insert_kinks(side, line, kinks)
+      type(slave_side_type), intent(in) :: side
+      type(face_line_type), intent(in) :: line
+      real(dp), allocatable, intent(inout) :: kinks(:)   !! ascending
+      real(dp) :: at_ends(size(line%x, 2), 2), ends(2), xi
+      integer :: j, n
+
+      n = size(side%nodes)
+      at_ends(:, 1) = beside_line(side%normal(:, 1), side%x(:, 1), line%x)
+      at_ends(:, 2) = beside_line(side%normal(:, n), side%x(:, n), line%x)
+      do j = 1, size(line%x, 2), line%side_nodes - 1
+         ends = at_ends(j, :)
+         if (ends(1)*ends(2) >= 0.0_dp) cycle
+         xi = opposite_coordinate(side, line%x(:, j), ends)
+         kinks = [pack(kinks, kinks <= xi), xi, pack(kinks, kinks > xi)]
+      end do
+   end subroutine insert_kinks
+
+   !> Side of the master opposite a point of the slave, 0 for none.
+   pure integer function opposite_at(side, xi)
+      type(slave_side_type), intent(in) :: side   !! with its segments
+      real(dp), intent(in) :: xi                  !! coordinate of the side
+
+      opposite_at = side%opposite(min(count(side%kinks <= xi), size(side%opposite)))
+   end function opposite_at
 
    !> Divides the segments between sides of which one is curved or has its midside node off the
    !> middle: there the integrand is no polynomial.

@@ -43,27 +43,45 @@ contains
       logical, intent(in) :: closed(:)                  !! (m) those that touch
       real(dp), intent(in) :: movement(:)  !! (m) of the slave along its tangent [length]
       type(slide_type) :: slide
-      real(dp), dimension(size(closed)) :: change, length, past, spacing
+      integer :: i
+      integer, allocatable :: ends(:)
+
+      ends = points%ends()
+      do i = 1, size(ends), 2
+         if (any(closed(ends(i):ends(i + 1)))) call find_worst(points, points%to_end(i:i + 1), &
+            closed(ends(i):ends(i + 1)), movement(ends(i):ends(i + 1)), ends(i) - 1, slide)
+      end do
+   end function worst_slide
+
+   !> The worst of a piece, if it is worse than those before.
+   pure subroutine find_worst(points, to_end, closed, movement, earlier, slide)
+      type(contact_points_type), intent(in) :: points   ! contact points of all pieces
+      real(dp), intent(in) :: to_end(2)                 ! of the piece [length]
+      logical, intent(in) :: closed(:)                  ! (n) those of the piece that touch
+      real(dp), intent(in) :: movement(:)               ! (n) [length]
+      integer, intent(in) :: earlier                    ! contact points of pieces before
+      type(slide_type), intent(inout) :: slide
+      real(dp), dimension(size(closed)) :: change, edge, gap, length, past, s, spacing
       real(dp) :: closes
       integer :: k
 
-      if (.not. any(closed)) return
-      length = max(points%edge, maxval(points%arc_length, mask=closed) - &
-         minval(points%arc_length, mask=closed))
-      past = past_end(points, movement)
+      s = points%arc_length(earlier + 1:earlier + size(s))
+      gap = points%initial_gap(earlier + 1:earlier + size(s))
+      edge = points%edge(earlier + 1:earlier + size(s))
+      length = max(edge, maxval(s, mask=closed) - minval(s, mask=closed))
+      past = past_end(s, to_end, movement)
       call take(slide, past/(small_part*length), 'slides past the end of the master surface by ', &
          past, ', more than a twentieth of the length in contact; extend the master, or '// &
          'exchange slave and master')
       if (.not. points%is_rigid) then
-         spacing = points%edge/((points%side_nodes - 1)*points%node_spacings)
+         spacing = edge/((points%side_nodes - 1)*points%node_spacings)
          spacing = max(spacing, small_part*length)
          call take(slide, abs(movement)/spacing, 'slides farther than the spacing of its nodes '// &
             'and a twentieth of the length in contact, ', spacing, &
             '; draw the bodies where they slide to')
       end if
-      change = [(abs(line_value(points%arc_length, points%initial_gap, points%arc_length(k) + &
-         movement(k)) - points%initial_gap(k)), k=1, size(closed))]
-      closes = closed_gap(points, closed)
+      change = [(abs(line_value(s, gap, s(k) + movement(k)) - gap(k)), k=1, size(closed))]
+      closes = max(points%finest_gap, closed_gap(gap, closed))
       call take(slide, change/(small_change*closes), 'slides to where the gap of the mesh '// &
          'differs by ', change, ', more than a tenth of what the contact closes, '// &
          to_text(closes)//'; draw the bodies where they slide to')
@@ -78,41 +96,34 @@ contains
 
          k = maxloc(over_limit, mask=closed, dim=1)
          if (over_limit(k) <= max(1.0_dp, slide%excess)) return
-         slide%point = k
+         slide%point = earlier + k
          slide%slip = abs(movement(k))
          slide%excess = over_limit(k)
          slide%words = before//to_text(value(k))//behind
       end subroutine take
-   end function worst_slide
+   end subroutine find_worst
 
    !> How far a movement along the face takes contact points past the ends of the master; 0 where
    !> they stay.
-   pure function past_end(points, movement) result(past)
-      type(contact_points_type), intent(in) :: points
-      real(dp), intent(in) :: movement(:)
+   pure function past_end(s, to_end, movement) result(past)
+      real(dp), intent(in) :: s(:), movement(:)         ! (n) of a piece [length]
+      real(dp), intent(in) :: to_end(2)
       real(dp) :: past(size(movement))
 
-      associate (s => points%arc_length)
-         past = max(0.0_dp, -movement - s - points%to_end(1), &
-            movement + s - s(size(s)) - points%to_end(2))
-      end associate
+      past = max(0.0_dp, -movement - (s - s(1)) - to_end(1), movement + s - s(size(s)) - to_end(2))
    end function past_end
 
    !> How different the gaps are that the contact closes, with those of its open neighbours, for a
-   !> zone may end anywhere before them; or the largest overlap that it presses apart. At least what
-   !> the mesh cannot tell from none.
-   pure real(dp) function closed_gap(points, closed)
-      type(contact_points_type), intent(in) :: points
+   !> zone may end anywhere before them; or the largest overlap that it presses apart.
+   pure real(dp) function closed_gap(gap, closed)
+      real(dp), intent(in) :: gap(:)                    ! (n) of a piece [length]
       logical, intent(in) :: closed(:)
       logical :: near(size(closed))
 
       near = closed
       near(2:) = near(2:) .or. closed(:size(closed) - 1)
       near(:size(closed) - 1) = near(:size(closed) - 1) .or. closed(2:)
-      associate (h => points%initial_gap)
-         closed_gap = max(points%finest_gap, maxval(h, mask=near) - minval(h, mask=near), &
-            -minval(h, mask=closed))
-      end associate
+      closed_gap = max(maxval(gap, mask=near) - minval(gap, mask=near), -minval(gap, mask=closed))
    end function closed_gap
 
 end module sliding_limits

@@ -16,18 +16,19 @@
 !> the resultant and moment of the nodal forces themselves.
 !>
 !> Edges are looked for towards growing s; an edge on the other side is the same with the arrays
-!> turned round. On a closed face none is looked for between the last contact point and the first.
+!> turned round. None is looked for between pieces of a face, and on a closed face between the last
+!> contact point and the first.
 module zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_definitions, only: pairing_surfaces
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, ends_of_pieces
    use contact_system, only: contact_open, contact_slip, contact_stick
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    implicit none
    private
    public :: contact_profile_type, contact_profile, contact_edges, contact_end, mean_beyond
-   public :: edges_kept, stick_edges, turned
+   public :: edges_kept, piece_of, stick_edges, turned
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
@@ -47,6 +48,8 @@ module zone_edges
       !> node spacings from a contact point to the next, where gaps are means with hat functions; 0
       !> for node pairs
       integer :: hat_spacings = 0
+      !> Contact points that are the last of their pieces, but for the last piece; unallocated for one
+      integer, allocatable :: cuts(:)
    end type contact_profile_type
 
 contains
@@ -67,7 +70,23 @@ contains
       profile%shear = shear
       profile%gap = gap
       if (points%pairing == pairing_surfaces) profile%hat_spacings = points%node_spacings
+      if (allocated(points%cuts)) profile%cuts = points%cuts
    end function contact_profile
+
+   !> The profile of a piece, as the only one.
+   pure function piece_of(profile, first, last) result(piece)
+      type(contact_profile_type), intent(in) :: profile
+      integer, intent(in) :: first, last        !! its first and its last contact point
+      type(contact_profile_type) :: piece
+
+      piece%s = profile%s(first:last)
+      piece%weight = profile%weight(first:last)
+      piece%contact_state = profile%contact_state(first:last)
+      piece%pressure = profile%pressure(first:last)
+      piece%shear = profile%shear(first:last)
+      piece%gap = profile%gap(first:last)
+      piece%hat_spacings = profile%hat_spacings
+   end function piece_of
 
    !> Edges between contact and gap, ascending, padded with NaN, and the outer edge of the contact
    !> zone with the largest s. A zone that reaches the last contact point ends there; that end is no
@@ -76,15 +95,29 @@ contains
       type(contact_profile_type), intent(in) :: profile
       real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
       real(dp), intent(out) :: outer               !! outer edge, NaN without contact [length]
-      type(contact_profile_type) :: back
-      real(dp) :: edge
-      integer :: found, k, m
+      integer :: found, i
+      integer, allocatable :: ends(:)
 
-      back = turned(profile)
-      m = size(profile%s)
       found = 0
       edges = ieee_value(1.0_dp, ieee_quiet_nan)
       outer = edges(1)
+      ends = ends_of_pieces(size(profile%s), profile%cuts)
+      do i = 1, size(ends), 2
+         call add_contact_edges(piece_of(profile, ends(i), ends(i + 1)), edges, found, outer)
+      end do
+   end subroutine contact_edges
+
+   !> Adds the edges of a piece.
+   pure subroutine add_contact_edges(profile, edges, found, outer)
+      type(contact_profile_type), intent(in) :: profile
+      real(dp), intent(inout) :: edges(:), outer
+      integer, intent(inout) :: found
+      type(contact_profile_type) :: back
+      real(dp) :: edge
+      integer :: k, m
+
+      back = turned(profile)
+      m = size(profile%s)
       do k = 1, m - 1
          associate (is_open => profile%contact_state(k) == contact_open, &
             next_is_open => profile%contact_state(k + 1) == contact_open)
@@ -101,9 +134,9 @@ contains
       if (m > 0) then
          if (profile%contact_state(m) /= contact_open) outer = profile%s(m)
       end if
-   end subroutine contact_edges
+   end subroutine add_contact_edges
 
-   !> The profile from its other end.
+   !> The profile of one piece from its other end.
    pure function turned(profile) result(back)
       type(contact_profile_type), intent(in) :: profile
       type(contact_profile_type) :: back
@@ -235,14 +268,32 @@ contains
       type(friction_law_type), intent(in) :: friction   !! the law of all contact points
       real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
       real(dp), intent(out) :: outer               !! outer edge, NaN without stick [length]
-      real(dp) :: edge, widest
-      integer :: first, found, last, m
+      real(dp) :: widest
+      integer :: found, i
+      integer, allocatable :: ends(:)
 
-      m = size(profile%s)
       found = 0
       widest = -1.0_dp
       edges = ieee_value(1.0_dp, ieee_quiet_nan)
       outer = edges(1)
+      ends = ends_of_pieces(size(profile%s), profile%cuts)
+      do i = 1, size(ends), 2
+         call add_stick_edges(piece_of(profile, ends(i), ends(i + 1)), friction, edges, found, &
+            outer, widest)
+      end do
+   end subroutine stick_edges
+
+   !> Adds the edges of a piece.
+   pure subroutine add_stick_edges(profile, friction, edges, found, outer, widest)
+      type(contact_profile_type), intent(in) :: profile
+      type(friction_law_type), intent(in) :: friction
+      real(dp), intent(inout) :: edges(:), outer
+      integer, intent(inout) :: found
+      real(dp), intent(inout) :: widest            ! width of the widest zone [length]
+      real(dp) :: edge
+      integer :: first, last, m
+
+      m = size(profile%s)
       first = 1
       do while (first <= m)
          last = first
@@ -265,7 +316,7 @@ contains
          end if
          first = last + 1
       end do
-   end subroutine stick_edges
+   end subroutine add_stick_edges
 
    pure subroutine keep(edge, edges, found)
       real(dp), intent(in) :: edge

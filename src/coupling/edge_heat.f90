@@ -20,7 +20,8 @@ module edge_heat
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
-   use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, turned
+   use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, piece_of, &
+      turned
    implicit none
    private
    public :: edge_integral_type, edge_heat_type, find_edge_integrals, edge_heat_at
@@ -78,7 +79,7 @@ contains
             is_beside(first:last) = .false.
             if (.not. bodies%points%resolves_edge(i) .or. bodies%laws%removed(first)) cycle
             is_beside(first:last) = bodies%jump_index(first:last) > 0 .and. &
-               beside_edge(opening(first:last) > 0.0_dp)
+               beside_edge(opening(first:last) > 0.0_dp, bodies%interfaces(i)%cuts)
          end associate
       end do
       allocate (beside(count(is_beside)))
@@ -104,15 +105,18 @@ contains
    end subroutine find_edge_integrals
 
    !> Contact points with an edge in the side before or behind them.
-   pure function beside_edge(is_open) result(beside)
-      logical, intent(in) :: is_open(:)
+   pure function beside_edge(is_open, cuts) result(beside)
+      logical, intent(in) :: is_open(:)                  ! (m)
+      integer, intent(in), optional :: cuts(:)           ! (pieces - 1) before which no side begins
       logical :: beside(size(is_open))
+      logical :: has_edge(size(is_open) - 1)
       integer :: m
 
       m = size(is_open)
-      beside = .false.
-      beside(:m - 1) = is_open(:m - 1) .neqv. is_open(2:)
-      beside(2:) = beside(2:) .or. (is_open(:m - 1) .neqv. is_open(2:))
+      has_edge = is_open(:m - 1) .neqv. is_open(2:)
+      if (present(cuts)) has_edge(cuts) = .false.
+      beside = [has_edge, .false.]
+      beside(2:) = beside(2:) .or. has_edge
    end function beside_edge
 
    !> The integrals of the hat functions of an interface beside an edge.
@@ -249,13 +253,17 @@ contains
       real(dp), intent(in) :: opening(:), modulus(:)  ! (m)
       type(side_edge_type) :: edges(size(opening) - 1)   ! (sides)
       type(contact_profile_type) :: profile
-      integer :: k
+      integer, allocatable :: ends(:)
+      integer :: i, k
 
       profile = contact_profile(points, merge(contact_open, contact_slip, opening > 0.0_dp), &
          max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, max(opening, 0.0_dp))
-      do k = 1, size(edges)
-         if (count(profile%contact_state(k:k + 1) == contact_open) == 1) edges(k)%along = &
-            edge_between(law, profile, k)
+      ends = points%ends()
+      do i = 1, size(ends), 2
+         do k = ends(i), ends(i + 1) - 1
+            if (count(profile%contact_state(k:k + 1) == contact_open) == 1) edges(k)%along = &
+               edge_between(law, piece_of(profile, ends(i), ends(i + 1)), k + 1 - ends(i))
+         end do
       end do
    end function edges_of
 

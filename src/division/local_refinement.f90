@@ -16,7 +16,7 @@ module local_refinement
    use model, only: model_type
    use refined_regions, only: refined_region_type
    use sum_lists, only: sum_list_type
-   use surface_chains, only: aligned_chains, chain_faces, surface_chain_type
+   use surface_chains, only: align_chain, chain_faces, facing_chain, surface_chain_type
    implicit none
    private
    public :: elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours, &
@@ -207,46 +207,53 @@ contains
       end do
    end subroutine find_opposite
 
-   !> Faces with equally many sides count as matching: if they do not, dividing both does no harm.
-   !> Surfaces that form no line are reported elsewhere.
+   !> Lines with equally many sides count as matching: if they do not, dividing both does no harm.
+   !> Surfaces that form no lines are reported elsewhere.
    subroutine add_opposite(mesh, definition, pairs)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition
       integer, allocatable, intent(inout) :: pairs(:, :)
-      type(surface_chain_type) :: slave, master
+      type(surface_chain_type) :: master
+      type(surface_chain_type), allocatable :: masters(:), slaves(:)
       type(error_type), allocatable :: error
       integer, allocatable :: of_slave(:), of_master(:)
+      integer :: i
 
       if (definition%pairing == pairing_surfaces .or. &
          allocated(mesh%surfaces(definition%master)%drawing)) return
-      call chain_faces(mesh, mesh%surfaces(definition%slave), slave, error)
+      call chain_faces(mesh, mesh%surfaces(definition%slave), slaves, error)
       if (allocated(error)) return
-      call chain_faces(mesh, mesh%surfaces(definition%master), master, error)
+      call chain_faces(mesh, mesh%surfaces(definition%master), masters, error)
       if (allocated(error)) return
-      if (size(slave%nodes) /= size(master%nodes)) return
-      if (slave%side_nodes /= master%side_nodes .or. (slave%closed .neqv. master%closed)) return
-      call aligned_chains(mesh, slave, master)
-      call elements_along(mesh, mesh%surfaces(definition%slave)%faces, slave, of_slave)
-      call elements_along(mesh, mesh%surfaces(definition%master)%faces, master, of_master)
-      pairs = reshape([pairs, transpose(reshape([of_slave, of_master], [size(of_slave), 2]))], &
-         [2, size(pairs, 2) + size(of_slave)])
+      do i = 1, size(slaves)
+         master = masters(facing_chain(mesh, slaves(i), masters))
+         if (size(slaves(i)%nodes) /= size(master%nodes) .or. slaves(i)%side_nodes /= &
+            master%side_nodes .or. (slaves(i)%closed .neqv. master%closed)) cycle
+         call align_chain(mesh, slaves(i), master)
+         call elements_along(mesh, mesh%surfaces(definition%slave)%faces, slaves(i), of_slave)
+         call elements_along(mesh, mesh%surfaces(definition%master)%faces, master, of_master)
+         pairs = reshape([pairs, transpose(reshape([of_slave, of_master], [size(of_slave), 2]))], &
+            [2, size(pairs, 2) + size(of_slave)])
+      end do
    end subroutine add_opposite
 
-   !> The elements of the sides of a line, in its order.
+   !> The elements of the sides of a line of a surface, in its order.
    pure subroutine elements_along(mesh, faces, chain, elements)
       type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: faces(:, :)                ! (2, sides)
+      integer, intent(in) :: faces(:, :)                ! (2, sides) of the surface
       type(surface_chain_type), intent(in) :: chain
-      integer, allocatable, intent(out) :: elements(:)  ! (sides)
+      integer, allocatable, intent(out) :: elements(:)  ! (sides of the line)
       integer :: position(size(mesh%node_number)), ends(3), i, k
 
       position = 0
       do i = 1, size(chain%nodes)
          position(chain%nodes(i)) = i
       end do
-      allocate(elements(size(faces, 2)), source=0)
+      allocate (elements((size(chain%nodes) - merge(0, 1, chain%closed))/(chain%side_nodes - 1)), &
+         source=0)
       do i = 1, size(faces, 2)
          ends = side_ends(mesh, faces(1, i), faces(2, i))
+         if (position(ends(1)) == 0) cycle
          associate (a => minval(position(ends([1, 3]))), b => maxval(position(ends([1, 3]))))
             ! The last side of a closed face leads back to its first node.
             k = merge((a - 1)/(chain%side_nodes - 1) + 1, size(elements), &

@@ -1,4 +1,4 @@
-!> Element sides of a surface as one line of nodes, open or closed.
+!> Element sides of a surface as lines of nodes, each open or closed.
 module surface_chains
    use element_kinds, only: side_node_count, side_nodes
    use errors, only: error_type, set_error, status_deck
@@ -7,12 +7,12 @@ module surface_chains
    use text, only: to_text
    implicit none
    private
-   public :: surface_chain_type, chain_faces, aligned_chains
+   public :: surface_chain_type, chain_faces, align_chain, facing_chain
 
    !> Part of the length of a line by which coordinates count as different.
    real(dp), parameter :: distinct = 1.0e-9_dp
 
-   !> The nodes along a surface, with the body on the left.
+   !> The nodes along a line of a surface, with the body on the left unless it is turned.
    type :: surface_chain_type
       integer, allocatable :: nodes(:)   !! node indexes, corner first; on a closed face each once
       integer :: side_nodes = 0          !! nodes of a side, 2 or 3
@@ -24,17 +24,18 @@ module surface_chains
 
 contains
 
-   !> Nodes along a surface: corner, midside if there is one, corner, ... Each side is followed by
-   !> the one that begins at its second corner, so the line runs with the body on its left. A closed
-   !> face begins at the corner that precedes all others.
-   !> Errors: no sides, sides of 2 and of 3 nodes, sides that do not form one line.
-   subroutine chain_faces(mesh, surface, chain, error)
+   !> The lines of a surface: corner, midside if there is one, corner, ... An open one begins at the
+   !> end that precedes the other, a closed face at the corner that precedes all others, with the
+   !> body on its left; lines are in the order of where they begin.
+   !> Errors: no sides, sides of 2 and of 3 nodes, more than two sides at a node.
+   subroutine chain_faces(mesh, surface, chains, error)
       type(mesh_type), intent(in) :: mesh
       type(surface_type), intent(in) :: surface
-      type(surface_chain_type), intent(out) :: chain      !! the line
+      type(surface_chain_type), allocatable, intent(out) :: chains(:)   !! the lines
       type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: leaving(:), sides(:, :)
-      integer :: count_sides, first, i, n, side
+      logical, allocatable :: entered(:), is_left(:)
+      integer :: count_sides, first, i, n
 
       count_sides = size(surface%faces, 2)
       if (count_sides == 0) then
@@ -56,131 +57,170 @@ contains
             sides(:, i) = mesh%element_nodes(side_nodes(mesh%element_kind(element), face), element)
          end associate
       end do
-      call find_first(mesh, sides, leaving, first)
-      chain%side_nodes = n
-      allocate (chain%nodes((n - 1)*count_sides + 1))
-      side = first
-      do i = 1, count_sides
-         if (side == 0) exit
-         chain%nodes((n - 1)*(i - 1) + 1:(n - 1)*i + 1) = sides(:, side)
-         side = leaving(sides(n, side))
-         if (side == first .and. i < count_sides) exit
+      call join_sides(mesh, surface, sides, leaving, entered, error)
+      if (allocated(error)) return
+      allocate (chains(0))
+      allocate (is_left(count_sides), source=.true.)
+      do while (any(is_left))
+         first = findloc(is_left .and. .not. entered(sides(1, :)), .true., dim=1)
+         if (first == 0) first = findloc(is_left, .true., dim=1)
+         chains = [chains, chain_from(mesh, sides, leaving, first, is_left)]
       end do
-      if (i <= count_sides) then
-         call set_error(error, status_deck, 'surface '//surface%name// &
-            ' is not one line of faces, each beginning where another one ends'// &
-            first_break(mesh, surface, sides)//', each on a data card of *CONTACT PAIR or *TIE', &
-            surface%card)
-         return
-      end if
-      chain%closed = side == first
-      if (chain%closed) chain%nodes = chain%nodes(:size(chain%nodes) - 1)
+      call sort_chains(mesh, chains)
    end subroutine chain_faces
 
-   !> Turns both lines to run from the slave's first contact point on: an open one if its ends so
-   !> lie nearer to the slave's, a closed face of the master always, for it runs against the slave.
-   subroutine aligned_chains(mesh, slave, master)
+   !> The side that leaves each node, and whether one enters it.
+   !> Errors: more than one.
+   subroutine join_sides(mesh, surface, sides, leaving, entered, error)
       type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(inout) :: slave, master   !! as from chain_faces
+      type(surface_type), intent(in) :: surface
+      integer, intent(in) :: sides(:, :)              ! (nodes, sides)
+      integer, allocatable, intent(out) :: leaving(:) ! (nodes) 0 for none
+      logical, allocatable, intent(out) :: entered(:) ! (nodes)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, node
+
+      allocate (leaving(size(mesh%node_number)), source=0)
+      allocate (entered(size(mesh%node_number)), source=.false.)
+      do i = 1, size(sides, 2)
+         associate (from => sides(1, i), to => sides(size(sides, 1), i))
+            node = 0
+            if (leaving(from) > 0) node = from
+            if (entered(to)) node = to
+            leaving(from) = i
+            entered(to) = .true.
+         end associate
+         if (node == 0) cycle
+         call set_error(error, status_deck, 'the faces of surface '//surface%name// &
+            ' do not form lines, each beginning where another one ends: too many of them meet '// &
+            'at node '//to_text(mesh%node_number(node))//'; leave out those that are not in '// &
+            'contact, or make surfaces of them', surface%card)
+         return
+      end do
+   end subroutine join_sides
+
+   !> The line that begins with a side; of a closed one any.
+   function chain_from(mesh, sides, leaving, begin, is_left) result(chain)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: sides(:, :)        ! (nodes, sides)
+      integer, intent(in) :: leaving(:)         ! (nodes)
+      integer, intent(in) :: begin
+      logical, intent(inout) :: is_left(:)      ! (sides) loses those of the line
+      type(surface_chain_type) :: chain
+      logical :: is_own(size(is_left))
+      integer :: first, i, n, side
+
+      n = size(sides, 1)
+      is_own = .false.
+      side = begin
+      do while (side > 0)
+         if (is_own(side)) exit
+         is_own(side) = .true.
+         side = leaving(sides(n, side))
+      end do
+      is_left = is_left .and. .not. is_own
+      chain%side_nodes = n
+      chain%closed = side == begin
+      first = begin
+      if (chain%closed) first = first_corner(mesh%coordinates(:, sides(1, :)), is_own)
+      allocate (chain%nodes((n - 1)*count(is_own) + 1))
+      side = first
+      do i = 1, count(is_own)
+         chain%nodes((n - 1)*(i - 1) + 1:(n - 1)*i + 1) = sides(:, side)
+         side = leaving(sides(n, side))
+      end do
+      associate (last => size(chain%nodes))
+         if (chain%closed) then
+            chain%nodes = chain%nodes(:last - 1)
+         else
+            associate (ends => mesh%coordinates(:, chain%nodes([1, last])))
+               chain%turned = precedes(ends(:, 2), ends(:, 1), norm2(ends(:, 2) - ends(:, 1)))
+            end associate
+            if (chain%turned) chain%nodes = chain%nodes(last:1:-1)
+         end if
+      end associate
+   end function chain_from
+
+   !> The one of some points that precedes all others.
+   pure integer function first_corner(x, is_one) result(first)
+      real(dp), intent(in) :: x(:, :)           ! (2, n) [length]
+      logical, intent(in) :: is_one(:)          ! (n)
+      real(dp) :: extent
+      integer :: i
+
+      extent = maxval([(maxval(x(i, :), mask=is_one) - minval(x(i, :), mask=is_one), i=1, 2)])
+      first = findloc(is_one, .true., dim=1)
+      do i = first + 1, size(is_one)
+         if (is_one(i) .and. precedes(x(:, i), x(:, first), extent)) first = i
+      end do
+   end function first_corner
+
+   !> Puts lines in the order of where they begin.
+   subroutine sort_chains(mesh, chains)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(inout) :: chains(:)
+      integer :: i, k, order(size(chains))
+      real(dp) :: extent, x(2, size(chains))
+
+      do i = 1, size(chains)
+         order(i) = i
+         x(:, i) = mesh%coordinates(:, chains(i)%nodes(1))
+      end do
+      extent = maxval(maxval(x, dim=2) - minval(x, dim=2))
+      do i = 2, size(order)
+         do k = i, 2, -1
+            if (.not. precedes(x(:, order(k)), x(:, order(k - 1)), extent)) exit
+            order([k - 1, k]) = order([k, k - 1])
+         end do
+      end do
+      chains = chains(order)
+   end subroutine sort_chains
+
+   !> Turns the line of a master to run from the slave's first contact point on: an open one if its
+   !> ends so lie nearer to the slave's, a closed face always, for it runs against the slave.
+   subroutine align_chain(mesh, slave, master)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: slave
+      type(surface_chain_type), intent(inout) :: master   !! as from chain_faces
       real(dp) :: distance(size(master%nodes))
       integer :: n, start
 
       associate (x => mesh%coordinates)
-         if (.not. slave%closed) then
-            n = size(slave%nodes)
-            associate (first => x(:, slave%nodes(1)), last => x(:, slave%nodes(n)))
-               slave%turned = precedes(last, first, norm2(last - first))
-            end associate
-            if (slave%turned) slave%nodes = slave%nodes(n:1:-1)
-         end if
          n = size(master%nodes)
-         distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
          if (master%closed) then
+            distance = norm2(x(:, master%nodes) - spread(x(:, slave%nodes(1)), 2, n), dim=1)
             start = 1 + (master%side_nodes - 1)*(minloc(distance(::master%side_nodes - 1), dim=1) &
                - 1)
             master%nodes = cshift(master%nodes, start - 1)
             master%nodes(2:) = master%nodes(n:2:-1)
             master%turned = .true.
-         else
             ! Squares of these distances, less what they have in common: bodies may lie far apart.
-            master%turned = dot_product(x(:, slave%nodes(size(slave%nodes))) - &
-               x(:, slave%nodes(1)), x(:, master%nodes(n)) - x(:, master%nodes(1))) < 0.0_dp
-            if (master%turned) master%nodes = master%nodes(n:1:-1)
+         else if (dot_product(x(:, slave%nodes(size(slave%nodes))) - x(:, slave%nodes(1)), &
+            x(:, master%nodes(n)) - x(:, master%nodes(1))) < 0.0_dp) then
+            master%nodes = master%nodes(n:1:-1)
+            master%turned = .not. master%turned
          end if
       end associate
-   end subroutine aligned_chains
+   end subroutine align_chain
 
-   !> The side that leaves each node, and the side to begin with: that whose first corner no other
-   !> side reaches, on a closed face that of the preceding corner, 0 where the line branches.
-   subroutine find_first(mesh, sides, leaving, first)
+   !> The line whose nodes are paired with those of a slave: the nearest of those with as many, or
+   !> of all where none has as many.
+   pure integer function facing_chain(mesh, slave, masters) result(facing)
       type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: sides(:, :)
-      integer, allocatable, intent(out) :: leaving(:)
-      integer, intent(out) :: first
-      logical, allocatable :: entered(:)
-      real(dp) :: extent
-      integer :: i, n
-      logical :: branched
+      type(surface_chain_type), intent(in) :: slave
+      type(surface_chain_type), intent(in) :: masters(:)
+      real(dp) :: apart(size(masters))
+      logical :: fits(size(masters))
+      integer :: j
 
-      n = size(sides, 1)
-      branched = .false.
-      allocate (leaving(size(mesh%node_number)), source=0)
-      allocate (entered(size(mesh%node_number)), source=.false.)
-      do i = 1, size(sides, 2)
-         branched = branched .or. leaving(sides(1, i)) /= 0 .or. entered(sides(n, i))
-         leaving(sides(1, i)) = i
-         entered(sides(n, i)) = .true.
-      end do
-      first = 0
-      if (branched) return
-      do i = 1, size(sides, 2)
-         if (.not. entered(sides(1, i))) first = i
-      end do
-      if (first > 0) return
-      associate (x => mesh%coordinates(:, sides(1, :)))
-         extent = maxval(maxval(x, dim=2) - minval(x, dim=2))
-         first = 1
-         do i = 2, size(sides, 2)
-            if (precedes(x(:, i), x(:, first), extent)) first = i
-         end do
-      end associate
-   end subroutine find_first
-
-   !> Tells where a line breaks: at a node at which more than two sides meet, or between two nodes,
-   !> and then the face that each piece begins with.
-   function first_break(mesh, surface, sides) result(words)
-      type(mesh_type), intent(in) :: mesh
-      type(surface_type), intent(in) :: surface
-      integer, intent(in) :: sides(:, :)            ! (nodes, sides)
-      character(:), allocatable :: words
-      integer, allocatable :: begins(:), entered(:), left(:)
-      integer :: finish, i, n
-
-      n = size(sides, 1)
-      allocate (entered(size(mesh%node_number)), left(size(mesh%node_number)), source=0)
-      do i = 1, size(sides, 2)
-         left(sides(1, i)) = left(sides(1, i)) + 1
-         entered(sides(n, i)) = entered(sides(n, i)) + 1
-      end do
-      words = ''
-      i = findloc(entered > 1 .or. left > 1, .true., dim=1)
-      if (i > 0) words = ': too many of them meet at node '//to_text(mesh%node_number(i))
-      begins = pack([(i, i=1, size(sides, 2))], entered(sides(1, :)) == 0)
-      if (len(words) > 0 .or. size(begins) < 2) then
-         words = words//'; name the pieces as surfaces of their own'
-         return
-      end if
-      finish = findloc(left(sides(n, :)) == 0, .true., dim=1)
-      words = ': it ends at node '//to_text(mesh%node_number(sides(n, finish)))// &
-         ' and begins again at node '//to_text(mesh%node_number(sides(1, begins(size(begins)))))// &
-         '; name its '//to_text(size(begins))//' pieces as surfaces of their own, which begin with'
-      do i = 1, size(begins)
-         associate (face => surface%faces(:, begins(i)))
-            words = words//trim(merge(' and', merge('    ', ',   ', i == 1), i == size(begins)))// &
-               ' S'//to_text(face(2))//' of '//to_text(mesh%element_number(face(1)))
+      do j = 1, size(masters)
+         associate (n => size(slave%nodes), m => size(masters(j)%nodes), x => mesh%coordinates)
+            fits(j) = n == m
+            apart(j) = norm2(sum(x(:, slave%nodes), dim=2)/n - sum(x(:, masters(j)%nodes), dim=2)/m)
          end associate
       end do
-   end function first_break
+      facing = minloc(apart, mask=fits .or. .not. any(fits), dim=1)
+   end function facing_chain
 
    !> Whether a point comes before another one: by the smaller x, then by the smaller y.
    pure logical function precedes(a, b, extent)

@@ -113,6 +113,7 @@ contains
       integer, intent(in) :: unit
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
+      character(:), allocatable :: pieces
       logical :: has_heat
       integer :: i
 
@@ -120,11 +121,14 @@ contains
       do i = 1, size(interfaces)
          write (unit, '(/, 3x, 2a)') 'INTERFACE ', interfaces(i)%name
          call print_entry(unit, 'pairing', pairing_words(model%contacts(i)%pairing, interfaces(i)))
+         pieces = ''
+         if (allocated(interfaces(i)%cuts)) pieces = ', in '// &
+            to_text(size(interfaces(i)%cuts) + 1)//' pieces of the faces'
          call print_entry(unit, points_words(interfaces(i)), &
-            to_text(size(interfaces(i)%slave)))
+            to_text(size(interfaces(i)%slave))//pieces)
          if (len(open_words(interfaces(i))) > 0) call print_entry(unit, 'note', &
             open_words(interfaces(i)))
-         call print_entry(unit, 'length', to_text(maxval(interfaces(i)%arc_length)))
+         call print_entry(unit, 'length', to_text(interfaces(i)%length()))
          call print_entry(unit, 'initial gaps', &
             from_to(gap_range(model%mesh, interfaces(i))))
          associate (interaction => model%interactions(model%contacts(i)%interaction))

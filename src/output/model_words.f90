@@ -128,8 +128,10 @@ contains
       character(:), allocatable :: words
 
       words = ''
-      if (points%open_corners == 0) return
-      words = to_text(points%open_corners)//' of '//to_text(points%corners)// &
+      if (.not. allocated(points%is_open_corner)) return
+      if (.not. any(points%is_open_corner)) return
+      words = to_text(count(points%is_open_corner))//' of '//to_text(size( &
+         points%is_open_corner))// &
          ' slave corners have no master opposite and stay open'
    end function open_words
 

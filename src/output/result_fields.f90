@@ -291,8 +291,11 @@ contains
       do i = 1, size(interfaces)
          m = size(interfaces(i)%slave)
          points(:2, first + 1:first + m) = interfaces(i)%position
-         ends = [ends, [(first + k, first + k + 1, k=1, m - 1)]]
-         interface_of = [interface_of, [(i, k=1, m - 1)]]
+         do k = 1, m - 1
+            if (.not. interfaces(i)%on_one_piece(k, k + 1)) cycle
+            ends = [ends, first + k, first + k + 1]
+            interface_of = [interface_of, i]
+         end do
          first = first + m
       end do
       call write_grid(file, points, ends, [(2*k, k=0, size(interface_of))], &

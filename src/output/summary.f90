@@ -295,32 +295,37 @@ contains
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
       character(:), allocatable :: words
-      real(dp), allocatable :: ends(:)
+      real(dp), allocatable :: edges(:), ends(:)
+      integer, allocatable :: pieces(:)
       logical :: is_in(size(points%arc_length))
-      integer :: k
+      integer :: i, k
 
       words = ''
       if (name == 'edge_contact') then
          is_in = contact%contact_state /= contact_open
-         ends = contact%edges_contact
+         edges = contact%edges_contact
       else if (name == 'edge_stick') then
          is_in = contact%contact_state == contact_stick
-         ends = contact%edges_stick
+         edges = contact%edges_stick
       else
          return
       end if
-      associate (s => points%arc_length)
-         ends = pack(ends, .not. ieee_is_nan(ends))
-         if (is_in(1)) ends = [s(1), ends]
-         if (is_in(size(s)) .and. mod(size(ends), 2) == 1) ends = [ends, s(size(s))]
-      end associate
-      do k = 2, size(ends), 2
-         if (ends(k) > ends(k - 1)) then
-            words = words//', from '//to_text(ends(k - 1))//' to '//to_text(ends(k))// &
-               ', width '//to_text(ends(k) - ends(k - 1))
-         else
-            words = words//', at '//to_text(ends(k))
-         end if
+      edges = pack(edges, .not. ieee_is_nan(edges))
+      pieces = points%ends()
+      do i = 1, size(pieces), 2
+         associate (first => pieces(i), last => pieces(i + 1), s => points%arc_length)
+            ends = pack(edges, edges >= s(first) .and. edges <= s(last))
+            if (is_in(first)) ends = [s(first), ends]
+            if (is_in(last) .and. mod(size(ends), 2) == 1) ends = [ends, s(last)]
+         end associate
+         do k = 2, size(ends), 2
+            if (ends(k) > ends(k - 1)) then
+               words = words//', from '//to_text(ends(k - 1))//' to '//to_text(ends(k))// &
+                  ', width '//to_text(ends(k) - ends(k - 1))
+            else
+               words = words//', at '//to_text(ends(k))
+            end if
+         end do
       end do
       words = words(3:)
    end function zones

@@ -321,15 +321,17 @@ contains
       if (size(values) == 0) values = [ieee_value(1.0_dp, ieee_quiet_nan)]
    end function values_of
 
-   !> Whether an arc length lies on an interface.
+   !> Whether an arc length lies on a piece of an interface.
    pure logical function is_on_interface(s, points)
       real(dp), intent(in) :: s                        !! arc length [length]
       type(contact_points_type), intent(in) :: points  !! contact points of the interface
       ! The deck's digits and the sum of the sides may differ in the last places.
       real(dp), parameter :: rounding = 1.0e-9_dp
 
-      is_on_interface = s >= 0.0_dp .and. &
-         s <= points%arc_length(size(points%arc_length))*(1.0_dp + rounding)
+      associate (ends => points%arc_length(points%ends()))
+         is_on_interface = any(s >= ends(1::2)*(1.0_dp - rounding) .and. &
+            s <= ends(2::2)*(1.0_dp + rounding))
+      end associate
    end function is_on_interface
 
    !> The value at an arc length: between two contact points, or that of the nearest contact point
@@ -356,6 +358,11 @@ contains
          return
       end if
       k = max(1, min(last - 1, count(points%arc_length <= s)))
+      if (.not. points%on_one_piece(k, k + 1)) then
+         ! At an end of a piece but for rounding.
+         values = values(minloc(abs(points%arc_length - s)))
+         return
+      end if
       share = (s - points%arc_length(k))/(points%arc_length(k + 1) - points%arc_length(k))
       values = [(1.0_dp - share)*values(k) + share*values(k + 1)]
    end subroutine select_position

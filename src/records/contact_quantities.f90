@@ -45,6 +45,8 @@ module contact_quantities
       description='y of the contact point on the undeformed slave'), &
       quantity_type('s', of_contact_points, 'length', is_geometry=.true., &
       description='arc length along the slave from the first contact point'), &
+      quantity_type('piece', of_contact_points, '-', is_integer=.true., is_geometry=.true., &
+      description='number of the piece of the faces, from 1'), &
       quantity_type('weight', of_contact_points, 'length^2', is_geometry=.true., &
       description='area of the contact point; times pressure it is the normal force'), &
       quantity_type('status', of_contact_points, '-', head='zone', width=5, is_integer=.true., &
@@ -140,6 +142,7 @@ contains
       type(contact_points_type), intent(in) :: points       !! contact points of the interface
       integer, intent(in) :: node_number(:)                !! (nodes) numbers in the deck
       real(dp), allocatable :: values(:)                   !! (m), empty for an unknown name
+      integer :: k
 
       select case (name)
       case ('slave_node')
@@ -152,6 +155,10 @@ contains
          values = points%position(2, :)
       case ('s')
          values = points%arc_length
+      case ('piece')
+         associate (ends => points%ends())
+            values = [(real(count(ends(1::2) <= k), dp), k=1, size(points%slave))]
+         end associate
       case ('weight')
          values = points%weight
       case default

@@ -218,7 +218,7 @@ contains
       end associate
    end function plane_warning
 
-   !> Reports every check at an arc length beyond the end of its interface.
+   !> Reports every check at an arc length that is on no piece of its interface.
    subroutine check_arc_lengths(model, interfaces, report)
       type(model_type), intent(in) :: model                !! its checks name known interfaces
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
@@ -237,11 +237,28 @@ contains
                if (to_upper(interfaces(k)%name) /= to_upper(trim(check%where(:at - 1)))) cycle
                if (is_on_interface(s, interfaces(k))) cycle
                call report%error(place_type(check%line, check%columns(2)), &
-                  'the arc length of contact pair '//interfaces(k)%name//' ends at '// &
-                  to_text(interfaces(k)%arc_length(size(interfaces(k)%arc_length))))
+                  'the arc length of contact pair '//interfaces(k)%name//' '//range_words( &
+                  interfaces(k)))
             end do
          end associate
       end do
    end subroutine check_arc_lengths
+
+   !> Where an interface has arc lengths, such as 'goes from 0 to 2, from 3 to 5'.
+   pure function range_words(points) result(words)
+      type(contact_points_type), intent(in) :: points
+      character(:), allocatable :: words
+      integer :: i
+
+      associate (s => points%arc_length(points%ends()))
+         words = 'ends at '//to_text(s(size(s)))
+         if (size(s) == 2) return
+         words = 'goes'
+         do i = 1, size(s), 2
+            words = words//trim(merge(' ', ',', i == 1))//' from '//to_text(s(i))//' to '// &
+               to_text(s(i + 1))
+         end do
+      end associate
+   end function range_words
 
 end module interface_reports

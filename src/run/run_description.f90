@@ -136,7 +136,7 @@ contains
             model%materials(model%sections(model%mesh%element_section(element))%material), &
             points => simulation%bodies%points)
             conductivity = sqrt(product(material%conductivity))
-            length = maxval(simulation%bodies%interfaces(i)%arc_length)
+            length = simulation%bodies%interfaces(i)%length()
             first = points%interface_start(i)
             last = points%interface_start(i + 1) - 1
          end associate

@@ -207,8 +207,8 @@ contains
          associate (row => first - 1 + k)
             ! A force that a gap of rounding takes away is none.
             rounding = no_gap*points%edge(k)*bodies%equilibrium%contact%alone(row)
-            if (next%contact%force(row) <= rounding) beside = resting_beside( &
-               next%resting(first:first - 1 + size(rests)), record%pressure, k)
+            if (next%contact%force(row) <= rounding) beside = resting_beside(points%beside(k), &
+               next%resting(first:first - 1 + size(rests)), record%pressure)
             if (beside > 0) then
                record%conductance(k) = record%conductance(beside)
             else if (rests(k)) then
@@ -223,14 +223,12 @@ contains
 
    !> A contact point beside another one that rests while none beside it presses; 0 for none. Where
    !> the law jumps, both conduct the same, between the values of the open and the closed law.
-   pure integer function resting_beside(resting, pressure, k)
+   pure integer function resting_beside(beside, resting, pressure)
+      integer, intent(in) :: beside(:)                     ! contact points beside it
       logical, intent(in) :: resting(:)                    ! (m)
       real(dp), intent(in) :: pressure(:)                  ! (m) 0 where it rests [stress]
-      integer, intent(in) :: k                             ! a contact point
-      integer, allocatable :: beside(:)
       integer :: n
 
-      beside = pack([k - 1, k + 1], [k > 1, k < size(resting)])
       n = findloc(resting(beside), .true., dim=1)
       resting_beside = 0
       if (n > 0 .and. .not. any(pressure(beside) > 0.0_dp)) resting_beside = beside(n)

@@ -410,7 +410,7 @@ contains
       do i = 1, size(interfaces)
          values = [values, (contact_values(traded(q)%name, interfaces(i), &
             record%contacts(i)), q=1, figure_count), &
-            closed_length(record%contacts(i), interfaces(i)%arc_length)]
+            closed_length(interfaces(i), record%contacts(i))]
       end do
       if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
          traded(q)%name == 'heat_rate'), q=1, figure_count), 0.0_dp]
