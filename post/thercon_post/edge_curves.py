@@ -10,14 +10,22 @@ def edge_curves(contact, key):
     each edge, from the increment at which it appears to that at which it goes.
 
     Each edge parts a zone from what is beside it. Two edges of successive increments are one if
-    both the zone and what is beside it overlap, however many edges each increment has.
+    both the zone and what is beside it overlap, however many edges each increment has. Those of one
+    piece of the faces are none of another.
     """
-    states = contact["status"][:, [0, -1]]
+    return [curve for piece in contact.pieces for curve in curves_of(contact, key, piece)]
+
+
+def curves_of(contact, key, piece):
+    """Return the curves of one piece."""
+    first, last = contact["s"][piece][[0, -1]]
+    states = contact["status"][:, piece][:, [0, -1]]
     inside = states == STICK if key == "stick" else states != OPEN
     curves, before = [], []  # before: the edges of the increment before, each with its curve
     for row, edges in enumerate(contact[f"edges_{key}"]):
         found = []
-        for edge in sides_of(edges, *inside[row], contact["s"][-1]):
+        own = edges[(edges >= first) & (edges <= last)]
+        for edge in sides_of(own, *inside[row], last):
             same = [old for old in before if is_one(old[0], edge)]
             if same:
                 old = min(same, key=lambda each: abs(each[0][1] - edge[1]))
@@ -39,8 +47,7 @@ def sides_of(edges, begins_inside, ends_inside, end):
 
     A zone that reaches the last contact point, at `end`, has an edge there.
     """
-    edges = [(edge, bool(begins_inside) == (k % 2 == 0))
-             for k, edge in enumerate(edges[~np.isnan(edges)].tolist())]
+    edges = [(edge, bool(begins_inside) == (k % 2 == 0)) for k, edge in enumerate(edges.tolist())]
     if ends_inside:
         edges.append((end, True))
     places = [-np.inf, *(edge for edge, _ in edges), np.inf]

@@ -113,16 +113,19 @@ class Picture:
             looks["mfc"] = "white" if quantity == "shear" else looks["color"]
             symbols = looks | {"linestyle": "none", "marker": marker}
             axes.plot(at[shown], values[shown], zorder=3, clip_on=False, **symbols)
-        if quantity != "heat_flux":
-            edges = self.edges("edges_contact", row)
-            edges = edges[(edges > at[0]) & (edges < at[-1])]  # no fall to zero at the face's end
-            order = np.argsort(np.append(at, edges), kind="stable")
-            at = np.append(at, edges)[order]
-            values = np.append(values, np.zeros(len(edges)))[order]
         if quantity == "mu_p":
             looks["lw"] = profile_legends.MU_P_WIDTH
-        for sign in (1, -1) if both else (1,):
-            axes.plot(at, sign * values, zorder=2, **looks)
+        for piece in self.contact.pieces:
+            places, heights = at[piece], values[piece]
+            if quantity != "heat_flux":
+                edges = self.edges("edges_contact", row)
+                # no fall to zero at the face's end
+                edges = edges[(edges > places[0]) & (edges < places[-1])]
+                order = np.argsort(np.append(places, edges), kind="stable")
+                places = np.append(places, edges)[order]
+                heights = np.append(heights, np.zeros(len(edges)))[order]
+            for sign in (1, -1) if both else (1,):
+                axes.plot(places, sign * heights, zorder=2, **looks)
         return drawn
 
     def inside(self):

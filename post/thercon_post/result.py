@@ -42,7 +42,7 @@ FIELD_SOURCES = {
 
 
 # Datasets of a contact that hold one value a contact point.
-GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "weight")
+GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "piece", "weight")
 # Those that every contact has of its points at the increments, and of its edges.
 STATES = ("pressure", "status")
 EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
@@ -79,6 +79,12 @@ class Contact:
     def get(self, key):
         """Return the dataset `key`, or None where the deck does not model it."""
         return self.data.get(key)
+
+    @property
+    def pieces(self):
+        """Return the pairs of each piece of the faces, as slices."""
+        starts = [0, *np.flatnonzero(np.diff(self.data["piece"])) + 1, len(self.data["piece"])]
+        return [slice(first, last) for first, last in zip(starts, starts[1:])]
 
     def totals(self):
         """Return the quantities of the whole contact by name, forces first: one value an
@@ -331,7 +337,9 @@ class Result:
         """Return the datasets of a contact by name."""
         points = len(numbers(group, "x", like=(None,)))
         need(group, points > 0, "there are no contact points")
-        data = {key: numbers(group, key, like=(points,), finite=True) for key in GEOMETRY}
+        data = {"piece": np.ones(points)}  # files of earlier versions have faces of one piece
+        data |= {key: numbers(group, key, like=(points,), finite=True) for key in GEOMETRY
+                 if key in group or key not in data}
         states = {key: numbers(group, key, like=(self.increments, points)) for key in STATES}
         edges = {key: numbers(group, key, like=(self.increments, None)[: 1 + key.startswith("edges")])
                  for key in EDGES}

@@ -77,14 +77,15 @@ def shares(axes, values, axis):
 def states_at(picture, axes, u, v):
     """Return the states (loads, places) of the nearest increments and pairs, at shares of the axes.
 
-    They are NO_STATE on the curves of edges, before the first increment and pair, and behind the
-    last.
+    They are NO_STATE on the curves of edges, before the first increment and pair, behind the last,
+    and between pieces of the faces.
     """
     loads, places = shares(axes, picture.abscissa, 0), shares(axes, picture.coordinate, 1)
     row = np.argmin(np.abs(u[:, None] - loads), axis=1)
     pair = np.argmin(np.abs(v[:, None] - places), axis=1)
     states = picture.status[np.ix_(row, pair)].astype(int)
-    states[:, is_outside(v, places)] = NO_STATE
+    on_faces = [~is_outside(v, places[piece]) for piece in picture.contact.pieces]
+    states[:, ~np.any(on_faces, axis=0)] = NO_STATE
     if len(loads) == 1:  # its names stand beside its marks
         return states
     states[is_outside(u, loads)] = NO_STATE

@@ -181,23 +181,26 @@ class Picture:
         return low - room, high + room
 
     def draw_zones(self, axes):
-        """Tint the increments at which all points are closed alike: no edge inside shows these."""
-        alike = (self.status == self.status[:, :1]).all(axis=1) & (self.status[:, 0] != OPEN)
-        if not alike.any():
-            return
-        load, place = between(self.abscissa), between(self.coordinate)
+        """Tint the increments at which all points of a piece are closed alike: no edge inside shows
+        these."""
+        load = between(self.abscissa)
         if self.log:
             load = 10.0 ** between(np.log10(self.abscissa))
-        axes.pcolormesh(
-            load,
-            place[[0, -1]],
-            np.where(alike, self.status[:, 0], OPEN)[None, :],
-            cmap=ListedColormap(TINTS),
-            norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
-            edgecolors="face",  # no light seams
-            linewidth=0.15,
-            zorder=0,
-        )
+        for piece in self.contact.pieces:
+            status = self.status[:, piece]
+            alike = (status == status[:, :1]).all(axis=1) & (status[:, 0] != OPEN)
+            if not alike.any():
+                continue
+            axes.pcolormesh(
+                load,
+                between(self.coordinate[piece])[[0, -1]],
+                np.where(alike, status[:, 0], OPEN)[None, :],
+                cmap=ListedColormap(TINTS),
+                norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
+                edgecolors="face",  # no light seams
+                linewidth=0.15,
+                zorder=0,
+            )
 
     def draw_states(self, axes):
         """Draw the raw state of every pair as a small mark behind the curves."""

@@ -90,6 +90,7 @@ def contact_data(result, contact):
         "name": contact.name,
         "axis": name,
         "at": packed(coordinate),
+        "pieces": [[piece.start, piece.stop - 1] for piece in contact.pieces],
         "windows": dict(zip(("zones", "profiles"), windows)),
         "parts": {
             key: contact.part_words(coordinate, window, unit)

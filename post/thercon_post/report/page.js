@@ -195,12 +195,14 @@ function profile(id, title, quantities, label, zero, caption) {
             all.push(factor * whole[i]);
             if (Math.floor(i / m) === row) now.push(factor * whole[i]);
          }
-      const values = Array.from(rowOf(whole, m), v => factor * v);
-      const points = values.map((v, i) => [c.at[i], v, false]);
-      // Tractions end where the contact does.
-      if (zero) for (const e of finite(rowOf(c.edges.contact, 4)))
-         if (e > c.at[0] && e < c.at[m - 1]) points.push([e, 0, true]);
-      points.sort((a, b) => a[0] - b[0]);
+      const values = Array.from(rowOf(whole, m), v => factor * v), points = [];
+      for (const [first, last] of c.pieces) {
+         const piece = values.slice(first, last + 1).map((v, i) => [c.at[first + i], v, false]);
+         // Tractions end where the contact does.
+         if (zero) for (const e of finite(rowOf(c.edges.contact, 4)))
+            if (e > c.at[first] && e < c.at[last]) piece.push([e, 0, true]);
+         points.push(...piece.sort((a, b) => a[0] - b[0]), [NaN, NaN, true]);
+      }
       lines.push({x: points.map(p => p[0]), y: points.map(p => p[1]), plain: points.map(p => p[2]),
          colour, dash, name, mark: !dash, hollow: key === 'shear'});
    }

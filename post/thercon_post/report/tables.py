@@ -102,7 +102,7 @@ def bounds(result):
 
 def bound_row(result, contact, key, value):
     """Return value, bound and its parts; words where nothing is known of them, or to be known."""
-    if key.startswith("edge_") and value >= contact["s"][-1]:
+    if key.startswith("edge_") and value in [contact["s"][piece][-1] for piece in contact.pieces]:
         return ["", number(value), "none: end of the face", "", "–", "–", "–"]
     _, errors, why = result.errors_of(contact.name).get(key, ("", np.full(5, np.nan), ""))
     return ["", number(value), *bound_cells(errors, why, "")]
