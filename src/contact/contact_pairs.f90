@@ -339,6 +339,8 @@ contains
             if (allocated(error)) return
             if (definition%pairing /= pairing_nodes) mismatch = mismatch_of_pairs(mesh, pieces(i))
          end if
+         if (len(mismatch) > 0 .and. size(masters) > 1) mismatch = mismatch//', on the nearest of '// &
+            to_text(size(masters))//' lines of surface '//mesh%surfaces(definition%master)%name
          if (definition%pairing == pairing_nodes) then
             if (len(mismatch) > 0) then
                call set_error(error, status_deck, definition%title()//': '// &

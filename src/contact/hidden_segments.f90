@@ -1,22 +1,22 @@
-!> What lines of the surfaces of an interface hide from each other: where these consist of several
-!> lines, a slave meets the nearest master, and nothing through another line, as from the wall of a
-!> hole through the body.
+!> What lines of the surfaces of an interface hide from each other. Where these consist of several
+!> lines, a slave meets the nearest of those of the master that face it, and a master the nearest of
+!> those of the slave: no body is seen through another one, nor from the wall of a hole through the
+!> body around.
 module hidden_segments
    use chain_geometry, only: side_positions, side_total
    use kinds, only: dp
    use mortar_sides, only: beside_line, face_line_type, insert_kinks, no_segment, opposite_at, &
-      project, side_opposite, slave_side_type
-   use shape_functions, only: side_shape
+      project, slave_side_type
+   use shape_functions, only: side_shape, side_slope
    implicit none
    private
    public :: hide_segments
 
-   real(dp), parameter :: at_end = 1.0e-9_dp   !! of a side, or of the way to the master: rounding
+   real(dp), parameter :: at_end = 1.0e-9_dp   !! of a side's coordinate: rounding
 
 contains
 
-   !> Takes the segments away whose master another line hides: it lies between, or it is another
-   !> line of the master and nearer.
+   !> Takes away what another line of the slave or of the master hides.
    pure subroutine hide_segments(side, master, other, is_master)
       type(slave_side_type), intent(inout) :: side(:)   !! of the slave, with their segments
       type(face_line_type), intent(in) :: master, other
@@ -66,34 +66,32 @@ contains
       end associate
    end function way_to
 
-   !> Whether another line lies on the way to the master, or is a nearer master.
+   !> Whether another line of the master that faces the slave is nearer to it, or another line of the
+   !> slave that faces the master is nearer to that.
    pure logical function is_hidden(side, xi, way, other, is_master)
       type(slave_side_type), intent(in) :: side
       real(dp), intent(in) :: xi, way(2)
       type(face_line_type), intent(in) :: other
       logical, intent(in) :: is_master
-      real(dp) :: beside_it(size(other%x, 2)), eta, part, to_other(2)
+      real(dp) :: apart(2), beside_it(size(other%x, 2)), eta, facing
       integer :: nodes(other%side_nodes), s
 
       is_hidden = .false.
-      if (is_master) then
-         s = side_opposite(side, xi, other)
-         if (s > 0) is_hidden = norm2(way_to(side, xi, other, s)) < norm2(way)
-      end if
       associate (psi => side_shape(size(side%nodes), xi))
          beside_it = beside_line(matmul(side%normal, psi), matmul(side%x, psi), other%x)
       end associate
       do s = 1, side_total(size(other%x, 2), other%side_nodes, other%closed)
-         if (is_hidden) return
          nodes = side_positions(s, other%side_nodes, size(other%x, 2))
          if (beside_it(nodes(1))*beside_it(nodes(size(nodes))) > 0.0_dp) cycle
          eta = 0.0_dp
          call project(side, xi, other%x(:, nodes), eta)
          if (abs(eta) > 1.0_dp + at_end) cycle
-         to_other = way_to(side, xi, other, s)
-         part = dot_product(to_other, way)
-         is_hidden = part > at_end*dot_product(way, way) .and. &
-            part < (1.0_dp - at_end)*dot_product(way, way)
+         facing = other%outward*dot_product(beside_it(nodes), side_slope(size(nodes), eta))
+         if (facing >= 0.0_dp .eqv. is_master) cycle
+         apart = way_to(side, xi, other, s)
+         if (.not. is_master) apart = apart - way
+         is_hidden = norm2(apart) < norm2(way)
+         if (is_hidden) return
       end do
    end function is_hidden
 
