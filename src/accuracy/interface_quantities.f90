@@ -122,14 +122,14 @@ contains
    pure real(dp) function closed_length(points, contact) result(length)
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! its state
+      real(dp), allocatable :: s(:)
       integer :: k
 
       length = 0.0_dp
       do k = 1, size(points%arc_length)
          if (contact%contact_state(k) == contact_open) cycle
-         associate (s => points%arc_length([k, points%beside(k)]))
-            length = length + 0.5_dp*(maxval(s) - minval(s))
-         end associate
+         s = points%arc_length([k, points%beside(k)])
+         length = length + 0.5_dp*(maxval(s) - minval(s))
       end do
    end function closed_length
 
@@ -144,8 +144,8 @@ contains
       if (ieee_is_nan(edge) .or. size(points%arc_length) < 2) return
       associate (s => points%arc_length)
          k = point_before(s, edge)
-         if (edge >= s(k) .and. edge < s(k + 1) .and. points%on_one_piece(k, k + 1)) &
-            edge_spacing = s(k + 1) - s(k)
+         if (.not. points%on_one_piece(k, k + 1)) return
+         if (edge >= s(k) .and. edge < s(k + 1)) edge_spacing = s(k + 1) - s(k)
       end associate
    end function edge_spacing
 

@@ -76,8 +76,9 @@ contains
       is_alone = ieee_is_nan(scatter) .or. all(contact%contact_state == contact%contact_state(1))
       known_scatter = known(merge(0.0_dp, scatter, is_alone), has_hats)
       bounds = merge(of_change_alone, of_change, has_hats .or. is_alone)
-      if (any(points%at_corner .and. contact%contact_state(points%ends()) /= contact_open)) &
+      if (any(points%at_corner .and. contact%contact_state(points%ends()) /= contact_open)) then
          bounds = max(bounds, of_change_at_corner)
+      end if
       bounds = bounds*abs(change) + known_scatter
       ! Where displacements and temperatures are prescribed, force and heat rate err as the energy,
       ! by the square of its norm's error.

@@ -3,22 +3,21 @@
 !> points of a *TIE, whose relative displacements and jumps of temperature are zero, are made alike.
 module contact_pairs
    use, intrinsic :: iso_fortran_env, only: real32
-   use chain_geometry, only: arc_lengths, at_tips, chain_tangents, edge_lengths, tributary_areas
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
    use contact_pieces, only: join_pieces
-   use contact_points, only: contact_points_type, no_radius, small_offset
+   use contact_points, only: contact_points_type, small_offset
    use drawn_lines, only: drawn_line_type
-   use element_kinds, only: axisymmetric, element_corner_count
+   use element_kinds, only: axisymmetric
    use errors, only: error_type, set_error, status_deck
    use interface_checks, only: blame_corner, check_corner, check_covered, check_folds, &
-      check_opposite, check_shared, check_sides, compare_lines
+      check_opposite, check_shared, compare_lines
    use interface_warnings, only: mismatch_of_pairs
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
    use mortar_points, only: other_chains_type, set_mortar_points
+   use node_pairs, only: goes_on, keep_points, set_node_pairs
    use rigid_masters, only: check_facing, follow_reference, opposite_line, sampled_line
-   use sum_lists, only: differences, single_values, sum_list_type
    use surface_chains, only: align_chain, chain_faces, facing_chain, surface_chain_type
    use text, only: to_text
    implicit none
@@ -32,138 +31,8 @@ module contact_pairs
    !> What coordinates in single precision leave between two faces, of the largest coordinate: half
    !> a unit in the last place along both axes of both.
    real(dp), parameter :: single = 2*epsilon(1.0_real32)
-   real(dp), parameter :: weightless = 0.01_dp   !! part of its neighbour's weight below which the
-   !! corner on the axis has none
-   !> Angle of a body from which on its outline goes on at a node: it turns away by 45 degrees.
-   real(dp), parameter :: going_on = 0.75_dp*acos(-1.0_dp)
 
 contains
-
-   !> The contact points of two lines with equally many nodes: the k-th nodes along both. A node
-   !> that both lines end in, the tip of a crack, is none.
-   !> Errors: nodes that are not opposite, bodies on the wrong side, sides without tributary length.
-   subroutine set_node_pairs(mesh, definition, slave, master, thickness, points, error)
-      type(mesh_type), intent(in) :: mesh
-      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
-      type(surface_chain_type), intent(in) :: slave, master   !! both from the slave's first node on
-      real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
-      type(contact_points_type), intent(inout) :: points      !! its name and its axis are set
-      type(error_type), allocatable, intent(out) :: error
-      integer :: first, k, last
-      integer, allocatable :: kept(:)
-      logical :: on_drawing
-
-      points%pairing = pairing_nodes
-      on_drawing = allocated(master%tangent)
-      points%slave = slave%nodes
-      points%master = master%nodes
-      call set_weights(mesh, slave, master, thickness, points%about_axis, points%weight)
-      first = 1
-      last = size(slave%nodes)
-      if (slave%nodes(1) == master%nodes(1)) first = 2
-      if (slave%nodes(last) == master%nodes(last)) last = last - 1
-      call set_geometry(mesh, slave, master, points)
-      if (.not. on_drawing) then
-         call check_sides(mesh, definition, slave, master, [first, last], error)
-         if (allocated(error)) return
-      end if
-      if (.not. (slave%closed .or. master%closed)) then
-         ! One face may end at a corner of its body where the other goes on, as a punch on a wider
-         ! body: judged by the outlines beyond the lines.
-         associate (s => slave%nodes([1, size(slave%nodes)]), &
-            m => master%nodes([1, size(slave%nodes)]))
-            points%at_corner = [(body_angle(mesh, s(k)) > going_on .neqv. &
-               body_angle(mesh, m(k)) > going_on, k=1, 2)]
-         end associate
-      end if
-      points%side_nodes = slave%side_nodes
-      points%edge = edge_lengths(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
-      kept = [(k, k=first, last)]
-      if (on_drawing) kept = pack(kept, norm2(master%tangent(:, kept), dim=1) > 0.0_dp)
-      call keep_points(kept, points)
-      ! 0 is the weight of a corner on the axis or at the tip of quarter points.
-      if (.not. all(points%weight >= 0.0_dp)) then
-         call set_error(error, status_deck, definition%title()//': no length of the face '// &
-            'belongs to slave node '//to_text(mesh%node_number(points%slave(minloc( &
-            points%weight, dim=1))))//'; its midside nodes are too far from the middle')
-         return
-      end if
-      points%difference = differences(points%slave, points%master)
-      points%slave_mean = single_values(points%slave)
-      points%master_mean = single_values(points%master)
-      points%face_node = [points%slave, points%master]
-      points%at_face_nodes = single_values([(k, k=1, size(points%slave)), &
-         (k, k=1, size(points%master))])
-   end subroutine set_node_pairs
-
-   !> Weights on the line midway between the faces. On three-node sides the integral vanishes for a
-   !> corner on the axis but for the curvature of the side, and at the tip of quarter points but for
-   !> the radius; what these leave goes to the neighbours.
-   subroutine set_weights(mesh, slave, master, thickness, about_axis, weight)
-      type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(in) :: slave, master
-      real(dp), intent(in) :: thickness
-      logical, intent(in) :: about_axis
-      real(dp), allocatable, intent(out) :: weight(:)
-      real(dp) :: middle(2, size(slave%nodes))
-      logical :: without(size(slave%nodes))
-      integer :: k, n
-      integer, allocatable :: beside(:)
-
-      n = size(slave%nodes)
-      middle = 0.5_dp*(mesh%coordinates(:, slave%nodes) + mesh%coordinates(:, master%nodes))
-      without = at_tips(middle, slave%side_nodes, slave%closed)
-      weight = tributary_areas(middle, slave%side_nodes, slave%closed, merge(0.0_dp, thickness, &
-         about_axis))
-      if (about_axis .and. slave%side_nodes == 3 .and. .not. slave%closed) then
-         without(1) = without(1) .or. is_bare(1, 2)
-         without(n) = without(n) .or. is_bare(n, n - 1)
-      end if
-      do k = 1, n
-         if (.not. without(k)) cycle
-         beside = modulo([k - 1, k + 1] - 1, n) + 1
-         if (.not. slave%closed) beside = pack(beside, abs(beside - k) == 1)
-         weight(beside) = weight(beside) + weight(k)/size(beside)
-         weight(k) = 0.0_dp
-      end do
-   contains
-      pure logical function is_bare(corner, neighbour)
-         integer, intent(in) :: corner, neighbour
-
-         is_bare = maxval(abs(mesh%coordinates(1, [slave%nodes(corner), master%nodes(corner)]))) &
-            <= no_radius*maxval(abs(middle(1, :))) .and. &
-            abs(weight(corner)) < weightless*abs(weight(neighbour))
-      end function is_bare
-   end subroutine set_weights
-
-   !> Positions, arc length, common tangents and normals, and gaps. An unturned line has its body on
-   !> the left.
-   subroutine set_geometry(mesh, slave, master, points)
-      type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(in) :: slave, master
-      type(contact_points_type), intent(inout) :: points
-      real(dp) :: side
-      integer :: k
-
-      associate (x => mesh%coordinates, n => slave%side_nodes, closed => slave%closed)
-         points%position = x(:, slave%nodes)
-         points%arc_length = arc_lengths(points%position, n, closed)
-         points%tangent = chain_tangents(points%position, n, closed)
-         if (allocated(master%tangent)) then
-            points%tangent = points%tangent + master%tangent
-         else
-            points%tangent = points%tangent + chain_tangents(x(:, master%nodes), n, closed)
-         end if
-         side = merge(-1.0_dp, 1.0_dp, slave%turned)
-         allocate (points%normal, mold=points%tangent)
-         do k = 1, size(slave%nodes)
-            points%tangent(:, k) = points%tangent(:, k)/max(norm2(points%tangent(:, k)), &
-               tiny(1.0_dp))
-            points%normal(:, k) = side*[points%tangent(2, k), -points%tangent(1, k)]
-         end do
-         points%initial_gap = sum((x(:, master%nodes) - points%position)*points%normal, dim=1)
-      end associate
-   end subroutine set_geometry
 
    !> The contact points of one *CONTACT PAIR. Without PAIRING= they are node pairs where the
    !> lines of both surfaces have equally many nodes that lie opposite each other.
@@ -339,8 +208,10 @@ contains
             if (allocated(error)) return
             if (definition%pairing /= pairing_nodes) mismatch = mismatch_of_pairs(mesh, pieces(i))
          end if
-         if (len(mismatch) > 0 .and. size(masters) > 1) mismatch = mismatch//', on the nearest of '// &
-            to_text(size(masters))//' lines of surface '//mesh%surfaces(definition%master)%name
+         if (len(mismatch) > 0 .and. size(masters) > 1) then
+            mismatch = mismatch//', on the nearest of '//to_text(size(masters))// &
+               ' lines of surface '//mesh%surfaces(definition%master)%name
+         end if
          if (definition%pairing == pairing_nodes) then
             if (len(mismatch) > 0) then
                call set_error(error, status_deck, definition%title()//': '// &
@@ -394,7 +265,7 @@ contains
       if (size(points%slave) == 0) return
       associate (ends => master%nodes([1, size(master%nodes)]))
          if (.not. master%closed) call measure_ends(mesh%coordinates(:, ends), points)
-         where ([(body_angle(mesh, ends(k)) > going_on, k=1, 2)]) points%to_end = huge(1.0_dp)
+         where ([(goes_on(mesh, ends(k)), k=1, 2)]) points%to_end = huge(1.0_dp)
       end associate
    end subroutine find_ends
 
@@ -425,31 +296,9 @@ contains
          call drawing%find_nearest(mesh%coordinates(:, node), piece, t, foot, beyond)
          at_end = small_offset*points%edge(merge(1, size(points%edge), k == 1))
          alone(k) = beyond > at_end .or. (drawing%goes_on(foot, at_end) .neqv. &
-            body_angle(mesh, node) > going_on)
+            goes_on(mesh, node))
       end do
    end function ends_alone
-
-   !> Angle that the elements at a corner fill.
-   pure real(dp) function body_angle(mesh, node)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: node
-      integer :: e, k
-
-      body_angle = 0.0_dp
-      do e = 1, size(mesh%element_number)
-         associate (n => element_corner_count(mesh%element_kind(e)))
-            k = findloc(mesh%element_nodes(:n, e), node, dim=1)
-            if (k == 0) cycle
-            associate (x => mesh%coordinates(:, mesh%element_nodes(:n, e)))
-               associate (leaving => x(:, mod(k, n) + 1) - x(:, k), &
-                  entering => x(:, mod(k + n - 2, n) + 1) - x(:, k))
-                  body_angle = body_angle + atan2(leaving(1)*entering(2) - &
-                     leaving(2)*entering(1), dot_product(leaving, entering))
-               end associate
-            end associate
-         end associate
-      end do
-   end function body_angle
 
    !> The points of one *TIE. Those whose gap exceeds POSITION TOLERANCE= are left out.
    !> Errors: as make_contact_points; no point within the tolerance.
@@ -471,30 +320,5 @@ contains
          ': no point of the slave is within POSITION TOLERANCE='//to_text(tie%tolerance)// &
          ' of the master, the nearest one is '//to_text(nearest)//' from it', tie%faces%card)
    end subroutine make_tie_points
-
-   !> Keeps some of the contact points.
-   pure subroutine keep_points(kept, points)
-      integer, intent(in) :: kept(:)
-      type(contact_points_type), intent(inout) :: points
-      type(sum_list_type) :: difference
-      integer :: k
-
-      points%slave = points%slave(kept)
-      points%master = points%master(kept)
-      points%position = points%position(:, kept)
-      points%arc_length = points%arc_length(kept)
-      points%weight = points%weight(kept)
-      points%normal = points%normal(:, kept)
-      points%tangent = points%tangent(:, kept)
-      points%initial_gap = points%initial_gap(kept)
-      points%edge = points%edge(kept)
-      if (points%difference%count == 0) return
-      call difference%reserve(size(kept), size(points%difference%value))
-      do k = 1, size(kept)
-         call difference%add(points%difference%values_of(kept(k)), &
-            points%difference%coefficients_of(kept(k)))
-      end do
-      points%difference = difference
-   end subroutine keep_points
 
 end module contact_pairs

@@ -8,8 +8,8 @@ module contact_points
    use sum_lists, only: sum_list_type
    implicit none
    private
-   public :: contact_row_type, contact_points_type, ends_of_pieces, join_rows, never_approached, no_radius, on_axis, &
-      small_offset
+   public :: contact_row_type, contact_points_type, ends_of_pieces, join_rows, never_approached, &
+      no_radius, on_axis, small_offset
 
    real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
    real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
@@ -180,10 +180,10 @@ contains
    !> Length of all pieces, each from its first to its last contact point [length].
    pure real(dp) function length(self)
       class(contact_points_type), intent(in) :: self
+      real(dp), allocatable :: s(:)
 
-      associate (s => self%arc_length(self%ends()))
-         length = sum(s(2::2) - s(1::2))
-      end associate
+      s = self%arc_length(self%ends())
+      length = sum(s(2::2) - s(1::2))
    end function length
 
    !> Whether a contact point lies on the axis of an axisymmetric model.

@@ -20,7 +20,7 @@ contains
    pure subroutine hide_segments(side, master, other, is_master)
       type(slave_side_type), intent(inout) :: side(:)   !! of the slave, with their segments
       type(face_line_type), intent(in) :: master, other
-      logical, intent(in) :: is_master                  !! whether the other line is one of the master
+      logical, intent(in) :: is_master                  !! whether the other line is the master's
       real(dp), allocatable :: kinks(:)
       integer, allocatable :: opposite(:)
       real(dp) :: xi
@@ -36,8 +36,9 @@ contains
             xi = 0.5_dp*(kinks(j) + kinks(j + 1))
             opposite(j) = opposite_at(side(s), xi)
             if (opposite(j) == 0) cycle
-            if (is_hidden(side(s), xi, way_to(side(s), xi, master, opposite(j)), other, is_master)) &
-               opposite(j) = 0
+            associate (way => way_to(side(s), xi, master, opposite(j)))
+               if (is_hidden(side(s), xi, way, other, is_master)) opposite(j) = 0
+            end associate
          end do
          side(s)%covered = [1.0_dp, -1.0_dp]
          do j = 1, size(opposite)
@@ -66,8 +67,8 @@ contains
       end associate
    end function way_to
 
-   !> Whether another line of the master that faces the slave is nearer to it, or another line of the
-   !> slave that faces the master is nearer to that.
+   !> Whether another line of the master that faces the slave is nearer to it, or another line of
+   !> the slave that faces the master is nearer to that.
    pure logical function is_hidden(side, xi, way, other, is_master)
       type(slave_side_type), intent(in) :: side
       real(dp), intent(in) :: xi, way(2)

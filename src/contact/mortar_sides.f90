@@ -6,8 +6,8 @@ module mortar_sides
    implicit none
    private
    public :: face_line_type, opposed_shapes_type, slave_side_type
-   public :: beside_line, hats, insert_kinks, no_segment, opposed_shapes, opposite_at, opposite_coordinate, &
-      outward_normals, project, side_opposite, sides_of
+   public :: beside_line, hats, insert_kinks, no_segment, opposed_shapes, opposite_at, &
+      opposite_coordinate, outward_normals, project, sides_of
 
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
    integer, parameter :: curved_parts = 4           !! of a segment between sides that are not plain

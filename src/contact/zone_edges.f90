@@ -48,7 +48,8 @@ module zone_edges
       !> node spacings from a contact point to the next, where gaps are means with hat functions; 0
       !> for node pairs
       integer :: hat_spacings = 0
-      !> Contact points that are the last of their pieces, but for the last piece; unallocated for one
+      !> contact points that are the last of their pieces, but for the last piece; unallocated for
+      !> one piece
       integer, allocatable :: cuts(:)
    end type contact_profile_type
 

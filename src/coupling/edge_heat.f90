@@ -20,8 +20,8 @@ module edge_heat
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
-   use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, piece_of, &
-      turned
+   use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, &
+      piece_of, turned
    implicit none
    private
    public :: edge_integral_type, edge_heat_type, find_edge_integrals, edge_heat_at

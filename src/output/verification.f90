@@ -327,11 +327,11 @@ contains
       type(contact_points_type), intent(in) :: points  !! contact points of the interface
       ! The deck's digits and the sum of the sides may differ in the last places.
       real(dp), parameter :: rounding = 1.0e-9_dp
+      real(dp), allocatable :: ends(:)
 
-      associate (ends => points%arc_length(points%ends()))
-         is_on_interface = any(s >= ends(1::2)*(1.0_dp - rounding) .and. &
-            s <= ends(2::2)*(1.0_dp + rounding))
-      end associate
+      ends = points%arc_length(points%ends())
+      is_on_interface = any(s >= ends(1::2)*(1.0_dp - rounding) .and. &
+         s <= ends(2::2)*(1.0_dp + rounding))
    end function is_on_interface
 
    !> The value at an arc length: between two contact points, or that of the nearest contact point

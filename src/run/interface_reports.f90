@@ -248,17 +248,17 @@ contains
    pure function range_words(points) result(words)
       type(contact_points_type), intent(in) :: points
       character(:), allocatable :: words
+      real(dp), allocatable :: s(:)
       integer :: i
 
-      associate (s => points%arc_length(points%ends()))
-         words = 'ends at '//to_text(s(size(s)))
-         if (size(s) == 2) return
-         words = 'goes'
-         do i = 1, size(s), 2
-            words = words//trim(merge(' ', ',', i == 1))//' from '//to_text(s(i))//' to '// &
-               to_text(s(i + 1))
-         end do
-      end associate
+      s = points%arc_length(points%ends())
+      words = 'ends at '//to_text(s(size(s)))
+      if (size(s) == 2) return
+      words = 'goes'
+      do i = 1, size(s), 2
+         words = words//trim(merge(' ', ',', i == 1))//' from '//to_text(s(i))//' to '// &
+            to_text(s(i + 1))
+      end do
    end function range_words
 
 end module interface_reports

@@ -85,7 +85,8 @@ def states(result):
                   for name in ("normal_force", "shear_force", "heat_rate")}
         totals["edges"] = np.sort(np.hstack([pair["x"][0] + pair["edges_contact"][()] for pair in pairs]))[:, :4]
         points = file["VTKHDF/PointData"]
-        fields = {name: points[name][()] for name in ("displacement", "temperature")}
+        fields = {name: points[name][()] for name in (
+            "displacement", "temperature", "contact_pressure", "contact_heat_flux", "contact_status")}
     return found | totals | fields
 
 
@@ -347,3 +348,18 @@ def test_a_line_between_parts_of_another_one_is_refused(tmp_path):
     process = run("check", path)
     assert process.returncode == 1
     assert "a line of surface GROUND lies between parts of another one; make surfaces of these" in process.stderr
+
+
+@pytest.mark.parametrize(("foot", "slide", "told"), [(1, 0.2, True), (2, -0.2, True), (1, 0.02, False)])
+def test_a_foot_that_slides_past_its_own_master_is_warned_of(tmp_path, foot, slide, told):
+    """Not only where the last line of the master ends, or the first one begins."""
+    path = deck(tmp_path / "d.inp", 2, 2, True, step="*STATIC\n1., 1.")
+    text = path.read_text().replace("*FRICTION\n0.4\n", "")
+    for k in (1, 2):
+        text = text.replace(f"S{k}.TOP, 1, 1, 0.0002", f"S{k}.TOP, 1, 1, {slide if k == foot else 0.0}")
+        text = "\n".join(line for line in text.splitlines() if not line.startswith(f"S{k}.TOP, 11"))
+        text = text.replace(f"S{k}.RIGHT, 2, 2, 0.004", f"S{k}.RIGHT, 2, 2, {-0.004 * k!r}")
+    path.write_text(text + "\n")
+    stderr = run("run", path, "--out", tmp_path).stderr
+    assert ("slides past the end of the master surface by 0.19" in stderr) == told
+    assert not told or f"slave node {'2' if foot == 1 else '3'}0" in stderr
