@@ -11,7 +11,7 @@ module contact_pairs
    use element_kinds, only: axisymmetric
    use errors, only: error_type, set_error, status_deck
    use interface_checks, only: blame_corner, check_corner, check_covered, check_folds, &
-      check_opposite, check_shared, compare_lines
+      check_idle, check_opposite, check_shared, compare_lines
    use interface_warnings, only: mismatch_of_pairs
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
@@ -124,6 +124,9 @@ contains
          i=1, size(pieces))]), error)
       if (allocated(error)) return
       call join_pieces(mesh, definition, slaves, [(i, i=1, size(slaves))], pieces, points, error)
+      if (allocated(error)) return
+      call check_idle(drawn, definition, slaves, [master], reshape([(size(pieces(i)%slave) > 0, &
+         i=1, size(pieces))], [size(pieces), 1]), points%idle, error)
    end subroutine set_rigid_points
 
    !> The contact points of the lines of two surfaces.
@@ -164,6 +167,9 @@ contains
       if (allocated(error)) return
       call join_pieces(mesh, definition, slaves, [(slave_of(k), k=1, size(pieces))], pieces, &
          points, error)
+      if (allocated(error)) return
+      call check_idle(mesh, definition, slaves, masters, transpose(reshape([(size(pieces(k)%slave) &
+         > 0, k=1, size(pieces))], [size(masters), size(slaves)])), points%idle, error)
    contains
       pure integer function slave_of(piece)
          integer, intent(in) :: piece
@@ -195,11 +201,15 @@ contains
       type(contact_points_type) :: pieces(size(slaves))
       type(surface_chain_type) :: master
       character(:), allocatable :: advice, mismatch
-      integer :: i
+      logical :: meets(size(slaves), size(masters))
+      integer :: i, j
 
+      meets = .false.
       do i = 1, size(slaves)
          pieces(i) = points
-         master = masters(facing_chain(mesh, slaves(i), masters))
+         j = facing_chain(mesh, slaves(i), masters)
+         meets(i, j) = .true.
+         master = masters(j)
          call align_chain(mesh, slaves(i), master)
          if (definition%either_side) master%turned = .not. slaves(i)%turned
          call compare_lines(mesh, definition, slaves(i), master, mismatch, advice)
@@ -228,6 +238,8 @@ contains
          call find_ends(mesh, master, pieces(i))
       end do
       call join_pieces(mesh, definition, slaves, [(i, i=1, size(slaves))], pieces, points, error)
+      if (allocated(error)) return
+      call check_idle(mesh, definition, slaves, masters, meets, points%idle, error)
    end subroutine pair_lines
 
    !> Refuses lines without contact points: they run back, or the slave's goes round a corner.

@@ -62,6 +62,7 @@ module contact_points
       !> there is one piece
       integer, allocatable :: cuts(:)
       real(dp), allocatable :: edge(:)         !! (m) longest side of the slave there [length]
+      character(:), allocatable :: idle        !! lines that take no part; unallocated without one
       integer :: side_nodes = 2                !! contact points of a side, 2 or 3
       integer :: node_spacings = 1             !! of the slave, from a contact point to the next
       !> (corners of the slave) whether no master is opposite; unallocated for node pairs

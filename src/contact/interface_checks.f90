@@ -11,7 +11,7 @@ module interface_checks
    implicit none
    private
    public :: check_folds, check_shared, compare_lines, check_sides, check_opposite
-   public :: check_corner, check_covered, blame_corner
+   public :: check_corner, check_covered, check_idle, blame_corner
 
    !> Cosine between outward normals from which on faces look the same way: curved faces that part
    !> far from the contact may be at right angles there.
@@ -289,20 +289,70 @@ contains
       type(surface_chain_type), intent(in) :: slave, master   !! their lines
       integer, intent(in) :: points                           !! contact points found
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: tangents(2, size(slave%nodes)), outward(2)
-      integer :: k
 
       if (points > 0) return
       call set_error(error, status_deck, definition%title()// &
          ': no face of the master lies opposite the slave, along the normals of the slave')
-      tangents = chain_tangents(mesh%coordinates(:, slave%nodes), slave%side_nodes, slave%closed)
-      k = (size(slave%nodes) + 1)/2
-      outward = [tangents(2, k), -tangents(1, k)]
-      if (slave%turned) outward = -outward
-      associate (x => mesh%coordinates)
-         call blame_side(mesh, definition, dot_product(outward, &
-            sum(x(:, master%nodes), dim=2)/size(master%nodes) - x(:, slave%nodes(k))), error)
-      end associate
+      call blame_side(mesh, definition, ahead_of(mesh, slave, master%nodes), error)
    end subroutine check_covered
+
+   !> Names the lines of two surfaces that take no part; refuses those that look away from the other
+   !> surface.
+   subroutine check_idle(mesh, definition, slaves, masters, meets, idle, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition   !! the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slaves(:), masters(:)   !! lines of both surfaces
+      logical, intent(in) :: meets(:, :)      !! (slaves, masters) whether they have contact points
+      character(:), allocatable, intent(inout) :: idle          !! receives words on the lines
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(slaves)
+         if (.not. any(meets(i, :)) .and. .not. allocated(error)) call name_line(slaves(i), &
+            definition%slave, masters)
+      end do
+      do i = 1, size(masters)
+         if (.not. any(meets(:, i)) .and. .not. allocated(error)) call name_line(masters(i), &
+            definition%master, slaves)
+      end do
+
+   contains
+      subroutine name_line(line, surface, others)
+         type(surface_chain_type), intent(in) :: line
+         integer, intent(in) :: surface
+         type(surface_chain_type), intent(in) :: others(:)
+         character(:), allocatable :: words
+         integer :: k
+
+         words = 'the line of surface '//mesh%surfaces(surface)%name//' from node '// &
+            to_text(mesh%node_number(line%nodes(1)))//' to node '// &
+            to_text(mesh%node_number(line%nodes(size(line%nodes))))
+         if (ahead_of(mesh, line, [(others(k)%nodes, k=1, size(others))]) < &
+            -same_position*extent_of(mesh%coordinates)) then
+            call set_error(error, status_deck, definition%title()//': '//words// &
+               ' looks away from the other surface; name the faces opposite it', &
+               mesh%surfaces(surface)%card)
+            return
+         end if
+         if (allocated(idle)) words = idle//', '//words
+         idle = words
+      end subroutine name_line
+   end subroutine check_idle
+
+   !> How far the middle of some nodes lies in front of a line, seen from its middle.
+   pure real(dp) function ahead_of(mesh, line, nodes) result(ahead)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: line
+      integer, intent(in) :: nodes(:)
+      real(dp) :: tangents(2, size(line%nodes)), outward(2)
+      integer :: k
+
+      tangents = chain_tangents(mesh%coordinates(:, line%nodes), line%side_nodes, line%closed)
+      k = (size(line%nodes) + 1)/2
+      outward = [tangents(2, k), -tangents(1, k)]
+      if (line%turned) outward = -outward
+      ahead = dot_product(outward, sum(mesh%coordinates(:, nodes), dim=2)/size(nodes) - &
+         mesh%coordinates(:, line%nodes(k)))
+   end function ahead_of
 
 end module interface_checks

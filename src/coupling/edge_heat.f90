@@ -79,7 +79,7 @@ contains
             is_beside(first:last) = .false.
             if (.not. bodies%points%resolves_edge(i) .or. bodies%laws%removed(first)) cycle
             is_beside(first:last) = bodies%jump_index(first:last) > 0 .and. &
-               beside_edge(opening(first:last) > 0.0_dp, bodies%interfaces(i)%cuts)
+               beside_edge(opening(first:last) > 0.0_dp)
          end associate
       end do
       allocate (beside(count(is_beside)))
@@ -104,19 +104,16 @@ contains
       hats = beside(pack([(i, i=1, size(beside))], is_crossed))
    end subroutine find_edge_integrals
 
-   !> Contact points with an edge in the side before or behind them.
-   pure function beside_edge(is_open, cuts) result(beside)
-      logical, intent(in) :: is_open(:)                  ! (m)
-      integer, intent(in), optional :: cuts(:)           ! (pieces - 1) before which no side begins
+   !> Contact points with an edge in the side before or behind them, or beside a cut.
+   pure function beside_edge(is_open) result(beside)
+      logical, intent(in) :: is_open(:)
       logical :: beside(size(is_open))
-      logical :: has_edge(size(is_open) - 1)
       integer :: m
 
       m = size(is_open)
-      has_edge = is_open(:m - 1) .neqv. is_open(2:)
-      if (present(cuts)) has_edge(cuts) = .false.
-      beside = [has_edge, .false.]
-      beside(2:) = beside(2:) .or. has_edge
+      beside = .false.
+      beside(:m - 1) = is_open(:m - 1) .neqv. is_open(2:)
+      beside(2:) = beside(2:) .or. (is_open(:m - 1) .neqv. is_open(2:))
    end function beside_edge
 
    !> The integrals of the hat functions of an interface beside an edge.

@@ -127,6 +127,9 @@ contains
       type(contact_points_type), intent(in) :: points
       type(deck_report_type), intent(inout) :: report
 
+      if (allocated(points%idle)) call warn(model%contacts(i)%title()//': '//points%idle// &
+         ' takes no part: no face of the other surface is opposite, or other lines hide it; '// &
+         'leave it out, or name the faces that are missing')
       call warn(offset_warning(model%mesh, points))
       if (model%contacts(i)%has_clearance) then
          call warn(clearance_warning(model%mesh, points))

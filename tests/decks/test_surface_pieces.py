@@ -308,7 +308,7 @@ def test_rings_in_one_pair_are_as_pairs_of_their_own(tmp_path, pairing):
 
 @pytest.mark.parametrize("extra", ["a plate behind the master", "a plate behind the slave"])
 def test_a_line_behind_another_one_touches_nothing(tmp_path, extra):
-    """Nor does heat cross to it through the body in between."""
+    """Nor does heat cross to it through the body in between; it is named."""
     found = []
     for pieces in (True, False):
         blocks = [*block("M1", np.linspace(-0.5, 1.5, 5), (0.0, 1.0)),
@@ -326,7 +326,9 @@ def test_a_line_behind_another_one_touches_nothing(tmp_path, extra):
                      ["*BOUNDARY", "M1.BOTTOM, 1, 2", "M2.BOTTOM, 1, 2", "S2.TOP, 1, 2", "M1.BOTTOM, 11, 11",
                       "M2.BOTTOM, 11, 11, 50.", "S2.TOP, 11, 11, 70.", "*STEP", COUPLED, "*BOUNDARY",
                       "S1.TOP, 1", "S1.TOP, 2, 2, -0.002", "S1.TOP, 11, 11, 100.", "*END STEP"])
-        result = solve(path)
+        process = run("run", path, "--out", tmp_path)
+        assert ("takes no part" in process.stderr) == pieces
+        result = path.with_suffix(".vtkhdf")
         assert "pieces" not in result.with_suffix(".lst").read_text().split("STEP 1")[0].split("INTERFACE")[-1]
         found.append(states(result))
     for name, values in found[0].items():
