@@ -23,7 +23,7 @@ contains
       logical, intent(in) :: is_master                  !! whether the other line is the master's
       real(dp), allocatable :: kinks(:)
       integer, allocatable :: opposite(:)
-      real(dp) :: xi
+      real(dp) :: way(2), xi
       integer :: j, s
 
       do s = 1, size(side)
@@ -36,9 +36,8 @@ contains
             xi = 0.5_dp*(kinks(j) + kinks(j + 1))
             opposite(j) = opposite_at(side(s), xi)
             if (opposite(j) == 0) cycle
-            associate (way => way_to(side(s), xi, master, opposite(j)))
-               if (is_hidden(side(s), xi, way, other, is_master)) opposite(j) = 0
-            end associate
+            way = way_to(side(s), xi, master, opposite(j))
+            if (is_hidden(side(s), xi, way, other, is_master)) opposite(j) = 0
          end do
          side(s)%covered = [1.0_dp, -1.0_dp]
          do j = 1, size(opposite)
