@@ -380,6 +380,28 @@ def test_an_edge_goes_on_at_its_zone_where_two_edges_become_four(kept, result):
         np.testing.assert_allclose(line, np.transpose(curve), rtol=1e-12)
 
 
+def test_no_curve_goes_from_a_piece_of_the_faces_to_the_next(kept, result):
+    """Neither a profile nor an edge, which may be as near to one of the next piece."""
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        s = contact["s"][()]
+        contact["piece"] = np.where(np.arange(len(s)) < 8, 1, 2)
+        contact["status"][...], contact["edges_contact"][...] = 0, np.nan
+        contact["status"][:, 4:8] = contact["status"][:, 8:12] = 1
+        for row in range(15):
+            ends = (4, 12) if row < 8 else (4, 13)
+            contact["edges_contact"][row, :2] = [0.5 * (s[k - 1] + s[k]) for k in ends]
+        contact["status"][8:, 12] = 1
+    for picture in ("profiles", "zones"):
+        (figure,) = kept(picture, result, "--along", "s")
+        curves = [line for axes in figure.axes for line in axes.lines if line.get_linestyle() != "None"
+                  and len(line.get_xdata()) > 2]
+        places = [line.get_xdata() if picture == "profiles" else line.get_ydata() for line in curves]
+        assert len(places) > 1
+        for at in places:
+            assert np.max(at) <= s[7] or np.min(at) >= s[8]
+
+
 def test_an_edge_that_is_there_at_one_increment_is_seen(kept, result):
     with h5py.File(result, "r+") as file:
         edges = file["contact/CYLINDER/edges_stick"]
