@@ -48,14 +48,17 @@ def pressed(path, drawing, down, kind="CPE4", to=None):
 @pytest.mark.parametrize("angle", [30.0, 58.0, 70.0, 80.0, 90.0, 120.0])
 def test_the_ends_of_a_punch_take_in_no_node_beside_it(tmp_path, angle):
     """Arcs that turn up behind the last nodes change nothing of the flat punch; beyond a right angle
-    they show their backs."""
-    flat, _ = pressed(tmp_path / "flat.inp", drawn((1.33, TOP), line(0.68, TOP)), 0.003)
+    they show their backs. Above a gap, too, the weight of each node is a side of the face."""
+    gap = 0.02
+    level, down = TOP + gap, 0.003 + gap
+    flat, _ = pressed(tmp_path / "flat.inp", drawn((1.33, level), line(0.68, level)), down)
     radius, turn = 0.05, radians(angle)
-    aside, up = radius * sin(turn), TOP + radius * (1 - cos(turn))
+    aside, up = radius * sin(turn), level + radius * (1 - cos(turn))
     round_, _ = pressed(tmp_path / "round.inp", drawn(
-        (1.33 + aside, up), arc(1.33, TOP, (1.33, TOP + radius)), line(0.68, TOP),
-        arc(0.68 - aside, up, (0.68, TOP + radius))), 0.003)
+        (1.33 + aside, up), arc(1.33, level, (1.33, level + radius)), line(0.68, level),
+        arc(0.68 - aside, up, (0.68, level + radius))), down)
     np.testing.assert_allclose(round_["x"], np.arange(7, 14) / 10, rtol=1e-12)
+    np.testing.assert_allclose(flat["weight"], 0.1, rtol=1e-9)
     for name in ("x", "weight", "gap", "pressure"):
         np.testing.assert_allclose(round_[name], flat[name], rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(flat["pressure"], flat["pressure"][::-1], rtol=1e-9)
