@@ -240,7 +240,8 @@ def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capac
     """A block of one temperature T expands along a wall, one side held, and against it: the other
     side slips by s = alpha T - mu p/(2 E), p = p0 + E beta T, and makes q = mu p s'/2 of heat. With
     a film H, C T' = -H (T - 20) + q. Equations keep the block from bending and warping. Where slip
-    makes more heat than the block stores, motions grow however fast they are."""
+    makes more heat than the block stores, motions grow however fast they are. Another pair, in front
+    of it, slips without heat."""
     friction, given, expansion, film, young = 0.5, 100.0, 1e-2, 3.0, 1e4
 
     def pressure(warmth):
@@ -256,15 +257,23 @@ def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capac
              *material("BLOCK", (young, 0.0), (expansion, across, 0.0), 1.0, 1.0, capacity,
                        expansion_type="ORTHO"),
              *mesh("WALL", [0.0, 1.0], [-1.0, 0.0], "CPS4", first=101),
-             *material("WALL", (young, 0.0), None, 1.0, 1.0, 1.0),
+             *mesh("ASIDE", [3.0, 4.0], [0.0, 1.0], "CPS4", first=201),
+             *mesh("BASE", [3.0, 4.0], [-1.0, 0.0], "CPS4", first=301),
+             *(card for name in ("WALL", "ASIDE", "BASE") for card in material(
+                 name, (young, 0.0), None, 1.0, 1.0, 1.0)),
              "*EQUATION", *(line for card in alike for line in ("2", card)),
+             "*SURFACE INTERACTION, NAME=COLD", "*FRICTION", f"{friction!r}",
+             "*CONTACT PAIR, INTERACTION=COLD, NAME=ASIDE", "ASIDE.BOTTOM, BASE.TOP",
              "*SURFACE INTERACTION, NAME=FACE", "*FRICTION", f"{friction!r}",
              "*GAP HEAT GENERATION", "1., 1.", "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE",
-             "BLOCK.BOTTOM, WALL.TOP", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BLOCK, 0.",
-             "WALL, 0.", "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT",
-             "1., 1.", "*STABILITY", "*BOUNDARY", "WALL, 1, 2, 0.", "WALL, 11, 11, 0.",
-             "BLOCK.LEFT, 1, 1, 0.", f"BLOCK.TOP, 2, 2, {-given / young!r}", "*SFILM",
-             f"BLOCK.TOP, F, 20., {film!r}", "*END STEP"]
+             "BLOCK.BOTTOM, WALL.TOP", "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
+             *(f"{name}, 0." for name in ("BLOCK", "WALL", "ASIDE", "BASE")),
+             "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT",
+             "1., 1.", "*STABILITY", "*BOUNDARY",
+             *(f"{name}, 11, 11, 0." for name in ("WALL", "ASIDE", "BASE")),
+             "WALL, 1, 2, 0.", "BASE, 1, 2, 0.", "ASIDE.TOP, 1, 1, 0.03",
+             *(f"{name}.TOP, 2, 2, {-given / young!r}" for name in ("BLOCK", "ASIDE")),
+             "BLOCK.LEFT, 1, 1, 0.", "*SFILM", f"BLOCK.TOP, F, 20., {film!r}", "*END STEP"]
     result, printed = solved(tmp_path, cards)
     found = stability_of(result)
     by_slip = friction / 2 * pressure(warmth) * (slip(1.0) - slip(0.0))

@@ -213,14 +213,14 @@ def test_both_faces_have_the_heat_of_both_ends_of_an_increment(tmp_path, scheme,
         ("NT", "LOWER", "LAST", (1 - share) * MU * mean * speed / capacity, 1e-6)])
 
 
-def bar_on_a_wall(number, pressure=1.0, analysis="STEADY STATE", times="1., 1."):
+def bar_on_a_wall(number, pressure=1.0, analysis="STEADY STATE", times="1., 1.", k=1.0):
     """Return a bar on an insulating wall that slides, S = mu V E alpha L/k, pressed and cold at its
-    other end."""
+    other end; the wall, which is cold, conducts k."""
     bar = mesh("BAR", np.linspace(0.0, 1.0, 5), [0.0, 0.25], "CPS8")
     wall = mesh("WALL", [-0.25, 0.0], [0.0, 0.25], "CPS8", first=101)
     return [*bar, *material("BAR", (1000.0, 0.0), (1e-3, 0.0, 0.0), 1.0, density=1.0,
                             specific_heat=1.0, expansion_type="ORTHO"),
-            *wall, *material("WALL", (1000.0, 0.0), 0.0, 1.0),
+            *wall, *material("WALL", (1000.0, 0.0), 0.0, k),
             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BAR, 0.", "WALL, 0.",
             "*SURFACE INTERACTION, NAME=FACES", "*FRICTION", "0.5",
             "*GAP HEAT GENERATION", f"1., 1., {2 * number!r}",
@@ -231,10 +231,11 @@ def bar_on_a_wall(number, pressure=1.0, analysis="STEADY STATE", times="1., 1.")
 
 
 @pytest.mark.changes("GAP HEAT GENERATION")
-def test_the_gain_of_a_bar_on_a_sliding_wall_is_half_of_its_number(tmp_path):
+@pytest.mark.parametrize("k", [1.0, [(1.0, 0.0), (2.0, 100.0)]])
+def test_the_gain_of_a_bar_on_a_sliding_wall_is_half_of_its_number(tmp_path, k):
     def make(number):
         pressure = 1 / (1 - number / 2)
-        return bar_on_a_wall(number), [
+        return bar_on_a_wall(number, k=k), [
             ("coupling_gain", "", "LAST", number / 2, 1e-9),
             ("coupling_gain_max", "", "LAST", number / 2, 1e-9),
             ("pressure", "FACE", "LAST", pressure, 1e-9),
