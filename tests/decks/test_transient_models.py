@@ -378,3 +378,12 @@ def test_mumps_gives_what_skyline_does(tmp_path):
         for name in ("heat_imbalance", "heat_imbalance_pointwise", "force_imbalance"):
             assert found[solver].pop(f"history/{name}").max() < 1e-9
     assert_alike(found["SKYLINE"], found["MUMPS"], 1e-10)
+
+
+@pytest.mark.parametrize(("scheme", "stages"), [("L-STABLE", 2), ("IMPLICIT", 1)])
+def test_increments_count_the_passes_of_all_their_stages(tmp_path, scheme, stages):
+    """One for each where the conductance is constant."""
+    deck = two.write_deck(tmp_path / "deck.inp", two.bodies(), two.contact(
+        laws=["*GAP LAW, TYPE=POWER", "0.4, 0., 1."]), two.heated(f"*THERMAL SCHEME, TYPE={scheme}"))
+    with h5py.File(solve(deck)) as file:
+        assert (file["history/iterations"][:] == stages).all()
