@@ -12,6 +12,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+import test_fixed_point_limits as limits
 import test_rods as rods
 import transients as two
 from blocks import write
@@ -137,6 +138,19 @@ def test_it_goes_on_within_increments_that_are_cut_back(tmp_path):
     assert len(cut_backs) > 2
     for i, at in enumerate(kept(whole)[:-1]):
         assert_same(whole, go_on(deck, whole, tmp_path / f"from{i}", float(at)))
+
+
+def test_a_run_that_fails_behind_a_thermal_runaway_fails_again_in_the_same_words(tmp_path):
+    """The first attempt runs away at the end of the step, later ones do not converge."""
+    cards = [card.replace("0.125, 1., 1E-3", "1., 1., 0.01").replace("3000", "50")
+             for card in limits.bars("PICARD", 2 * limits.GAS_A / limits.SHRINKS)]
+    deck = write(tmp_path / "bars.inp", [WRITE], cards)
+    first, again = (run("run", "--quiet", deck, *options, "--out", tmp_path / folder)
+                    for folder, options in (("one", ()), ("two", (
+                        "--restart", tmp_path / "one" / "bars.vtkhdf"))))
+    assert first.returncode == again.returncode == 2
+    assert "ended in thermal runaway in contact pair FACE" in first.stderr
+    assert again.stderr == first.stderr
 
 
 @pytest.mark.parametrize("solver", ["SKYLINE", "MUMPS"])
