@@ -220,7 +220,8 @@ def test_a_mirrored_punch_has_the_same_bounds(tmp_path):
 
 
 def test_a_past_out_of_equilibrium_is_no_error_of_the_mesh(tmp_path):
-    """Heat flows along y, which linear elements solve, behind a start that it is not at rest in."""
+    """Heat from a film and a source flows along y, which linear elements solve, behind a start that
+    it is not at rest in."""
     deck = [*mesh("UP", [0.0, 1.0], [0.0, 1.0], "CPE4"),
             *mesh("LOW", [0.0, 1.0], [-1.0, 0.0], "CPE4", first=101)]
     for name in "UP", "LOW":
@@ -230,10 +231,10 @@ def test_a_past_out_of_equilibrium_is_no_error_of_the_mesh(tmp_path):
         "UP, 40.", "LOW, 0.", "*SURFACE INTERACTION, NAME=I", "*GAP LAW, TYPE=POWER", "3., 0., 1.",
         "*CONTACT PAIR, INTERACTION=I, NAME=FACE", "UP.BOTTOM, LOW.TOP", "*STEP",
         "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*BOUNDARY", "UP, 1",
-        "LOW, 1", "LOW.BOTTOM, 2", "LOW.BOTTOM, 11, 11, 0.", "UP.TOP, 11, 11, 100.", "*DSLOAD",
-        "UP.TOP, P, 5.", "*END STEP"]))
+        "LOW, 1", "LOW.BOTTOM, 2", "LOW.BOTTOM, 11, 11, 0.", "*SFILM", "UP.TOP, F, 100., 4.",
+        "*DSFLUX", "UP.TOP, S, 6.", "*DSLOAD", "UP.TOP, P, 5.", "*END STEP"]))
     value, _, of_mesh, *_ = errors(result, "FACE")["heat_rate"]
-    at_rest = 100.0 / (1 / 2 + 1 / 3 + 1 / 2)
+    at_rest = (100.0 + 6.0 / 4.0) / (1 / 2 + 1 / 3 + 1 / 2 + 1 / 4)
     assert abs(value / at_rest - 1) > 0.1
     assert of_mesh < 1e-5 * at_rest   # the tolerance of a fixed point on the divided mesh is 1e-6
 
