@@ -176,8 +176,9 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
 def test_a_face_that_is_set_to_a_temperature_heats_the_other_one_from_the_start(tmp_path, scheme,
                                                                                 part):
     """A body of one temperature T across a conductance from one at 100 on: with r = G dt/C of an
-    increment, T = 100 r/(1 + a r), a being the part of the heat at the end."""
+    increment, T = 100 r/(1 + a r), a being the part of the heat at the end, which is r (100 - T)."""
     ratio, even = 0.7, ["*EQUATION"]
+    end = 100.0 * ratio / (1 + part * ratio)
     for node in 102, 103, 104:
         even += ["2", f"101, 11, 1., {node}, 11, -1."]
     solve(write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO", f"*THERMAL SCHEME, TYPE={scheme}"],
@@ -189,7 +190,8 @@ def test_a_face_that_is_set_to_a_temperature_heats_the_other_one_from_the_start(
         "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "UPPER.BOTTOM, LOWER.TOP",
         "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UPPER, 0.", "LOWER, 0.",
         "*STEP", "*HEAT TRANSFER, DIRECT", "1., 1.", "*BOUNDARY", "UPPER, 11, 11, 100.",
-        "*END STEP", *verify(("NT", "LOWER", "LAST", 100.0 * ratio / (1 + part * ratio), 1e-9))]))
+        "*END STEP", *verify(("NT", "LOWER", "LAST", end, 1e-9),
+                             ("heat_stored", "", "LAST", ratio * (100.0 - end), 1e-9))]))
 
 
 # Steps and methods
