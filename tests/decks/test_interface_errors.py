@@ -270,6 +270,25 @@ def test_the_bound_of_a_temperature_holds_the_error_of_elements_far_away(tmp_pat
     assert 0.0 < abs(value - flux * inner * np.log(outer / inner) / 2.0) <= bound
 
 
+def test_every_body_has_its_own_stress_and_singular_corners(tmp_path):
+    """Two plates, each held on its first side below, whose ends are singular; the second one is
+    pulled twice as much."""
+    cards, held, pull = [], [], []
+    for name, first, load in ("A", 1, -1.0), ("B", 101, -2.0):
+        cards += [*mesh(name, np.linspace(first, first + 2.0, 5), [0.0, 0.5, 1.0], "CPE4", first=first),
+                  *material(name, (1000.0, 0.3))]
+        held += [f"{first}, 1, 2", f"{first + 1}, 1, 2"]
+        pull += [f"{name}.TOP, P, {load!r}"]
+    deck = write(tmp_path / "deck.inp", cards, [
+        "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", *held, "*DSLOAD", *pull, "*END STEP"])
+    shown = run("run", deck, "--out", tmp_path).stdout
+    one, two = (errors(deck.with_suffix(".vtkhdf"), f"body {b}")["von_mises"][:2] for b in (1, 2))
+    np.testing.assert_allclose(two, 2.0 * one, rtol=1e-9)
+    for body, named in zip(shown.split("largest in body")[1:], (["1", "2"], ["101", "102"]),
+                           strict=True):
+        assert re.findall(r"node (\d+)", body.partition("singular corner")[2]) == named
+
+
 def test_error_of_increments(tmp_path):
     """The explicit scheme is of the first order: its conductance is that of the last increment."""
     cards = ["*THERMAL SCHEME, TYPE=EXPLICIT"]
