@@ -11,6 +11,7 @@ from blocks import write
 from calculix import thercon
 from deck_runs import assert_alike, datasets, solve
 from physics import material, mesh, nodes_of, verify
+from scipy.optimize import brentq
 from transients import HIGH, LOW, XS
 
 OTHER = [0.0, 0.25, 0.7, 1.0]
@@ -172,26 +173,47 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
                                rtol=1e-9)
 
 
-@pytest.mark.parametrize(("scheme", "part"), [("CRANK-NICOLSON", 0.5), ("IMPLICIT", 1.0)])
-def test_a_face_that_is_set_to_a_temperature_heats_the_other_one_from_the_start(tmp_path, scheme,
-                                                                                part):
-    """A body of one temperature T across a conductance from one at 100 on: with r = G dt/C of an
-    increment, T = 100 r/(1 + a r), a being the part of the heat at the end, which is r (100 - T)."""
-    ratio, even = 0.7, ["*EQUATION"]
-    end = 100.0 * ratio / (1 + part * ratio)
-    for node in 102, 103, 104:
-        even += ["2", f"101, 11, 1., {node}, 11, -1."]
+@pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "L-STABLE"])
+def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme):
+    """A face of the temperature T takes up the heat of the other face, at 100 at once, that of a body
+    at -50 at once, of a film, of a source, and of friction: C T' = R(T), in one increment."""
+    conductance, film, sink, source, pressure, speed, share = 0.7, 0.4, 30.0, 8.0, 5.0, 3.0, 0.2
+    conduct, content = [(2.0, -50.0), (3.0, 50.0)], [(1.0, -50.0), (2.0, 50.0)]   # rho c = 1.5 + T/100
+
+    def rate(warmth):
+        return (conductance * (100.0 - warmth) - (2.5 + (warmth - 50.0) / 200) * (warmth + 50.0)
+                + source / 2 - film * (warmth - sink) + 0.1 * pressure * speed * (1 - share))
+
+    def stored(warmth):
+        return (1.5 * warmth + warmth**2 / 200) / 2
+
+    def stage(before, rate_before, part, size):
+        def rest(warmth):
+            return stored(warmth) - before - size * ((1 - part) * rate_before + part * rate(warmth))
+        return brentq(rest, -50.0, 100.0, xtol=1e-13)
+
+    if scheme == "L-STABLE":
+        part = 1 - 0.5**0.5
+        end = stage((1 / part - 1) * stored(stage(0.0, 0.0, 1.0, part)), 0.0, 1.0, part)
+    else:
+        end = stage(0.0, rate(0.0), {"IMPLICIT": 1.0, "GALERKIN": 2 / 3, "CRANK-NICOLSON": 0.5}[scheme],
+                    1.0)
     solve(write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO", f"*THERMAL SCHEME, TYPE={scheme}"],
                 mesh("UPPER", [0.0, 1.0], [0.0, 1.0], "CPE4"),
                 mesh("LOWER", [0.0, 1.0], [-1.0, 0.0], "CPE4", first=101),
-                *(material(name, conductivity=1.0, density=1.0, specific_heat=1.0)
-                  for name in ("UPPER", "LOWER")), even, [
-        "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", f"{ratio!r}, 0., 1.",
+                *(material(name, conductivity=conduct, density=1.0, specific_heat=content)
+                  for name in ("UPPER", "LOWER")), [
+        "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", f"{conductance!r}, 0., 1.",
+        "*FRICTION", "0.1", "*GAP HEAT GENERATION", f"1., {share!r}, {speed!r}",
         "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "UPPER.BOTTOM, LOWER.TOP",
         "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UPPER, 0.", "LOWER, 0.",
+        "*BOUNDARY", "UPPER, 1", "LOWER, 1", "LOWER.BOTTOM, 2",
+        "*STEP", "*STATIC", "1., 1.", "*DSLOAD", f"UPPER.TOP, P, {pressure!r}", "*END STEP",
         "*STEP", "*HEAT TRANSFER, DIRECT", "1., 1.", "*BOUNDARY", "UPPER, 11, 11, 100.",
-        "*END STEP", *verify(("NT", "LOWER", "LAST", end, 1e-9),
-                             ("heat_stored", "", "LAST", ratio * (100.0 - end), 1e-9))]))
+        "LOWER.BOTTOM, 11, 11, -50.", "*DFLUX", f"LOWER, BF, {source!r}", "*SFILM",
+        f"LOWER.TOP, F, {sink!r}, {film!r}", "*END STEP",
+        *verify(("NT", "LOWER.TOP", "LAST", end, 1e-8),
+                ("heat_stored", "", "LAST", rate(end), 1e-7))]))
 
 
 # Steps and methods
