@@ -176,44 +176,47 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
 @pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "L-STABLE"])
 def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme):
     """A face of the temperature T takes up the heat of the other face, at 100 at once, that of a body
-    at -50 at once, of a film, of a source, and of friction: C T' = R(T), in one increment."""
-    conductance, film, sink, source, pressure, speed, share = 0.7, 0.4, 30.0, 8.0, 5.0, 3.0, 0.2
-    conduct, content = [(2.0, -50.0), (3.0, 50.0)], [(1.0, -50.0), (2.0, 50.0)]   # rho c = 1.5 + T/100
+    at -50 at once, of a film, of a source that rises in total time, and of friction: C T' = R(t, T),
+    in one increment from t = 1 to 2."""
+    start, conductance, film, sink, friction = 10.0, 0.7, 0.4, 30.0, (0.1, 5.0, 3.0, 0.2)
+    conduct, content = [(2.0, -50.0), (4.0, 150.0)], [(1.0, -50.0), (3.0, 150.0)]   # 1.5 + T/100
+    coefficient, pressure, speed, share = friction
 
-    def rate(warmth):
+    def rate(time, warmth):
         return (conductance * (100.0 - warmth) - (2.5 + (warmth - 50.0) / 200) * (warmth + 50.0)
-                + source / 2 - film * (warmth - sink) + 0.1 * pressure * speed * (1 - share))
+                + (4.0 + 8.0 * (time - 1.0)) / 2 - film * (warmth - sink)
+                + coefficient * pressure * speed * (1 - share))
 
     def stored(warmth):
         return (1.5 * warmth + warmth**2 / 200) / 2
 
-    def stage(before, rate_before, part, size):
-        def rest(warmth):
-            return stored(warmth) - before - size * ((1 - part) * rate_before + part * rate(warmth))
-        return brentq(rest, -50.0, 100.0, xtol=1e-13)
+    def solved(time, size, before):
+        return brentq(lambda t: stored(t) - before - size * rate(time, t), -50.0, 100.0, xtol=1e-13)
 
     if scheme == "L-STABLE":
         part = 1 - 0.5**0.5
-        end = stage((1 / part - 1) * stored(stage(0.0, 0.0, 1.0, part)), 0.0, 1.0, part)
+        first = stored(solved(1 + part, part, stored(start))) - stored(start)
+        end = solved(2.0, part, stored(start) + (1 / part - 1) * first)
     else:
-        end = stage(0.0, rate(0.0), {"IMPLICIT": 1.0, "GALERKIN": 2 / 3, "CRANK-NICOLSON": 0.5}[scheme],
-                    1.0)
+        part = {"IMPLICIT": 1.0, "GALERKIN": 2 / 3, "CRANK-NICOLSON": 0.5}[scheme]
+        end = solved(2.0, part, stored(start) + (1 - part) * rate(1.0, start))
     solve(write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO", f"*THERMAL SCHEME, TYPE={scheme}"],
                 mesh("UPPER", [0.0, 1.0], [0.0, 1.0], "CPE4"),
                 mesh("LOWER", [0.0, 1.0], [-1.0, 0.0], "CPE4", first=101),
                 *(material(name, conductivity=conduct, density=1.0, specific_heat=content)
                   for name in ("UPPER", "LOWER")), [
         "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", f"{conductance!r}, 0., 1.",
-        "*FRICTION", "0.1", "*GAP HEAT GENERATION", f"1., {share!r}, {speed!r}",
+        "*FRICTION", f"{coefficient!r}", "*GAP HEAT GENERATION", f"1., {share!r}, {speed!r}",
         "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "UPPER.BOTTOM, LOWER.TOP",
-        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UPPER, 0.", "LOWER, 0.",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"UPPER, {start!r}", f"LOWER, {start!r}",
+        "*AMPLITUDE, NAME=RISE, TIME=TOTAL TIME", "1., 4., 2., 12.",
         "*BOUNDARY", "UPPER, 1", "LOWER, 1", "LOWER.BOTTOM, 2",
         "*STEP", "*STATIC", "1., 1.", "*DSLOAD", f"UPPER.TOP, P, {pressure!r}", "*END STEP",
         "*STEP", "*HEAT TRANSFER, DIRECT", "1., 1.", "*BOUNDARY", "UPPER, 11, 11, 100.",
-        "LOWER.BOTTOM, 11, 11, -50.", "*DFLUX", f"LOWER, BF, {source!r}", "*SFILM",
+        "LOWER.BOTTOM, 11, 11, -50.", "*DFLUX, AMPLITUDE=RISE", "LOWER, BF, 1.", "*SFILM",
         f"LOWER.TOP, F, {sink!r}, {film!r}", "*END STEP",
         *verify(("NT", "LOWER.TOP", "LAST", end, 1e-8),
-                ("heat_stored", "", "LAST", rate(end), 1e-7))]))
+                ("heat_stored", "", "LAST", rate(2.0, end), 1e-7))]))
 
 
 # Steps and methods
