@@ -69,20 +69,24 @@ def test_a_spring_at_a_node_that_drops_out_pulls_its_neighbours(tmp_path, option
           [("U2", "BODY.TOP", "LAST", 50.0 * 0.01 / (STIFFNESS + 50.0), EXACT), BALANCED])
 
 
+@pytest.mark.parametrize("young", [1000.0, [(1000.0, 0.0, 0.0), (600.0, 0.0, 60.0)]])
 @pytest.mark.parametrize("beside", [0.0, 50.0])
 @pytest.mark.parametrize("anchor_at", [HEATED, 0.0])
-def test_a_warm_truss_pushes(tmp_path, anchor_at, beside):
+def test_a_warm_truss_pushes(tmp_path, anchor_at, beside, young):
     """E A/L = 100; both become longer by alpha T, the truss by that of the mean of its ends. A
-    spring beside it does not."""
-    truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", "51, 100, 101",
-             "*SOLID SECTION, ELSET=BAR, MATERIAL=BODY", "0.2"]
-    free, longer = 1e-4 * HEATED, 2.0 * 1e-4 * (HEATED + anchor_at) / 2
-    spring = springs("SPRINGA", "100, 101", f"{beside!r}", number=50) if beside else []
-    judge(tmp_path, [*BLOCK, *HANDLE, *anchor(1.0, 4.0), *spring, *truss, *COLD, *HELD, "ANCHOR, 2",
+    spring beside it does not. Both pull a node of the body, whose modulus falls to 800 at 30."""
+    elastic, stiffness = ((young, 0.0), STIFFNESS) if young == 1000.0 else (young, 0.8 * STIFFNESS)
+    cards = [*mesh("BODY", [0.0, 2.0], [0.0, 1.0], kind="CPS8"), *material("BODY", elastic, 1e-4), "0.5"]
+    top = next(number for number, place in nodes_of(cards).items() if place == (1.0, 1.0))
+    truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", f"51, {top}, 101", *material(
+        "BAR", (1000.0, 0.0), 2e-4), "0.2"]
+    free, longer = 1e-4 * HEATED, 2.0 * 2e-4 * (HEATED + anchor_at) / 2
+    spring = springs("SPRINGA", f"{top}, 101", f"{beside!r}", number=50) if beside else []
+    judge(tmp_path, [*cards, *HANDLE, *anchor(1.0, 3.0), *spring, *truss, *COLD, *HELD, "ANCHOR, 2",
                      "*TEMPERATURE", "BODY, 30.", "HANDLE, 30.", f"ANCHOR, {anchor_at!r}",
                      "*END STEP"],
           [("U2", "100", "LAST",
-            (STIFFNESS * free - 100.0 * longer) / (STIFFNESS + 100.0 + beside), EXACT), BALANCED])
+            (stiffness * free - 100.0 * longer) / (stiffness + 100.0 + beside), EXACT), BALANCED])
 
 
 def test_a_spring_holds_a_body_that_contact_stops(tmp_path):
