@@ -235,7 +235,7 @@ def test_films_hold_the_ends_of_rods(tmp_path):
     assert found["growth_rate"] == pytest.approx(rate, rel=1e-3)
 
 
-@pytest.mark.parametrize(("across", "capacity"), [(0.0, 1.0), (5e-4, 1.0), (0.0, 0.1)])
+@pytest.mark.parametrize(("across", "capacity"), [(0.0, 0.8), (5e-4, 1.0), (0.0, 0.6), (0.0, 0.1)])
 def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capacity):
     """A block of one temperature T expands along a wall, one side held, and against it: the other
     side slips by s = alpha T - mu p/(2 E), p = p0 + E beta T, and makes q = mu p s'/2 of heat. With
@@ -281,9 +281,10 @@ def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capac
     rate = (by_pressure - film) / (capacity - by_slip)
     if by_slip < capacity:
         assert found["growth_rate"] == pytest.approx(rate, rel=1e-6)
-    else:
-        assert "faster motions may grow" in " ".join(printed.split())
-        assert "doubling in -" not in printed
+    # The bound of |eigenvalue of U'|^2 is twice 2 (1/C) 2 (by_slip^2/C): at two rates, both fast.
+    excluded = 8 * (by_slip / capacity) ** 2 < 1
+    assert ("faster motions may grow" in " ".join(printed.split())) == (not excluded)
+    assert "doubling in -" not in printed
 
 
 def test_radiation_follows_the_temperature_of_either_face(tmp_path):
