@@ -195,11 +195,13 @@ def punched(name, first, shift=0.0, scale=1.0, side=1):
                    f"{top}.TOP, 2, 2, -0.01"]
 
 
-def punches(path, *joints):
-    """Solve a deck of joints; return the bounds of each."""
+def punches(path, *joints, law=(), behind=(), moved=()):
+    """Solve a deck of joints with a law, cards behind them, and more supports; return the bounds of
+    each."""
     cards, held = (sum(parts, []) for parts in zip(*(punched(*joint) for joint in joints), strict=True))
-    result = solve(write(path, without_unused_surfaces(["*SURFACE INTERACTION, NAME=I", *cards]), [
-        "*STEP", "*STATIC", "0.25, 1.", "*BOUNDARY", *held, "*END STEP"]))
+    result = solve(write(path, without_unused_surfaces([
+        "*SURFACE INTERACTION, NAME=I", *law, *cards, *behind]), [
+        "*STEP", "*STATIC", "0.25, 1.", "*BOUNDARY", *held, *moved, "*END STEP"]))
     return {name: errors(result, name) for name, *_ in joints}
 
 
@@ -211,6 +213,16 @@ def test_every_joint_of_a_model_has_bounds_of_its_own(tmp_path):
     for name, scale in ("normal_force", 4.0), ("edge_contact", 1.0):
         np.testing.assert_allclose(both["A"][name][:2], scale * both["B"][name][:2], rtol=1e-6)
         assert both["B"][name][1] >= (1 - 1e-6) * alone[name][1] > 0.0, name
+
+
+def test_a_joint_that_closes_late_has_its_own_bounds_beside_one_that_is_closed(tmp_path):
+    """It slides until it closes within the last increment."""
+    late = {"law": ["*FRICTION", "5."], "moved": ["BP.LEFT, 1, 1, 0.004"],
+            "behind": ["*CLEARANCE, SLAVE=BP.BOTTOM, MASTER=BB.TOP, VALUE=0.0085"]}
+    alone = punches(tmp_path / "alone.inp", ("B", 1), **late)["B"]["shear_force"]
+    both = punches(tmp_path / "both.inp", ("A", 1001, 10.0), ("B", 1), **late)["B"]["shear_force"]
+    assert 0.0 < alone[1] < abs(alone[0])
+    np.testing.assert_allclose(both[:2], alone[:2], rtol=1e-6)
 
 
 def test_a_mirrored_punch_has_the_same_bounds(tmp_path):
