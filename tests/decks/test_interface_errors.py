@@ -225,6 +225,31 @@ def test_a_joint_that_closes_late_has_its_own_bounds_beside_one_that_is_closed(t
     np.testing.assert_allclose(both[:2], alone[:2], rtol=1e-6)
 
 
+def test_heat_across_an_open_gap_has_the_same_bound_beside_a_closed_joint(tmp_path):
+    """Where nothing is closed, all elements at the faces are divided."""
+    parts = {"B": [], "A": []}
+    held = {"B": ["BU.LEFT, 11, 11, 100.", "BL.BOTTOM, 11, 11, 0.", "BU.TOP, 2"],
+            "A": ["AU, 11", "AL, 11", "AU.TOP, 2, 2, -0.01"]}
+    for name, first, gap in ("B", 1, 0.1), ("A", 1001, 0.0):
+        xs = [first + x for x in (0.0, 0.5, 1.0, 2.0)]
+        parts[name] += [*mesh(f"{name}U", xs, [gap, gap + 0.5, gap + 1.0], "CPE4", first=first),
+                        *mesh(f"{name}L", xs, [-1.0, -0.5, 0.0], "CPE4", first=first + 100),
+                        f"*CONTACT PAIR, INTERACTION=I, NAME={name}", f"{name}U.BOTTOM, {name}L.TOP"]
+        for body in f"{name}U", f"{name}L":
+            parts[name] += [*material(body, (1000.0, 0.0), 0.0, 1.0),
+                            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"{body}, 0."]
+            held[name] += [f"{body}, 1"]
+        held[name] += [f"{name}L.BOTTOM, 2"]
+    found = [errors(solve(write(tmp_path / f"{names}.inp", without_unused_surfaces([
+        "*SURFACE INTERACTION, NAME=I", "*GAP LAW, TYPE=GAS", "0.5, 0.1", "*GAP LAW, TYPE=POWER",
+        "5., 0., 1.", *sum((parts[name] for name in names), [])]), [
+        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*BOUNDARY",
+        *sum((held[name] for name in names), []), "*END STEP"])), "B")["heat_rate"][:2]
+        for names in ("B", "BA")]
+    assert 0.01 * found[0][0] < found[0][1]
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-6)
+
+
 def test_a_mirrored_punch_has_the_same_bounds(tmp_path):
     punch = punches(tmp_path / "punch.inp", ("B", 1))["B"]
     mirrored = punches(tmp_path / "mirrored.inp", ("B", 1, 0.0, 1.0, -1))["B"]
