@@ -76,7 +76,8 @@ def test_a_warm_truss_pushes(tmp_path, anchor_at, beside, young):
     """E A/L = 100; both become longer by alpha T, the truss by that of the mean of its ends. A
     spring beside it does not. Both pull a node of the body, whose modulus falls to 800 at 30."""
     elastic, stiffness = ((young, 0.0), STIFFNESS) if young == 1000.0 else (young, 0.8 * STIFFNESS)
-    cards = [*mesh("BODY", [0.0, 2.0], [0.0, 1.0], kind="CPS8"), *material("BODY", elastic, 1e-4), "0.5"]
+    cards = [*mesh("BODY", [0.0, 2.0], [0.0, 1.0], kind="CPS8"),
+             *material("BODY", elastic, 1e-4), "0.5"]
     top = next(number for number, place in nodes_of(cards).items() if place == (1.0, 1.0))
     truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", f"51, {top}, 101", *material(
         "BAR", (1000.0, 0.0), 2e-4), "0.2"]

@@ -234,7 +234,8 @@ def test_heat_across_an_open_gap_has_the_same_bound_beside_a_closed_joint(tmp_pa
         xs = [first + x for x in (0.0, 0.5, 1.0, 2.0)]
         parts[name] += [*mesh(f"{name}U", xs, [gap, gap + 0.5, gap + 1.0], "CPE4", first=first),
                         *mesh(f"{name}L", xs, [-1.0, -0.5, 0.0], "CPE4", first=first + 100),
-                        f"*CONTACT PAIR, INTERACTION=I, NAME={name}", f"{name}U.BOTTOM, {name}L.TOP"]
+                        f"*CONTACT PAIR, INTERACTION=I, NAME={name}",
+                        f"{name}U.BOTTOM, {name}L.TOP"]
         for body in f"{name}U", f"{name}L":
             parts[name] += [*material(body, (1000.0, 0.0), 0.0, 1.0),
                             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"{body}, 0."]
@@ -312,7 +313,8 @@ def test_every_body_has_its_own_stress_and_singular_corners(tmp_path):
     pulled twice as much."""
     cards, held, pull = [], [], []
     for name, first, load in ("A", 1, -1.0), ("B", 101, -2.0):
-        cards += [*mesh(name, np.linspace(first, first + 2.0, 5), [0.0, 0.5, 1.0], "CPE4", first=first),
+        xs = np.linspace(first, first + 2.0, 5)
+        cards += [*mesh(name, xs, [0.0, 0.5, 1.0], "CPE4", first=first),
                   *material(name, (1000.0, 0.3))]
         held += [f"{first}, 1, 2", f"{first + 1}, 1, 2"]
         pull += [f"{name}.TOP, P, {load!r}"]

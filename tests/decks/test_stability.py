@@ -240,8 +240,8 @@ def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capac
     """A block of one temperature T expands along a wall, one side held, and against it: the other
     side slips by s = alpha T - mu p/(2 E), p = p0 + E beta T, and makes q = mu p s'/2 of heat. With
     a film H, C T' = -H (T - 20) + q. Equations keep the block from bending and warping. Where slip
-    makes more heat than the block stores, motions grow however fast they are. Another pair, in front
-    of it, slips without heat."""
+    makes more heat than the block stores, motions grow however fast they are. Another pair, in
+    front of it, slips without heat."""
     friction, given, expansion, film, young = 0.5, 100.0, 1e-2, 3.0, 1e4
 
     def pressure(warmth):
@@ -285,6 +285,53 @@ def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capac
     excluded = 8 * (by_slip / capacity) ** 2 < 1
     assert ("faster motions may grow" in " ".join(printed.split())) == (not excluded)
     assert "doubling in -" not in printed
+
+
+@pytest.mark.parametrize(("slave", "gap"), [("BLOCK", None), ("WALL", None), ("WALL", 0.1)])
+def test_tables_follow_openings_and_temperatures_beside_the_heat_of_a_speed(tmp_path, slave, gap):
+    """A block of one temperature T expands against a wall of 30, or towards it, across which heat h
+    goes by pressure or gap and the mean of both temperatures; faces slide out of the plane."""
+    young, film, sink, wall, capacity, friction, speed = 1e4, 3.0, 90.0, 30.0, 2.0, 0.5, 0.8
+    expansion = 1e-3 if gap else 1e-4
+    share = 0.3 if slave == "BLOCK" else 0.7
+
+    def pressure(warmth):
+        return 100.0 + young * expansion * warmth if gap is None else 0.0
+
+    def conductance(warmth):
+        part = (warmth + wall) / 2 / 400.0
+        if gap is None:
+            across = pressure(warmth) / 200.0
+            return (1 - part) * (2.0 + 10.0 * across) + part * (6.0 + 20.0 * across)
+        return (8.0 + 12.0 * part) * (1 - (gap - expansion * warmth) / 0.2)
+
+    def heat(warmth):
+        return (conductance(warmth) * (wall - warmth) + film * (sink - warmth)
+                + share * friction * pressure(warmth) * speed)
+
+    warmth = brentq(heat, 0.0, 90.0, xtol=1e-13)
+    table = (["PRESSURE", "2., 0., 0.", "12., 200., 0.", "6., 0., 400.", "26., 200., 400."]
+             if gap is None else
+             ["CLEARANCE", "8., 0., 0.", "0., 0.2, 0.", "20., 0., 400.", "0., 0.2, 400."])
+    top, down = 1.0 + (gap or 0.0), -100.0 / young if gap is None else 0.0
+    cards = [*mesh("BLOCK", [0.0, 1.0], [top - 1.0, top], "CPS4"),
+             *material("BLOCK", (young, 0.0), (0.0, expansion, 0.0), 1.0, 1.0, capacity,
+                       expansion_type="ORTHO"),
+             *mesh("WALL", [0.0, 1.0], [-1.0, 0.0], "CPS4", first=101),
+             *material("WALL", (young, 0.0), None, 1.0, 1.0, 1.0),
+             "*EQUATION", *(line for node in (2, 3, 4) for line in (
+                 "2", f"{node}, 11, 1., 1, 11, -1.")),
+             "*SURFACE INTERACTION, NAME=FACE", "*FRICTION", f"{friction!r}", "*GAP HEAT GENERATION",
+             f"1., 0.3, {speed!r}", f"*GAP CONDUCTANCE, {table[0]}", *table[1:], "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE",
+             "BLOCK.BOTTOM, WALL.TOP" if slave == "BLOCK" else "WALL.TOP, BLOCK.BOTTOM",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BLOCK, 0.", f"WALL, {wall!r}", "*STEP",
+             "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*STABILITY",
+             "*BOUNDARY", "WALL, 1, 2, 0.", f"WALL, 11, 11, {wall!r}", "BLOCK.LEFT, 1, 1, 0.",
+             f"BLOCK.TOP, 2, 2, {down!r}", "*SFILM", f"BLOCK.TOP, F, {sink!r}, {film!r}",
+             "*END STEP"]
+    found = stability_of(solved(tmp_path, cards)[0])
+    rate = (heat(warmth + 1e-4) - heat(warmth - 1e-4)) / 2e-4 / capacity
+    assert found["growth_rate"] == pytest.approx(rate, rel=1e-6)
 
 
 def test_radiation_follows_the_temperature_of_either_face(tmp_path):

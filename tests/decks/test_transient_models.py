@@ -175,9 +175,9 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
 
 @pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "L-STABLE"])
 def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme):
-    """A face of the temperature T takes up the heat of the other face, at 100 at once, that of a body
-    at -50 at once, of a film, of a source that rises in total time, and of friction: C T' = R(t, T),
-    in one increment from t = 1 to 2."""
+    """A face of the temperature T takes up the heat of the other face, at 100 at once, of a body at
+    -50 at once, of a film, of a source that rises in total time, and of friction: C T' = R(t, T), in
+    one increment from t = 1 to 2."""
     start, conductance, film, sink, friction = 10.0, 0.7, 0.4, 30.0, (0.1, 5.0, 3.0, 0.2)
     conduct, content = [(2.0, -50.0), (4.0, 150.0)], [(1.0, -50.0), (3.0, 150.0)]   # 1.5 + T/100
     coefficient, pressure, speed, share = friction
@@ -410,7 +410,8 @@ def test_mumps_gives_what_skyline_does(tmp_path):
 @pytest.mark.parametrize(("scheme", "stages"), [("L-STABLE", 2), ("IMPLICIT", 1)])
 def test_increments_count_the_passes_of_all_their_stages(tmp_path, scheme, stages):
     """One for each where the conductance is constant."""
-    deck = two.write_deck(tmp_path / "deck.inp", two.bodies(), two.contact(
-        laws=["*GAP LAW, TYPE=POWER", "0.4, 0., 1."]), two.heated(f"*THERMAL SCHEME, TYPE={scheme}"))
+    laws = ["*GAP LAW, TYPE=POWER", "0.4, 0., 1."]
+    deck = two.write_deck(tmp_path / "deck.inp", two.bodies(), two.contact(laws=laws),
+                          two.heated(f"*THERMAL SCHEME, TYPE={scheme}"))
     with h5py.File(solve(deck)) as file:
         assert (file["history/iterations"][:] == stages).all()
