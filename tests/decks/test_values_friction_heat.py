@@ -168,6 +168,20 @@ def test_a_step_of_heat_alone_has_no_slip(tmp_path, later):
                            ("heat_friction", "", 2.5, 0.0, 0.0, "ABS")])
 
 
+def test_heat_of_the_increment_before_is_none_behind_a_static_step(tmp_path):
+    """The explicit scheme takes it; the block goes on at 0.1 in all steps."""
+    deck = slid("EXPLICIT", young=1e10, times="0.1, 0.5")
+    at = deck.index("*STEP")
+    judge(tmp_path, [
+        *deck[:at], "*AMPLITUDE, NAME=FIRST", "0., 0.5, 1., 1.5", "*AMPLITUDE, NAME=LAST",
+        "0., 1.5, 1., 2.5", *deck[at:], "*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY, AMPLITUDE=FIRST",
+        "UPPER.TOP, 1, 1, 0.1", "*END STEP", "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT",
+        "0.1, 0.5", "*THERMAL SCHEME, TYPE=EXPLICIT", "*BOUNDARY, AMPLITUDE=LAST",
+        "UPPER.TOP, 1, 1, 0.1", "*END STEP"], [
+        ("heat_friction", "", time, heat, 1e-6, *how) for time, heat, *how in (
+            (1.5, 0.9 * MU * PRESSURE * 0.3), (2.6, 0.0, "ABS"), (2.7, 0.9 * MU * PRESSURE * 0.3))])
+
+
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
 @pytest.mark.parametrize(("scheme", "times"), [
     ("CRANK-NICOLSON", "0.1, 20."), ("CRANK-NICOLSON", "0.05, 12."), ("CRANK-NICOLSON", "0.02, 4."),
