@@ -524,3 +524,22 @@ def test_a_support_out_of_the_plane_alone(tmp_path):
         found = [told for told, _ in warnings(tmp_path, blocks(), support, PRESSED)]
         assert found == ["degree of freedom 3 does not exist in a plane model: this support is "
                          "ignored"][:warned]
+
+
+def test_a_jump_in_a_step_is_warned_of_where_increments_are_too_short_for_its_elements(tmp_path):
+    """rho c h^2/(4 k) = 0.09375; elements of half the size need a quarter of it. Nothing jumps in the
+    step before."""
+    def deck(sides):
+        xs = [i / sides for i in range(sides + 1)]
+        return [block("A", xs, [0.0, 1.0]), [
+            "*MATERIAL, NAME=A", "*CONDUCTIVITY", "2.", "*DENSITY", "1.5", "*SPECIFIC HEAT", "2.",
+            "*SOLID SECTION, ELSET=A, MATERIAL=A", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "A, 20.",
+            "*STEP", "*HEAT TRANSFER, DIRECT", "0.05, 0.1", "*BOUNDARY", "A.LEFT, 11, 11, 20.",
+            "*END STEP", "*STEP", "*HEAT TRANSFER, DIRECT", "0.05, 0.1", "*BOUNDARY",
+            "A.LEFT, 11, 11, 100.", "*END STEP"]]
+
+    coarse = warnings_of_run(tmp_path, *deck(2))
+    assert len(coarse) == 1
+    assert coarse[0].startswith("increment 3: temperatures jump at 3 nodes, "), coarse
+    assert "overshoot within 9.375E-2" in coarse[0]
+    assert warnings_of_run(tmp_path, *deck(4)) == []
