@@ -302,16 +302,23 @@ def test_an_amplitude_moves_the_new_nodes_of_its_own_side_alone(tmp_path):
 
 
 def test_the_bound_of_a_temperature_holds_the_error_of_elements_far_away(tmp_path):
-    """A ring heated within, T = q r ln(R/r)/k: its side towards the middle is fine, the others are
-    not."""
-    inner, outer, flux = 1.0, 9.0, 5.0
+    """A ring heated within, T = T(R) + q r ln(R/r)/k: its side towards the middle is fine, the others
+    are not. Where it is cooled, its largest temperature is given."""
+    inner, outer = 1.0, 9.0
     radii = [inner, 1.02, 1.04, 1.06, 1.08, 3.0, outer]
-    result = solve(write(tmp_path / "ring.inp", mesh("RING", radii, [0.0, 0.02], "CAX4"),
-                         material("RING", conductivity=2.0), [
-        "*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "RING.RIGHT, 11, 11, 0.",
-        "*DSFLUX", f"RING.LEFT, S, {flux!r}", "*END STEP"]))
-    value, bound = errors(result, "body 1")["temperature"][:2]
-    assert 0.0 < abs(value - flux * inner * np.log(outer / inner) / 2.0) <= bound
+
+    def largest(flux, given):
+        return errors(solve(write(
+            tmp_path / f"ring{flux}{given}.inp", mesh("RING", radii, [0.0, 0.02], "CAX4"),
+            material("RING", conductivity=2.0), [
+                "*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY",
+                f"RING.RIGHT, 11, 11, {given!r}", "*DSFLUX", f"RING.LEFT, S, {flux!r}",
+                "*END STEP"])), "body 1")["temperature"][:2]
+
+    value, bound = largest(5.0, 0.0)
+    assert 0.0 < abs(value - 5.0 * inner * np.log(outer / inner) / 2.0) <= bound
+    np.testing.assert_allclose(largest(5.0, 300.0), [300.0 + value, bound], rtol=1e-9)
+    assert tuple(largest(-5.0, 300.0)) == (300.0, 0.0)
 
 
 def test_every_body_has_its_own_stress_and_singular_corners(tmp_path):
