@@ -235,13 +235,15 @@ def test_films_hold_the_ends_of_rods(tmp_path):
     assert found["growth_rate"] == pytest.approx(rate, rel=1e-3)
 
 
-@pytest.mark.parametrize(("across", "capacity"), [(0.0, 0.8), (5e-4, 1.0), (0.0, 0.6), (0.0, 0.1)])
-def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capacity):
+@pytest.mark.parametrize(("across", "capacity", "beside"), [
+    (0.0, 0.8, []), (5e-4, 1.0, []), (0.0, 0.6, ["*GAP HEAT GENERATION", "1., 1., 2."]),
+    (0.0, 0.1, [])])
+def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capacity, beside):
     """A block of one temperature T expands along a wall, one side held, and against it: the other
     side slips by s = alpha T - mu p/(2 E), p = p0 + E beta T, and makes q = mu p s'/2 of heat. With
     a film H, C T' = -H (T - 20) + q. Equations keep the block from bending and warping. Where slip
     makes more heat than the block stores, motions grow however fast they are. Another pair, in
-    front of it, slips without heat."""
+    front of it, slips without heat, or slides out of the plane."""
     friction, given, expansion, film, young = 0.5, 100.0, 1e-2, 3.0, 1e4
 
     def pressure(warmth):
@@ -262,7 +264,7 @@ def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capac
              *(card for name in ("WALL", "ASIDE", "BASE") for card in material(
                  name, (young, 0.0), None, 1.0, 1.0, 1.0)),
              "*EQUATION", *(line for card in alike for line in ("2", card)),
-             "*SURFACE INTERACTION, NAME=COLD", "*FRICTION", f"{friction!r}",
+             "*SURFACE INTERACTION, NAME=COLD", "*FRICTION", f"{friction!r}", *beside,
              "*CONTACT PAIR, INTERACTION=COLD, NAME=ASIDE", "ASIDE.BOTTOM, BASE.TOP",
              "*SURFACE INTERACTION, NAME=FACE", "*FRICTION", f"{friction!r}",
              "*GAP HEAT GENERATION", "1., 1.", "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE",
