@@ -253,6 +253,28 @@ def test_values_are_told_with_the_bounds_of_their_errors(tmp_path, quantity, whe
     assert (tmp_path / "told.lst").read_text().count(f"found:  {found} +- {said}\n") == 2
 
 
+def test_the_bound_of_a_check_holds_the_error_of_the_increments(tmp_path):
+    """Blocks slide faster from increment to increment, and the slip of the last one heats them."""
+    bodies = [*mesh("UP", [0.0, 1.0, 2.0], [0.0, 1.0], "CPE4"),
+              *mesh("LOW", [0.0, 1.0, 2.0], [-1.0, 0.0], "CPE4", first=101)]
+    deck = write(tmp_path / "deck.inp", bodies, *(
+        [*material(name, (1e9, 0.0), 0.0, CONDUCTIVITY), "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
+         f"{name}, 0."] for name in ("UP", "LOW")), [
+        "*AMPLITUDE, NAME=SLIDE", "0., 0., 0.25, 0.1, 0.5, 0.3, 0.75, 0.6, 1., 1.",
+        "*SURFACE INTERACTION, NAME=I", "*FRICTION", f"{FRICTION!r}", "*GAP LAW, TYPE=POWER",
+        "3., 0., 1.", "*GAP HEAT GENERATION", "1., 0.7",
+        "*CONTACT PAIR, INTERACTION=I, NAME=FACE", "UP.BOTTOM, LOW.TOP",
+        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "0.25, 1.",
+        "*BOUNDARY", "LOW, 1, 2", "UP.TOP, 11", "LOW.BOTTOM, 11", "*BOUNDARY, AMPLITUDE=SLIDE",
+        "UP.TOP, 1, 1, 0.05", "*DSLOAD", "UP.TOP, P, 100.", "*END STEP",
+        "*VERIFY, KIND=FIGURE", "NT, 1, LAST, 0., 1e-9, ABS"])
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    said = float(re.search(r": \S+ \+- (\S+), expected", process.stderr)[1])
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        _, bound, _, of_increments, _ = file["errors/body 1/temperature"][-1]
+    assert 0.0 < of_increments < said <= bound
+
+
 def test_the_bound_of_a_check_is_that_of_its_own_body(tmp_path):
     """A bent plate has the bound that it has alone, beside one on which nothing acts."""
     said = {}
