@@ -79,10 +79,11 @@ def test_a_warm_truss_pushes(tmp_path, anchor_at, beside, young):
     cards = [*mesh("BODY", [0.0, 2.0], [0.0, 1.0], kind="CPS8"),
              *material("BODY", elastic, 1e-4), "0.5"]
     top = next(number for number, place in nodes_of(cards).items() if place == (1.0, 1.0))
-    truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", f"51, {top}, 101", *material(
+    ends = f"{top}, 101" if beside else f"101, {top}"
+    truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", f"51, {ends}", *material(
         "BAR", (1000.0, 0.0), 2e-4), "0.2"]
     free, longer = 1e-4 * HEATED, 2.0 * 2e-4 * (HEATED + anchor_at) / 2
-    spring = springs("SPRINGA", f"{top}, 101", f"{beside!r}", number=50) if beside else []
+    spring = springs("SPRINGA", ends, f"{beside!r}", number=50) if beside else []
     judge(tmp_path, [*cards, *HANDLE, *anchor(1.0, 3.0), *spring, *truss, *COLD, *HELD, "ANCHOR, 2",
                      "*TEMPERATURE", "BODY, 30.", "HANDLE, 30.", f"ANCHOR, {anchor_at!r}",
                      "*END STEP"],
