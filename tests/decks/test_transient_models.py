@@ -9,7 +9,7 @@ import pytest
 import transients as two
 from blocks import write
 from calculix import thercon
-from deck_runs import assert_alike, datasets, solve
+from deck_runs import assert_alike, datasets, run, solve
 from physics import material, mesh, nodes_of, verify
 from scipy.optimize import brentq
 from transients import HIGH, LOW, XS
@@ -415,3 +415,16 @@ def test_increments_count_the_passes_of_all_their_stages(tmp_path, scheme, stage
                           two.heated(f"*THERMAL SCHEME, TYPE={scheme}"))
     with h5py.File(solve(deck)) as file:
         assert (file["history/iterations"][:] == stages).all()
+
+
+@pytest.mark.parametrize("scheme", ["L-STABLE", "IMPLICIT"])
+def test_a_stage_that_fails_is_one_of_its_increment(tmp_path, scheme):
+    """The listing has its passes."""
+    deck = two.write_deck(tmp_path / "deck.inp", two.bodies(), two.contact(), [
+        f"*THERMAL SCHEME, TYPE={scheme}", "*FIXED POINT, METHOD=PICARD, TOL=1E-12, MAXITER=2"],
+        two.heated())
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode == 2
+    assert "error: increment 1 (time 5E-2): the conductance does not converge" in process.stderr
+    rows = [row.split()[:2] for row in deck.with_suffix(".cvg").read_text().splitlines()[1:]]
+    assert rows == [["1", "1"], ["1", "2"]]
