@@ -127,6 +127,19 @@ def test_films_of_the_past_go_on_to_the_last_bit(tmp_path):
     assert_same(whole, go_on(deck, whole, tmp_path / "again", float(kept(whole)[1])))
 
 
+def test_values_that_ramp_from_where_the_step_before_left_them_go_on(tmp_path):
+    """A plate is pulled and heated at an end that is given a place and a temperature thereafter."""
+    coupled = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "0.25, 1."]
+    deck = write(tmp_path / "deck.inp", mesh("BAR", [0.0, 1.0], [0.0, 1.0], "CPS4"), material(
+        "BAR", (1000.0, 0.3), 1e-4, 1.0), ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BAR, 0."], [
+        WRITE, *coupled, "*BOUNDARY", "BAR.BOTTOM, 1, 2", "BAR.BOTTOM, 11", "*DSLOAD",
+        "BAR.TOP, P, -5.", "*DSFLUX", "BAR.TOP, S, 20.", "*END STEP",
+        *coupled, "*BOUNDARY", "BAR.TOP, 2, 2, 0.04", "BAR.TOP, 11, 11, 50.", "*END STEP"])
+    whole = solve(deck)
+    for at in 0.5, 1.25, 1.75:
+        assert_same(whole, go_on(deck, whole, tmp_path / f"from{at}", at))
+
+
 def test_it_goes_on_within_increments_that_are_cut_back(tmp_path):
     """Plain iteration allows too few passes for the increments of the deck."""
     path = rods.write_rods(tmp_path / "rods.inp")
