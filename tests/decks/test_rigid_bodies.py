@@ -245,6 +245,31 @@ def test_heat_comes_from_the_reference_node(tmp_path):
     judge(tmp_path, *heated(60.0))
 
 
+def test_a_hot_plate_that_leans_heats_as_its_mirror_image_and_as_one_of_elements_do(tmp_path):
+    """It touches within the last side of the face, or within the first one."""
+    held = ["9001, 1", "9001, 6", "9001, 2, 2, -0.006"]
+    plate = [*mesh("PLATE", [0.0, 2.0], [1.0, 1.5], "CPE4", first=101, to=lambda x, y: (x, y + x / 50)),
+             *material("PLATE", (1000.0, 0.3), 0.0, 6.0), "*RIGID BODY, REF NODE=9001, ELSET=PLATE"]
+    ways = [(["*SURFACE, NAME=PLATE.BOTTOM, TYPE=SEGMENTS", f"START, 2., {right!r}",
+              f"LINE, 0., {left!r}", "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=PLATE.BOTTOM"],
+             "9001, 11, 11, 80.") for left, right in ((1.04, 1.0), (1.0, 1.04))]
+    found = []
+    for way, (body, hot) in enumerate([*ways, (plate, "PLATE, 11, 11, 80.")]):
+        deck = write(tmp_path / f"way{way}.inp", mesh(
+            "BLOCK", [0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 0.5, 1.0]),
+            material("BLOCK", (1000.0, 0.3), 0.0, 6.0), ["*NODE", "9001, 1., 2."], body, [
+            *SMOOTH, "*GAP LAW, TYPE=GAS", "0.01, 0.005", "*GAP LAW, TYPE=POWER", "2., 0.5, 1.",
+            "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, PAIRING=SURFACES",
+            "BLOCK.TOP, PLATE.BOTTOM", "*STEP",
+            "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*BOUNDARY",
+            "BLOCK.BOTTOM, 1, 2", "BLOCK.BOTTOM, 11", *held, hot, "*END STEP"])
+        with h5py.File(solve(deck)) as file:
+            face = file["contact/FACE"]
+            found.append([face[name][-1] for name in ("heat_rate", "normal_force")])
+            assert 0 < np.count_nonzero(face["pressure"][-1]) < 3
+    np.testing.assert_allclose(found[1:], [found[0]] * 2, rtol=1e-6)
+
+
 def test_rotation_that_is_large_is_warned_of(tmp_path):
     cards, _ = heated(60.0)
     deck = tmp_path / "deck.inp"
