@@ -8,6 +8,7 @@ import pytest
 from blocks import write
 from deck_runs import run
 from physics import follows, judge, material, mesh, nodes_of
+from scipy.optimize import brentq
 from test_gap_heat import SIGMA, slabs
 from test_physics_schemes import step
 from test_values_contact import K, PRESSURE, pressed
@@ -229,15 +230,20 @@ def test_both_faces_have_the_heat_of_both_ends_of_an_increment(tmp_path, scheme,
 
 def bar_on_a_wall(number, pressure=1.0, analysis="STEADY STATE", times="1., 1.", k=1.0):
     """Return a bar on an insulating wall that slides, S = mu V E alpha L/k, pressed and cold at its
-    other end; the wall, which is cold, conducts k."""
+    other end; the wall, which is cold, conducts k. Another pair, in front of it, is open."""
+    idle = [card for name, at in (("IDLE", 3.0), ("BACK", 1.5)) for card in (
+        *mesh(name, [at, at + 1.0], [0.0, 0.25], "CPS8", first=int(200 * at)),
+        *material(name, (1000.0, 0.0), 0.0, 1.0))]
     bar = mesh("BAR", np.linspace(0.0, 1.0, 5), [0.0, 0.25], "CPS8")
     wall = mesh("WALL", [-0.25, 0.0], [0.0, 0.25], "CPS8", first=101)
     return [*bar, *material("BAR", (1000.0, 0.0), (1e-3, 0.0, 0.0), 1.0, density=1.0,
                             specific_heat=1.0, expansion_type="ORTHO"),
-            *wall, *material("WALL", (1000.0, 0.0), 0.0, k),
-            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BAR, 0.", "WALL, 0.",
-            "*SURFACE INTERACTION, NAME=FACES", "*FRICTION", "0.5",
+            *wall, *material("WALL", (1000.0, 0.0), 0.0, k), *idle,
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BAR, 0.", "WALL, 0.", "IDLE, 0.", "BACK, 0.",
+            "*BOUNDARY", *(f"{name}, {dofs}, 0." for name in ("IDLE", "BACK") for dofs in (
+                "1, 2", "11, 11")), "*SURFACE INTERACTION, NAME=FACES", "*FRICTION", "0.5",
             "*GAP HEAT GENERATION", f"1., 1., {2 * number!r}",
+            "*CONTACT PAIR, INTERACTION=FACES, NAME=OPEN", "IDLE.LEFT, BACK.RIGHT",
             "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "BAR.LEFT, WALL.RIGHT",
             "*STEP, INC=1000", f"*COUPLED TEMPERATURE-DISPLACEMENT, {analysis}", times,
             "*BOUNDARY", "WALL, 1, 2, 0.", "WALL, 11, 11, 0.", "BAR.BOTTOM, 2, 2, 0.",
@@ -256,6 +262,25 @@ def test_the_gain_of_a_bar_on_a_sliding_wall_is_half_of_its_number(tmp_path, k):
             ("NT", "BAR.LEFT", "LAST", number * pressure, 1e-9)]
 
     follows(tmp_path, make, 1.0, 1.5)
+
+
+def test_gain_and_newtons_method_know_heat_and_conductance_together(tmp_path):
+    """With h = 0.5 + 0.1 p to the wall the face has T = q/(1 + h) and the pressure 1 + T/2 from the
+    heat q = S p: the gain is that of h and q together."""
+    number, touching, rise = 1.0, 0.5, 0.1
+    cards = bar_on_a_wall(number)
+    at = cards.index("*FRICTION")
+    cards[at:at] = ["*GAP LAW, TYPE=POWER", f"{touching!r}, {rise!r}, 1."]
+    pressure = brentq(lambda p: p - 1 - number * p / (1 + touching + rise * p) / 2, 0.1, 10.0,
+                      xtol=1e-14)
+    series = 1 + touching + rise * pressure
+    gain = number / series / 2 - rise * number * pressure / series**2 / 2
+    judge(tmp_path, ["*FIXED POINT, METHOD=NEWTON, TOL=1E-11", *cards], [
+        ("pressure", "FACE", "LAST", pressure, 1e-9), ("coupling_gain", "", "LAST", gain, 1e-9),
+        ("coupling_gain_max", "", "LAST", gain, 1e-9)])
+    rows = (tmp_path / "deck.cvg").read_text().splitlines()[1:]
+    before, last = (float(row.split()[2]) for row in rows[-2:])
+    assert last < before**2
 
 
 def test_above_the_critical_speed_no_steady_state_presses_the_bar(tmp_path):
