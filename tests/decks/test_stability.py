@@ -292,7 +292,8 @@ def test_slip_in_the_plane_heats_at_the_rate_of_a_motion(tmp_path, across, capac
 @pytest.mark.parametrize(("slave", "gap"), [("BLOCK", None), ("WALL", None), ("WALL", 0.1)])
 def test_tables_follow_openings_and_temperatures_beside_the_heat_of_a_speed(tmp_path, slave, gap):
     """A block of one temperature T expands against a wall of 30, or towards it, across which heat h
-    goes by pressure or gap and the mean of both temperatures; faces slide out of the plane."""
+    goes by pressure or gap and the mean of both temperatures; faces slide out of the plane.
+    Another pair, in front of it, has one temperature."""
     young, film, sink, wall, capacity, friction, speed = 1e4, 3.0, 90.0, 30.0, 2.0, 0.5, 0.8
     expansion = 1e-3 if gap else 1e-4
     share = 0.3 if slave == "BLOCK" else 0.7
@@ -316,19 +317,26 @@ def test_tables_follow_openings_and_temperatures_beside_the_heat_of_a_speed(tmp_
              if gap is None else
              ["CLEARANCE", "8., 0., 0.", "0., 0.2, 0.", "20., 0., 400.", "0., 0.2, 400."])
     top, down = 1.0 + (gap or 0.0), -100.0 / young if gap is None else 0.0
+    idle = [card for name, y, first in (("IDLE", 0.05, 201), ("BACK", -1.0, 301)) for card in (
+        *mesh(name, [3.0, 4.0], [y, y + 1.0], "CPS4", first=first),
+        *material(name, (young, 0.0), None, 1.0, 1.0, 1.0))]
     cards = [*mesh("BLOCK", [0.0, 1.0], [top - 1.0, top], "CPS4"),
              *material("BLOCK", (young, 0.0), (0.0, expansion, 0.0), 1.0, 1.0, capacity,
                        expansion_type="ORTHO"),
              *mesh("WALL", [0.0, 1.0], [-1.0, 0.0], "CPS4", first=101),
-             *material("WALL", (young, 0.0), None, 1.0, 1.0, 1.0),
+             *material("WALL", (young, 0.0), None, 1.0, 1.0, 1.0), *idle,
              "*EQUATION", *(line for node in (2, 3, 4) for line in (
                  "2", f"{node}, 11, 1., 1, 11, -1.")),
              "*SURFACE INTERACTION, NAME=FACE", "*FRICTION", f"{friction!r}", "*GAP HEAT GENERATION",
-             f"1., 0.3, {speed!r}", f"*GAP CONDUCTANCE, {table[0]}", *table[1:], "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE",
+             f"1., 0.3, {speed!r}", f"*GAP CONDUCTANCE, {table[0]}", *table[1:],
+             "*CONTACT PAIR, INTERACTION=FACE, NAME=IDLE", "IDLE.BOTTOM, BACK.TOP",
+             "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE",
              "BLOCK.BOTTOM, WALL.TOP" if slave == "BLOCK" else "WALL.TOP, BLOCK.BOTTOM",
-             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BLOCK, 0.", f"WALL, {wall!r}", "*STEP",
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BLOCK, 0.", *(
+                 f"{name}, {wall!r}" for name in ("WALL", "IDLE", "BACK")), "*STEP",
              "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*STABILITY",
-             "*BOUNDARY", "WALL, 1, 2, 0.", f"WALL, 11, 11, {wall!r}", "BLOCK.LEFT, 1, 1, 0.",
+             "*BOUNDARY", *(card for name in ("WALL", "IDLE", "BACK") for card in (
+                 f"{name}, 1, 2, 0.", f"{name}, 11, 11, {wall!r}")), "BLOCK.LEFT, 1, 1, 0.",
              f"BLOCK.TOP, 2, 2, {down!r}", "*SFILM", f"BLOCK.TOP, F, {sink!r}, {film!r}",
              "*END STEP"]
     found = stability_of(solved(tmp_path, cards)[0])
