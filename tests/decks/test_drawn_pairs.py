@@ -105,3 +105,24 @@ def test_a_face_that_leans_at_the_axis_meets_a_drawing_there(tmp_path, kind):
     (dx, dy), (ex, ey) = ((b[0] - a[0], b[1] - a[1]) for a, b in pairwise(face))
     lean = atan2(3 * dy - ey, 3 * dx - ex)   # of the parabola through the side at its end
     assert found["gap"][0] == pytest.approx(1e-4 * cos(lean / 2), abs=1e-9)
+
+
+def test_a_drawing_faces_a_slave_whose_face_goes_round_a_corner(tmp_path):
+    """Its last node, which is farther away, is on the side, where nothing is met."""
+    forces = []
+    for sides in ("TOP",), ("TOP", "RIGHT"):
+        block = mesh("BLOCK", even(0.0, WIDTH, 4), even(0.0, TOP, 2), "CPE4")
+        faces = [block[k] for side in sides for k in range(
+            block.index(f"*SURFACE, NAME=BLOCK.{side}") + 1, len(block)) if block[k].endswith(
+                {"TOP": "S3", "RIGHT": "S2"}[side])]
+        faces = list(dict.fromkeys(faces))
+        deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO"], block, [
+            "*SURFACE, NAME=ROUND", *faces], material("BLOCK", (1e5, 0.0)), drawn(
+                (3.0, TOP), line(-1.0, TOP)), [
+            "*SURFACE INTERACTION, NAME=I", "*CONTACT PAIR, INTERACTION=I, NAME=C, PAIRING=NODES",
+            "ROUND, DIE", *STATIC, "BLOCK.BOTTOM, 1, 2", "9000, 1", "9000, 6",
+            "9000, 2, 2, -0.0008", "*END STEP"])
+        with h5py.File(solve(deck)) as file:
+            forces.append(file["contact/C/normal_force"][-1])
+    assert forces[0] == pytest.approx(200.0, rel=1e-9)
+    assert 0.0 < forces[1] <= forces[0] * (1 + 1e-9)

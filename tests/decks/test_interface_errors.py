@@ -257,6 +257,17 @@ def test_heat_across_an_open_gap_has_the_same_bound_beside_a_closed_joint(tmp_pa
     np.testing.assert_allclose(found[1], found[0], rtol=1e-6)
 
 
+def test_bounds_are_the_same_whichever_face_is_the_slave(tmp_path):
+    """Where the same nodes are opposite each other: elements on both sides are divided."""
+    deck = bent_on_a_block(tmp_path / "deck.inp", [])
+    cards, found = deck.read_text(), []
+    for pair in "A.BOTTOM, B.TOP", "B.TOP, A.BOTTOM":
+        deck.write_text(cards.replace("NAME=P\nA.BOTTOM, B.TOP", f"NAME=P, PAIRING=SURFACES\n{pair}"))
+        found.append(errors(solve(deck), "P")["normal_force"][:2])
+    assert found[0][1] > 0.0
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-6)
+
+
 def test_a_mirrored_punch_has_the_same_bounds(tmp_path):
     punch = punches(tmp_path / "punch.inp", ("B", 1))["B"]
     mirrored = punches(tmp_path / "mirrored.inp", ("B", 1, 0.0, 1.0, -1))["B"]
