@@ -54,8 +54,10 @@ def test_true_errors_are_inside_the_target_and_the_bound(tmp_path, deck, percent
         found = {name: file[f"contact/FACE/{name}"][-1] for name in CONVERGED[deck] if "peak" not in name}
         found["peak_pressure"] = file["contact/FACE/pressure"][-1].max()
         elements = len(file["VTKHDF/CellData/element_id"])
+        unknowns = sum(file["run"].attrs[name] for name in (
+            "equations_thermal", "equations_mechanical", "contact_unknowns"))
         told = {name: file[f"errors/FACE/{name}"][-1, 1] for name in found}
-    assert elements == costs["elements"][-1]
+    assert (elements, unknowns) == (costs["elements"][-1], costs["unknowns"][-1])
     for name, exact in CONVERGED[deck].items():
         step, value, bound, allowed = bounds[name][-1]
         assert step == 1 and value == pytest.approx(found[name], rel=1e-12), name
