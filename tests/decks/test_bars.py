@@ -73,18 +73,20 @@ def test_a_spring_at_a_node_that_drops_out_pulls_its_neighbours(tmp_path, option
 @pytest.mark.parametrize("beside", [0.0, 50.0])
 @pytest.mark.parametrize("anchor_at", [HEATED, 0.0])
 def test_a_warm_truss_pushes(tmp_path, anchor_at, beside, young):
-    """E A/L = 100; both become longer by alpha T, the truss by that of the mean of its ends. A
-    spring beside it does not. Both pull a node of the body, whose modulus falls to 800 at 30."""
+    """E A/L = 100; both become longer by alpha (T - T0), the truss by that of the mean of its ends.
+    A spring beside it does not. Both pull a node of the body, whose modulus falls to 800 at 30."""
     elastic, stiffness = ((young, 0.0), STIFFNESS) if young == 1000.0 else (young, 0.8 * STIFFNESS)
-    cards = [*mesh("BODY", [0.0, 2.0], [0.0, 1.0], kind="CPS8"),
+    cards = [*mesh("BODY", [0.0, 2.0], [0.0, 1.0], kind="CPS8", first=201),
              *material("BODY", elastic, 1e-4), "0.5"]
     top = next(number for number, place in nodes_of(cards).items() if place == (1.0, 1.0))
     ends = f"{top}, 101" if beside else f"101, {top}"
     truss = ["*ELEMENT, TYPE=T2D2, ELSET=BAR", f"51, {ends}", *material(
         "BAR", (1000.0, 0.0), 2e-4), "0.2"]
-    free, longer = 1e-4 * HEATED, 2.0 * 2e-4 * (HEATED + anchor_at) / 2
+    starts = ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 12.", "HANDLE, -40.", "ANCHOR, -4."]
+    free, longer = 1e-4 * (HEATED - 12.0), 2.0 * 2e-4 * (HEATED - 12.0 + anchor_at + 4.0) / 2
     spring = springs("SPRINGA", ends, f"{beside!r}", number=50) if beside else []
-    judge(tmp_path, [*cards, *HANDLE, *anchor(1.0, 3.0), *spring, *truss, *COLD, *HELD, "ANCHOR, 2",
+    judge(tmp_path, [*HANDLE[:2], *cards, *HANDLE[2:], *anchor(1.0, 3.0), *spring, *truss, *starts,
+                     *HELD, "ANCHOR, 2",
                      "*TEMPERATURE", "BODY, 30.", "HANDLE, 30.", f"ANCHOR, {anchor_at!r}",
                      "*END STEP"],
           [("U2", "100", "LAST",

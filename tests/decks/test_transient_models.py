@@ -173,25 +173,32 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
                                rtol=1e-9)
 
 
+@pytest.mark.parametrize("analysis", ["HEAT TRANSFER", "COUPLED TEMPERATURE-DISPLACEMENT"])
 @pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "L-STABLE"])
-def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme):
+def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme, analysis):
     """A face of the temperature T takes up the heat of the other face, at 100 at once, of a body at
     -50 at once, of a film, of a source that rises in total time, and of friction: C T' = R(t, T), in
-    one increment from t = 1 to 2. Another pair, in front of it, is open and makes no heat."""
+    one increment from t = 1 to 2. The lower body expands between supports, which the pressure
+    follows in a coupled step. Another pair, in front of it, is open and makes no heat."""
     start, conductance, film, sink, friction = 10.0, 0.7, 0.4, 30.0, (0.1, 5.0, 3.0, 0.2)
     conduct, content = [(2.0, -50.0), (4.0, 150.0)], [(1.0, -50.0), (3.0, 150.0)]   # 1.5 + T/100
     coefficient, pressure, speed, share = friction
 
-    def rate(time, warmth):
+    def pressed(warmth):
+        mean = (warmth - 50.0) / 2 - start if analysis.startswith("COUPLED") else 0.0
+        return pressure + 1000.0 / 2 * 1e-4 * mean
+
+    def rate(time, warmth, force):
         return (conductance * (100.0 - warmth) - (2.5 + (warmth - 50.0) / 200) * (warmth + 50.0)
                 + (4.0 + 8.0 * (time - 1.0)) / 2 - film * (warmth - sink)
-                + coefficient * pressure * speed * (1 - share))
+                + coefficient * force * speed * (1 - share))
 
     def stored(warmth):
         return (1.5 * warmth + warmth**2 / 200) / 2
 
     def solved(time, size, before):
-        return brentq(lambda t: stored(t) - before - size * rate(time, t), -50.0, 100.0, xtol=1e-13)
+        return brentq(lambda t: stored(t) - before - size * rate(time, t, pressed(t)), -50.0, 100.0,
+                      xtol=1e-13)
 
     if scheme == "L-STABLE":
         part = 1 - 0.5**0.5
@@ -199,13 +206,13 @@ def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme):
         end = solved(2.0, part, stored(start) + (1 / part - 1) * first)
     else:
         part = {"IMPLICIT": 1.0, "GALERKIN": 2 / 3, "CRANK-NICOLSON": 0.5}[scheme]
-        end = solved(2.0, part, stored(start) + (1 - part) * rate(1.0, start))
+        end = solved(2.0, part, stored(start) + (1 - part) * rate(1.0, start, pressure))
     solve(write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO", f"*THERMAL SCHEME, TYPE={scheme}"],
                 mesh("UPPER", [0.0, 1.0], [0.0, 1.0], "CPE4"),
                 mesh("LOWER", [0.0, 1.0], [-1.0, 0.0], "CPE4", first=101),
                 mesh("IDLE", [2.0, 3.0], [0.1, 1.0], "CPE4", first=201),
                 mesh("BACK", [2.0, 3.0], [-1.0, 0.0], "CPE4", first=301),
-                *(material(name, conductivity=conduct, density=1.0, specific_heat=content)
+                *(material(name, (1000.0, 0.0), 1e-4 if name == "LOWER" else None, conduct, 1.0, content)
                   for name in ("UPPER", "LOWER", "IDLE", "BACK")), [
         "*SURFACE INTERACTION, NAME=OTHER",
         "*CONTACT PAIR, INTERACTION=OTHER, NAME=IDLE", "IDLE.BOTTOM, BACK.TOP",
@@ -217,12 +224,12 @@ def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme):
         "*AMPLITUDE, NAME=RISE, TIME=TOTAL TIME", "1., 4., 2., 12.",
         "*BOUNDARY", "UPPER, 1", "LOWER, 1", "LOWER.BOTTOM, 2", "IDLE, 1, 2", "BACK, 1, 2",
         *(f"{name}, 11, 11, {start!r}" for name in ("IDLE", "BACK")),
-        "*STEP", "*STATIC", "1., 1.", "*DSLOAD", f"UPPER.TOP, P, {pressure!r}", "*END STEP",
-        "*STEP", "*HEAT TRANSFER, DIRECT", "1., 1.", "*BOUNDARY", "UPPER, 11, 11, 100.",
+        "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", f"UPPER.TOP, 2, 2, {-pressure / 500!r}", "*END STEP",
+        "*STEP", f"*{analysis}, DIRECT", "1., 1.", "*BOUNDARY", "UPPER, 11, 11, 100.",
         "LOWER.BOTTOM, 11, 11, -50.", "*DFLUX, AMPLITUDE=RISE", "LOWER, BF, 1.", "*SFILM",
         f"LOWER.TOP, F, {sink!r}, {film!r}", "*END STEP",
         *verify(("NT", "LOWER.TOP", "LAST", end, 1e-8),
-                ("heat_stored", "", "LAST", rate(2.0, end), 1e-7))]))
+                ("heat_stored", "", "LAST", rate(2.0, end, pressed(end)), 1e-7))]))
 
 
 # Steps and methods
