@@ -235,16 +235,21 @@ def test_nodes_that_all_but_coincide(tmp_path, side, told):
 
 @pytest.mark.parametrize(("ratio", "told"), [(1e-6, False), (1e-11, True)])
 def test_a_stiff_body_on_a_far_softer_one(tmp_path, ratio, told):
-    """What holds the upper block is lost in its rounding."""
+    """What holds the upper block is lost in its rounding, which a run that goes on does not tell
+    again."""
     cards = block("A", XS, [0.0, 1.0, 2.0]) + block("B", XS, [2.0, 3.0, 4.0], first=101)
     cards += solid("A", 1e5 * ratio, 0.0) + solid("B", 1e5, 0.0)
     cards += ["*SURFACE INTERACTION, NAME=I", "*CONTACT PAIR, INTERACTION=I, NAME=F", "B.BOTTOM, A.TOP",
               "*BOUNDARY", "A.BOTTOM, 1, 2", "B.LEFT, 1"]
-    deck = write(tmp_path / "deck.inp", cards, PRESSED)
+    deck = write(tmp_path / "deck.inp", ["*RESTART, WRITE"], cards, [
+        "0.5, 1." if card == "1., 1." else card for card in PRESSED])
     process = run("run", "--quiet", deck, "--out", tmp_path)
     assert process.returncode == 0, process.stderr
     listing = deck.with_suffix(".lst").read_text()
     assert ("the smallest pivot of the bodies is" in listing) == told
+    again = run("run", "--quiet", deck, "--restart", f"{deck.with_suffix('.vtkhdf')}@0.5", "--out",
+                tmp_path / "again")
+    assert again.returncode == 0 and "pivot" not in again.stderr
 
 
 def test_faces_far_apart_are_paired_all_the_same(tmp_path):
