@@ -133,8 +133,8 @@ def test_a_later_step_divides_the_elements_at_its_contact(tmp_path):
 @pytest.mark.parametrize("order", [[], ["*OPTIONS, ORDER=1"]])
 def test_mesh_of_a_model_with_equations(tmp_path, friction, order):
     """All nodes of the top move as one that is held: the bounds are those of a top that is held
-    itself, but that its new nodes hang along x and in temperature, too: of linear elements that moves
-    the peak."""
+    itself, but that its new nodes hang along x and in temperature, too: of linear elements that
+    moves the peak."""
     plain = bent_on_a_block(tmp_path / "plain.inp", friction, order)
     top = [node for node, (x, y) in nodes_of(plain.read_text().splitlines()).items()
            if y == 2.0 and not (order and 2 * x % 1)]   # which are corners, 0.5 apart
@@ -262,7 +262,8 @@ def test_bounds_are_the_same_whichever_face_is_the_slave(tmp_path):
     deck = bent_on_a_block(tmp_path / "deck.inp", [])
     cards, found = deck.read_text(), []
     for pair in "A.BOTTOM, B.TOP", "B.TOP, A.BOTTOM":
-        deck.write_text(cards.replace("NAME=P\nA.BOTTOM, B.TOP", f"NAME=P, PAIRING=SURFACES\n{pair}"))
+        deck.write_text(cards.replace("NAME=P\nA.BOTTOM, B.TOP",
+                                      f"NAME=P, PAIRING=SURFACES\n{pair}"))
         found.append(errors(solve(deck), "P")["normal_force"][:2])
     assert found[0][1] > 0.0
     np.testing.assert_allclose(found[1], found[0], rtol=1e-6)
@@ -313,8 +314,8 @@ def test_an_amplitude_moves_the_new_nodes_of_its_own_side_alone(tmp_path):
 
 
 def test_the_bound_of_a_temperature_holds_the_error_of_elements_far_away(tmp_path):
-    """A ring heated within, T = T(R) + q r ln(R/r)/k: its side towards the middle is fine, the others
-    are not. Where it is cooled, its largest temperature is given."""
+    """A ring heated within, T = T(R) + q r ln(R/r)/k: its side towards the middle is fine, the
+    others are not. Where it is cooled, its largest temperature is given."""
     inner, outer = 1.0, 9.0
     radii = [inner, 1.02, 1.04, 1.06, 1.08, 3.0, outer]
 

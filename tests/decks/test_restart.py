@@ -442,7 +442,8 @@ def test_a_batch_is_resumed(long, long_result, tmp_path):
 
 def test_checks_that_failed_in_a_finished_run_fail_again(tmp_path):
     path = rods.write_rods(tmp_path / "rods.inp")
-    deck = copy_deck(path, path, ["*VERIFY, KIND=ANALYTIC, SOURCE=none", "gap, FACE, 1., -5., 1.E-3",
+    deck = copy_deck(path, path, ["*VERIFY, KIND=ANALYTIC, SOURCE=none",
+                                  "gap, FACE, 1., -5., 1.E-3",
                                   f"NT, HOT.TOP, 1., {rods.HOT}, 1.E-9",
                                   "NT, COLD.BOTTOM, 1., 0., 1.E-9, ABS"])
     assert run("run", deck, "--out", tmp_path, "--jobs", "1").returncode == 4

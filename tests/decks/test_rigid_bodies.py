@@ -248,7 +248,8 @@ def test_heat_comes_from_the_reference_node(tmp_path):
 def test_a_hot_plate_that_leans_heats_as_its_mirror_image_and_as_one_of_elements_do(tmp_path):
     """It touches within the last side of the face, or within the first one."""
     held = ["9001, 1", "9001, 6", "9001, 2, 2, -0.006"]
-    plate = [*mesh("PLATE", [0.0, 2.0], [1.0, 1.5], "CPE4", first=101, to=lambda x, y: (x, y + x / 50)),
+    plate = [*mesh("PLATE", [0.0, 2.0], [1.0, 1.5], "CPE4", first=101,
+                   to=lambda x, y: (x, y + x / 50)),
              *material("PLATE", (1000.0, 0.3), 0.0, 6.0), "*RIGID BODY, REF NODE=9001, ELSET=PLATE"]
     ways = [(["*SURFACE, NAME=PLATE.BOTTOM, TYPE=SEGMENTS", f"START, 2., {right!r}",
               f"LINE, 0., {left!r}", "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=PLATE.BOTTOM"],

@@ -177,8 +177,8 @@ def test_temperatures_that_jump_hold_their_heat_at_once(tmp_path, jump):
 @pytest.mark.parametrize("scheme", ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "L-STABLE"])
 def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme, analysis):
     """A face of the temperature T takes up the heat of the other face, at 100 at once, of a body at
-    -50 at once, of a film, of a source that rises in total time, and of friction: C T' = R(t, T), in
-    one increment from t = 1 to 2. The lower body expands between supports, which the pressure
+    -50 at once, of a film, of a source that rises in total time, and of friction: C T' = R(t, T),
+    in one increment from t = 1 to 2. The lower body expands between supports, which the pressure
     follows in a coupled step. Another pair, in front of it, is open and makes no heat."""
     start, conductance, film, sink, friction = 10.0, 0.7, 0.4, 30.0, (0.1, 5.0, 3.0, 0.2)
     conduct, content = [(2.0, -50.0), (4.0, 150.0)], [(1.0, -50.0), (3.0, 150.0)]   # 1.5 + T/100
@@ -212,8 +212,8 @@ def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme, analy
                 mesh("LOWER", [0.0, 1.0], [-1.0, 0.0], "CPE4", first=101),
                 mesh("IDLE", [2.0, 3.0], [0.1, 1.0], "CPE4", first=201),
                 mesh("BACK", [2.0, 3.0], [-1.0, 0.0], "CPE4", first=301),
-                *(material(name, (1000.0, 0.0), 1e-4 if name == "LOWER" else None, conduct, 1.0, content)
-                  for name in ("UPPER", "LOWER", "IDLE", "BACK")), [
+                *(material(name, (1000.0, 0.0), 1e-4 if name == "LOWER" else None, conduct, 1.0,
+                           content) for name in ("UPPER", "LOWER", "IDLE", "BACK")), [
         "*SURFACE INTERACTION, NAME=OTHER",
         "*CONTACT PAIR, INTERACTION=OTHER, NAME=IDLE", "IDLE.BOTTOM, BACK.TOP",
         "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=POWER", f"{conductance!r}, 0., 1.",
@@ -224,7 +224,8 @@ def test_a_step_begins_with_the_rates_that_its_start_has(tmp_path, scheme, analy
         "*AMPLITUDE, NAME=RISE, TIME=TOTAL TIME", "1., 4., 2., 12.",
         "*BOUNDARY", "UPPER, 1", "LOWER, 1", "LOWER.BOTTOM, 2", "IDLE, 1, 2", "BACK, 1, 2",
         *(f"{name}, 11, 11, {start!r}" for name in ("IDLE", "BACK")),
-        "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", f"UPPER.TOP, 2, 2, {-pressure / 500!r}", "*END STEP",
+        "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", f"UPPER.TOP, 2, 2, {-pressure / 500!r}",
+        "*END STEP",
         "*STEP", f"*{analysis}, DIRECT", "1., 1.", "*BOUNDARY", "UPPER, 11, 11, 100.",
         "LOWER.BOTTOM, 11, 11, -50.", "*DFLUX, AMPLITUDE=RISE", "LOWER, BF, 1.", "*SFILM",
         f"LOWER.TOP, F, {sink!r}, {film!r}", "*END STEP",

@@ -532,13 +532,14 @@ def test_a_support_out_of_the_plane_alone(tmp_path):
 
 
 def test_a_jump_in_a_step_is_warned_of_where_increments_are_too_short_for_its_elements(tmp_path):
-    """rho c h^2/(4 k) = 0.09375; elements of half the size need a quarter of it. Nothing jumps in the
-    step before."""
+    """rho c h^2/(4 k) = 0.09375; elements of half the size need a quarter of it. Nothing jumps in
+    the step before."""
     def deck(sides):
         xs = [i / sides for i in range(sides + 1)]
         return [block("A", xs, [0.0, 1.0]), [
             "*MATERIAL, NAME=A", "*CONDUCTIVITY", "2.", "*DENSITY", "1.5", "*SPECIFIC HEAT", "2.",
-            "*SOLID SECTION, ELSET=A, MATERIAL=A", "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "A, 20.",
+            "*SOLID SECTION, ELSET=A, MATERIAL=A",
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "A, 20.",
             "*STEP", "*HEAT TRANSFER, DIRECT", "0.05, 0.1", "*BOUNDARY", "A.LEFT, 11, 11, 20.",
             "*END STEP", "*STEP", "*HEAT TRANSFER, DIRECT", "0.05, 0.1", "*BOUNDARY",
             "A.LEFT, 11, 11, 100.", "*END STEP"]]
