@@ -328,7 +328,8 @@ def test_tables_follow_openings_and_temperatures_beside_the_heat_of_a_speed(tmp_
              "*EQUATION", *(line for node in (2, 3, 4) for line in (
                  "2", f"{node}, 11, 1., 1, 11, -1.")),
              "*SURFACE INTERACTION, NAME=FACE", "*FRICTION", f"{friction!r}",
-             "*GAP HEAT GENERATION", f"1., 0.3, {speed!r}", f"*GAP CONDUCTANCE, {table[0]}", *table[1:],
+             "*GAP HEAT GENERATION", f"1., 0.3, {speed!r}", f"*GAP CONDUCTANCE, {table[0]}",
+             *table[1:],
              "*CONTACT PAIR, INTERACTION=FACE, NAME=IDLE", "IDLE.BOTTOM, BACK.TOP",
              "*CONTACT PAIR, INTERACTION=FACE, NAME=FACE",
              "BLOCK.BOTTOM, WALL.TOP" if slave == "BLOCK" else "WALL.TOP, BLOCK.BOTTOM",
