@@ -31,7 +31,7 @@ module material_points
       procedure :: positions
       procedure :: stress
       procedure :: respond
-      procedure :: has_no_law
+      procedure :: follows_law
       procedure :: heat_flux
       procedure :: add_contents
       procedure :: nodal_forces
@@ -184,14 +184,14 @@ contains
       end associate
    end subroutine respond
 
-   !> Whether thermoelasticity is all that an element responds by.
-   pure logical function has_no_law(self, mesh, element)
+   !> Whether an element responds by a law beyond thermoelasticity.
+   pure logical function follows_law(self, mesh, element)
       class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                         !! which element
 
-      has_no_law = .not. has_law(self%given(self%sections(mesh%element_section(element))%material))
-   end function has_no_law
+      follows_law = has_law(self%given(self%sections(mesh%element_section(element))%material))
+   end function follows_law
 
    !> Stress by thermoelasticity, and the strains without those that are enhanced.
    pure subroutine elastic_stress(self, mesh, element, displacement, temperature, strain, values)

@@ -166,7 +166,7 @@ contains
       history%before = remembered
       history%after = remembered
       do e = 1, size(model%mesh%element_kind)
-         if (self%integration%has_no_law(model%mesh, e)) cycle
+         if (.not. self%integration%follows_law(model%mesh, e)) cycle
          call self%integration%respond(model%mesh, e, displacement, temperature, history, points)
          associate (kind => model%mesh%element_kind(e), first => self%samples%first(e))
             n = recovery_count(kind)
@@ -184,7 +184,7 @@ contains
       real(dp), intent(in) :: samples(:, :)
       real(dp), intent(inout) :: values(most, 4)
 
-      if (self%integration%has_no_law(mesh, e)) return
+      if (.not. self%integration%follows_law(mesh, e)) return
       associate (kind => mesh%element_kind(e), first => self%samples%first(e))
          associate (n => self%quadrature%rules(kind)%count, m => recovery_count(kind))
             values(:n, :) = transpose(matmul(samples(:, first:first + m - 1), &

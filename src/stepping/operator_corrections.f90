@@ -336,7 +336,7 @@ contains
       allocate (tangent(16*size(self%points%materials)), source=0.0_dp)
       do i = 1, size(self%elements)
          associate (e => self%elements(i))
-            if (self%points%has_no_law(model%mesh, e)) cycle
+            if (.not. self%points%follows_law(model%mesh, e)) cycle
             call self%points%respond(model%mesh, e, u, at%temperature - &
                model%initial_temperature, self%history, points)
             do g = 1, points%count
