@@ -1,8 +1,10 @@
 """Letters, legends and zone names of the profiles."""
 
+import numpy as np
 from matplotlib.lines import Line2D
 
 from . import style
+from .result import OPEN, SLIP, STICK
 
 EDGES = {
     "edges_contact": ("edge of contact", "solid"),
@@ -94,18 +96,25 @@ def edge_looks(picture):
 
 
 def name_zones(picture, axes):
-    """Name the zones above the panel where one contact zone begins at the first pair."""
-    contact, stick = (picture.edges(key, picture.rows[0]) for key in EDGES)
-    if len(contact) != 1 or len(stick) > 1:
-        return
+    """Name the zones above the panel, between edges and ends of pieces, by the state of most of
+    their pairs."""
+    row, at = picture.rows[0], picture.coordinate
     low, high = picture.window
-    limits = [low, *stick, *contact, high]
-    names = ["stick", "slip", "open"] if len(stick) else ["slip", "open"]
+    names = {OPEN: "open", SLIP: "slip", STICK: "stick"}
     if picture.contact.friction == 0.0 or picture.contact.get("shear") is None:
-        names = ["contact", "open"]
-    for name, left, right in zip(names, limits, limits[1:]):
-        if right - left > 0.09 * (high - low):
-            at = {"xytext": (0, 2.5), "textcoords": "offset points"}
+        names = {OPEN: "open", SLIP: "contact", STICK: "contact"}
+    edges = np.concatenate([picture.edges(key, row) for key in EDGES])
+    for piece in picture.contact.pieces:
+        first, last = np.min(at[piece]), np.max(at[piece])
+        limits = [first, *np.sort(edges[(edges > first) & (edges < last)]), last]
+        for ends in zip(limits, limits[1:]):
+            between = (at[piece] > ends[0]) & (at[piece] < ends[1])
+            left, right = np.clip(ends, low, high)
+            if not between.any() or right - left <= 0.09 * (high - low):
+                continue
+            states = picture.contact["status"][row, piece][between].astype(int)
+            name = names[int(np.argmax(np.bincount(states)))]
+            place = {"xytext": (0, 2.5), "textcoords": "offset points"}
             middle = (0.5 * (left + right), 1.0)
             coordinates = ("data", "axes fraction")
-            axes.annotate(name, middle, xycoords=coordinates, ha="center", fontsize=7.5, **at)
+            axes.annotate(name, middle, xycoords=coordinates, ha="center", fontsize=7.5, **place)

@@ -83,7 +83,8 @@ class Contact:
     @property
     def pieces(self):
         """Return the pairs of each piece of the faces, as slices."""
-        starts = [0, *np.flatnonzero(np.diff(self.data["piece"])) + 1, len(self.data["piece"])]
+        changes = np.flatnonzero(np.diff(self.data["piece"])) + 1
+        starts = [0, *changes.tolist(), len(self.data["piece"])]
         return [slice(first, last) for first, last in zip(starts, starts[1:])]
 
     def totals(self):

@@ -236,9 +236,11 @@ contains
       real(dp), intent(in) :: unknown(:)          !! (unknowns)
       type(free_motion_type) :: motion
       type(free_motion_type) :: other
+      logical :: alike(size(bodies%body))         ! parts that move as the first one does
       integer :: p, parts
 
       parts = size(bodies%body)
+      alike = .false.
       motion%company = ''
       associate (lone => unknown(size(unknown) - size(bodies%lone) + 1:), &
          own => unknown(:size(unknown) - size(bodies%lone)))
@@ -265,18 +267,23 @@ contains
                end if
             end associate
             if (motion%body == 0) then
+               alike(p) = .true.
                motion%body = bodies%body(p)
                if (bodies%first(p) > 0) motion%element = mesh%element_number(bodies%first(p))
                motion%turns = other%turns
                motion%deforms = other%deforms
                motion%way = other%way
             else if ((other%turns .eqv. motion%turns) .and. other%way == motion%way) then
-               motion%company = motion%company//' together with body '//to_text(bodies%body(p))
+               ! Parts of one body are told once.
+               if (.not. any(alike .and. bodies%body == bodies%body(p))) motion%company = &
+                  motion%company//' together with body '//to_text(bodies%body(p))
+               alike(p) = .true.
             else
                motion%company = motion%company//' while body '//to_text(bodies%body(p))//' '// &
                   other%verb()//'s '//other%way
             end if
          end do
+         if (all(alike .or. bodies%body /= motion%body)) motion%element = 0
       end associate
    end function motion_of
 

@@ -5,7 +5,6 @@ module listing_increments
    use body_lines, only: corner_words, place_words
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use contact_system, only: contact_open, contact_stick
    use field_quantities, only: maxima
    use increment_quantities, only: history_value, part_values, stability_words
    use interface_quantities, only: is_end_of_face
@@ -24,7 +23,6 @@ module listing_increments
    use summary, only: words_of
    use text, only: string_type, to_text
    use zone_diagram, only: zone_counts
-   use zone_edges, only: edges_kept
    implicit none
    private
    public :: print_increment, print_attempts, print_interface, print_balances
@@ -97,8 +95,6 @@ contains
       write (unit, '(3x, a, 3(a, i0), a)') points%name, '   I ', zones(1), '   II ', zones(2), &
          '   III ', zones(3), edges
       write (unit, '(3x, a)') sums
-      call print_surplus(unit, 'contact', contact%contact_state /= contact_open)
-      call print_surplus(unit, 'stick', contact%contact_state == contact_stick)
    end subroutine print_interface
 
    !> The quantities of an increment that need the same, with their labels.
@@ -137,18 +133,6 @@ contains
          words = words//column(value, 14, 6)
       end if
    end function told
-
-   subroutine print_surplus(unit, zone, in_zone)
-      integer, intent(in) :: unit
-      character(*), intent(in) :: zone
-      logical, intent(in) :: in_zone(:)   ! (contact points)
-      integer :: edges
-
-      edges = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
-      if (edges > edges_kept) write (unit, '(6x, 3a, i0, 3a, i0)') 'warning: the zones of ', &
-         zone, ' have ', edges, ' edges; edges_', zone, ' of the result file holds the first ', &
-         edges_kept
-   end subroutine print_surplus
 
    !> Prints what balances, and the work of the re-factorisation.
    subroutine print_balances(unit, record, analysis)

@@ -135,7 +135,7 @@ contains
       if (allocated(error)) return
       associate (corrections => run%corrections, step => model%steps(run%control%step))
          if (.not. corrections%corrects) then
-            call solve_fields(run, model, stage, before, attempt, error)
+            call solve_fields(run, model, before, attempt, error)
             return
          end if
          allocate (known(2))
@@ -144,7 +144,7 @@ contains
             takes_past=abs(step%scheme%b(1)) > 0.0_dp)
          do
             call corrections%give(attempt%data%equation, attempt%next)
-            call solve_fields(run, model, stage, before, attempt, error)
+            call solve_fields(run, model, before, attempt, error)
             if (allocated(error)) return
             call corrections%correct(model, run%bodies, stage, attempt%next, error)
             if (allocated(error)) return
@@ -219,10 +219,9 @@ contains
    end subroutine begin_trial
 
    !> Solves the fields of a stage with the present corrections of its operators.
-   subroutine solve_fields(run, model, stage, before, attempt, error)
+   subroutine solve_fields(run, model, before, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
-      type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error

@@ -31,7 +31,8 @@ module increment_records
    use temperature_laws, only: face_temperatures_type, law_at
    use text, only: to_text
    use transforms, only: on_nodes
-   use zone_edges, only: contact_edges, contact_profile, contact_profile_type, stick_edges
+   use zone_edges, only: contact_edges, contact_profile, contact_profile_type, edges_kept, &
+      stick_edges
    implicit none
    private
    public :: complete_record, measure_contact
@@ -82,6 +83,12 @@ contains
          end if
          call warn_of_floor(step, record)
          call warn_of_slides(model, bodies, record)
+         do i = 1, size(record%contacts)
+            associate (states => record%contacts(i)%contact_state)
+               call warn_of_edges('contact', states /= contact_open)
+               call warn_of_edges('stick', states == contact_stick)
+            end associate
+         end do
          if (solves_heat(step%analysis)) then
             if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
                record%fields%heat_flux, record%heat_flux_error)
@@ -100,6 +107,18 @@ contains
             record%element_points = points_of_elements(model, recovery, step, next, record)
          end if
       end associate
+   contains
+      !> Warns of zones with more edges than are kept.
+      subroutine warn_of_edges(zone, in_zone)
+         character(*), intent(in) :: zone
+         logical, intent(in) :: in_zone(:)        ! (contact points)
+         integer :: edges
+
+         edges = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
+         if (edges > edges_kept) call record%warn('contact pair '//bodies%interfaces(i)%name// &
+            ': edges of '//zone//': ', real(edges, dp), '; edges_'//zone// &
+            ' of the result file and the summary have the first '//to_text(edges_kept))
+      end subroutine warn_of_edges
    end subroutine complete_record
 
    !> Warns where the last places of the displacements change omega by more than the tolerance: the

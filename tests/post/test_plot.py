@@ -380,6 +380,19 @@ def test_an_edge_goes_on_at_its_zone_where_two_edges_become_four(kept, result):
         np.testing.assert_allclose(line, np.transpose(curve), rtol=1e-12)
 
 
+def test_zones_are_named_by_the_states_of_their_pairs(kept, result):
+    """Open first, closed behind, with the edge on a pair that is closed."""
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        s = contact["s"][()]
+        contact["status"][...] = np.where(np.arange(len(s)) < 8, 0, 1)
+        contact["edges_contact"][...], contact["edges_stick"][...] = np.nan, np.nan
+        contact["edges_contact"][:, 0] = s[8]
+    (figure,) = kept("profiles", result, "--along", "s")
+    words = {text.get_text(): text.xy[0] for text in figure.axes[0].texts}
+    assert words["open"] < s[8] < words["slip"]
+
+
 def test_no_curve_goes_from_a_piece_of_the_faces_to_the_next(kept, result):
     """Neither a profile nor an edge, which may be as near to one of the next piece."""
     with h5py.File(result, "r+") as file:

@@ -182,6 +182,16 @@ def test_rounding_is_not_stretched_over_the_axes(synthetic, browser):
     assert browser.run(look) == last
 
 
+def test_a_contact_in_pieces_has_a_page(synthetic, browser):
+    def part(file):
+        for contact in file["contact"].values():
+            points = len(contact["s"])
+            contact["piece"] = np.where(np.arange(points) < points // 2, 1, 2)
+
+    browser.open(synthetic(part))
+    assert browser.run("return document.querySelectorAll('#profiles svg, #zones svg').length") > 0
+
+
 def test_every_picture_is_named_and_every_control_is_reached_and_labelled(cylinder, browser):
     browser.open(cylinder / "cylinder.html")
     bare = browser.run("""return [...document.querySelectorAll('svg')].filter(
