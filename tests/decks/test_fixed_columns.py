@@ -28,32 +28,18 @@ def pressed(kind="CPS8", skew=0.03):
             "BODY.BOTTOM, 2", "*DSLOAD", f"BODY.TOP, P, {LOAD}", "*END STEP"]
 
 
-def e_format(value, blank_sign):
-    """Return a number as old machines print it: 0.15E 01."""
-    mantissa, exponent = f"{value / 10:.8E}".split("E")
-    exponent = f"{int(exponent) + 1:+03d}"
-    return f"{mantissa}E{exponent.replace('+', ' ') if blank_sign else exponent}"
-
-
 # A format of nodes, a function that writes one, a format of elements, and one that writes one as
 # several lines.
 STYLES = {
     "plain": ("(I5,2F15.0)", lambda n, x, y: f"{n:5d}{x:15.10f}{y:15.10f}",
               "(9I5)", lambda e: ["".join(f"{n:5d}" for n in e)]),
     "lower case and blanks": ("( i5, 2 f15.10 )", lambda n, x, y: f"{n:5d}{x:15.10f}{y:15.10f}",
-                              "(i5 8i5)", lambda e: ["".join(f"{n:5d}" for n in e)]),
+                              "( 9 i5 )", lambda e: ["".join(f"{n:5d}" for n in e)]),
     "no points": ("(I4,2F12.8)",
                   lambda n, x, y: f"{n:4d}{round(x * 1e8):12d}{round(y * 1e8):12d}",
-                  "(16I4)", lambda e: ["".join(f"{n:4d}" for n in e)]),
-    "exponents": ("(I6,1X,2E16.8)", lambda n, x, y:
-                  f"{n:6d}-{e_format(x, True):>16}{e_format(y, False).replace('E', 'D'):>16}",
-                  "(I8)", lambda e: [f"{n:8d}" for n in e]),
-    "labels": ("(5X,I5,F15.10,5X,E15.8,8X)",
-               lambda n, x, y: f"PLATE{n:5d}{x:15.10f} AND {y:15.10f}{n:08d}",
-               "(6X,4I5,20X)", lambda e: ["LINEAR" + "".join(f"{n:5d}" for n in e[k:k + 4]).ljust(20)
-                                          + f"{'CORNERS':>20}" for k in range(0, len(e), 4)]),
+                  "(9I4)", lambda e: ["".join(f"{n:4d}" for n in e)]),
     "third coordinates": ("(I5,3F15.0)", lambda n, x, y: f"{n:5d}{x:15.10f}{y:15.10f}{0:15.1f}",
-                          "(I5,4I5)", lambda e: ["".join(f"{n:5d}" for n in e[k:k + 5])
+                          "(5I5)", lambda e: ["".join(f"{n:5d}" for n in e[k:k + 5])
                                                  for k in range(0, len(e), 5)]),
 }
 
@@ -72,8 +58,8 @@ def test_fixed_columns_are_the_fields_between_commas(tmp_path, style, kind):
     (tmp_path / "fixed.inp").write_text("\n".join([*fixed, *rest]) + "\n")
     results = [datasets(solve(tmp_path / name), "VTKHDF", "history")
                for name in ("commas.inp", "fixed.inp")]
-    # Ten decimals, eight digits, of coordinates of order 1, which stresses feel alike.
-    assert_alike(*results, 1e-7 if style == "exponents" else 1e-9)
+    # Ten decimals of coordinates of order 1, which stresses feel alike.
+    assert_alike(*results, 1e-9)
 
 
 SQUARE = ["    1         0         0", "    2       100         0", "    3       100       100",
@@ -93,14 +79,13 @@ def test_format_of_nodes_says_where_the_point_is(tmp_path):
 
 @pytest.mark.changes("ELEMENT, FORMAT")
 def test_format_of_elements_says_which_columns_are_nodes(tmp_path):
-    """A card has the nodes of two squares, of which one is twice as high."""
+    """The same digits are nodes of a square, or of one that is twice as high."""
     follows(tmp_path, lambda case: (
-        ["*NODE", "1, 0., 0.", "2, 1., 0.", "3, 1., 1.", "4, 0., 1.", "5, 1., 2.", "6, 0., 2.",
-         f'*ELEMENT, TYPE=CPS4, ELSET=E, FORMAT="{case[0]}"',
-         "    1    1    2    3    4    1    2    5    6",
+        ["*NODE", "1, 0., 0.", "2, 1., 0.", "13, 1., 1.", "14, 0., 1.", "3, 1., 2.", "4, 0., 2.",
+         f'*ELEMENT, TYPE=CPS4, ELSET=E, FORMAT="{case[0]}"', case[2],
          *material("E", (YOUNG, POISSON)), *PRESSED],
         [("U2", "MIN", "LAST", -LOAD / YOUNG * case[1], 1e-10)]),
-        ("(I5,4I5,20X)", 1.0), ("(I5,20X,4I5)", 2.0))
+        ("(5I2)", 1.0, " 1 1 21314"), ("(5I1)", 2.0, "11234"))
 
 
 def test_cards_are_as_wide_as_the_deck_says(tmp_path):

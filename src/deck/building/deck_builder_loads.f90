@@ -87,7 +87,7 @@ contains
             call build_nodal_load(card%name, cards%data(j), request, model, context, report)
          end select
       end do
-      if (card%name == 'BOUNDARY' .and. report%error_count() > errors) then
+      if (card%name == 'BOUNDARY' .and. (card%flawed .or. report%error_count() > errors)) then
          context%boundaries_sound = .false.
       end if
    end subroutine build_load_card

@@ -3,14 +3,14 @@ module card_lines
    use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
    use card_parameters, only: parameter_text
-   use card_slips, only: cut_at_blanks, lacks_star, mend_commas
+   use card_typos, only: check_commas, lacks_star
    use cards, only: add_data, add_keyword, add_note, cards_type, extend_data, field_type, &
       keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_types, only: element_type_fields
-   use fixed_columns, only: fixed_columns_type
+   use fixed_columns, only: fixed_columns_type, split_columns, take_format
    use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: built, is_output, known_keywords
    use spelling, only: find_look_alike
@@ -35,7 +35,7 @@ module card_lines
       logical, private :: skips_data = .false.              !! its data cards are of no use
       character(:), allocatable, private :: refusal_of_data !! error at its first data card
       integer, private :: element_fields = 0                !! of a complete *ELEMENT data card
-      type(fixed_columns_type), private :: fixed              !! data cards in fixed columns
+      type(fixed_columns_type), private :: columns          !! of data cards in fixed columns
    contains
       procedure :: take_line
       procedure :: finish
@@ -88,7 +88,6 @@ contains
          if (self%pending_keyword) then
             continues = is_parameter(self%pending(1)%text, fields(1)%text)
          else
-            call cut_at_blanks(cards, report, fields)
             ! A line with all fields of an element is the next one: the comma is a slip.
             continues = self%element_fields == 0 .or. filled(fields) /= self%element_fields
          end if
@@ -98,7 +97,7 @@ contains
             call take_fields(self, fields, self%pending_keyword, image, cards, report)
             return
          end if
-         call end_pending(self, cards, report)
+         call self%finish(cards, report)
       end if
       call take_data_line(self, line, image, cards, report)
    end subroutine take_line
@@ -126,28 +125,11 @@ contains
       filled = count([(len(fields(i)%text) > 0, i=1, size(fields))])
    end function filled
 
-   !> Ends the data of a keyword card.
+   !> Ends a card that waits for its continuation, which a keyword card need not have.
    subroutine finish(self, cards, report)
       class(card_lines_type), intent(inout) :: self        !! what is open
       type(cards_type), intent(inout) :: cards             !! receives the card
       type(deck_report_type), intent(inout) :: report      !! receives errors
-      type(field_type), allocatable :: fields(:)
-
-      if (self%fixed%open) then
-         call self%fixed%release(fields)
-         if (allocated(fields)) then
-            if (size(fields) > 0) call take_data(self, fields, fields(size(fields))%place%image, &
-               cards, report)
-         end if
-      end if
-      call end_pending(self, cards, report)
-   end subroutine finish
-
-   !> Ends a card that waits for its continuation, which a keyword card need not have.
-   subroutine end_pending(self, cards, report)
-      type(card_lines_type), intent(inout) :: self
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: lack
       type(place_type) :: place
@@ -167,7 +149,7 @@ contains
          fields(size(fields))%undefined = .true.
          call take_data(self, fields, place%image, cards, report)
       end if
-   end subroutine end_pending
+   end subroutine finish
 
    !> Takes the fields of a card that may continue.
    subroutine take_fields(self, fields, keyword, image, cards, report)
@@ -206,7 +188,6 @@ contains
       integer :: i
       logical :: valid
 
-      call mend_commas(fields, report)
       do i = 2, size(fields)
          call self%parameters%substitute(fields(i), report)
       end do
@@ -229,7 +210,7 @@ contains
       if (allocated(card%refusal_of_data)) self%refusal_of_data = card%refusal_of_data
       self%skips_data = card%known == 0
       if (card%known > 0) self%skips_data = known_keywords(card%known)%status /= built
-      call self%fixed%begin(card, self%element_fields, report, valid)
+      call take_format(card, report, self%columns, valid)
       self%skips_data = self%skips_data .or. .not. valid
       card%data_lost = .not. valid
       call add_keyword(cards, card)
@@ -263,7 +244,7 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: fields(:)
-      logical :: complete
+      logical :: valid
 
       if (.not. allocated(self%keyword)) then
          call report%error(place_type(image, first_text(line)), &
@@ -287,19 +268,22 @@ contains
          call add_data(cards, fields, place_type(image, last_text(line) + 1))
          return
       end if
-      if (self%fixed%open) then
-         call self%fixed%take(line, image, report, complete)
-         if (.not. complete) return
-         call self%fixed%release(fields)
-         if (allocated(fields)) then
-            call take_data(self, fields, image, cards, report)
-         else
-            cards%keywords(cards%keyword_count)%data_lost = .true.
+      if (allocated(self%columns%last)) then
+         call split_columns(self%columns, line, image, report, fields, valid)
+         call drop_empty_end(fields)
+         if (.not. valid) cards%keywords(cards%keyword_count)%data_lost = .true.
+      else
+         call split_fields(line, image, report, fields)
+         if (self%keyword /= 'PARAMETER') then
+            call check_commas(cards, fields, report, valid)
+            if (.not. valid) then
+               cards%keywords(cards%keyword_count)%data_lost = .true.
+               cards%keywords(cards%keyword_count)%flawed = .true.
+               self%skips_data = .true.
+               return
+            end if
          end if
-         return
       end if
-      call split_fields(line, image, report, fields)
-      if (self%keyword /= 'PARAMETER') call cut_at_blanks(cards, report, fields)
       if (self%keyword == 'ELEMENT') then
          if (completes_element(self, fields, cards)) then
             call extend_data(cards, fields)

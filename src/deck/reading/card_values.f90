@@ -107,7 +107,7 @@ contains
       logical :: is_number
 
       if (is_undefined(data, i)) valid = .false.
-      if (.not. has_field(data, i)) return
+      if (is_undefined(data, i) .or. .not. has_field(data, i)) return
       call read_integer(data%fields(i)%text, number, is_number)
       if (is_number) then
          value = number
@@ -129,7 +129,7 @@ contains
       logical :: is_number
 
       if (is_undefined(data, i)) valid = .false.
-      if (.not. has_field(data, i)) return
+      if (is_undefined(data, i) .or. .not. has_field(data, i)) return
       call read_real(data%fields(i)%text, number, is_number)
       if (is_number) then
          value = number

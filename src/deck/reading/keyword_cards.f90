@@ -1,7 +1,7 @@
 !> Fields of a keyword card -> the card with its parameters, each of them known.
 module keyword_cards
    use card_fields, only: first_text, without_quotes
-   use card_slips, only: is_number
+   use card_typos, only: end_of_keyword, is_number
    use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
    use card_values, only: decimal_comma_words
    use deck_report, only: deck_report_type
@@ -80,10 +80,28 @@ contains
          card%refusal_of_data = message
          call add_note(cards%notes, '*'//trim(advice%names)//' without data is ignored')
       case default
-         call report_unknown_keyword(name, index(fields(1)%text, '* ') == 1, report, card)
+         call cut_keyword(fields(1), report, card)
+         if (card%known == 0) call report_unknown_keyword(name, index(fields(1)%text, '* ') == 1, &
+            report, card)
          if (card%known == 0) call lose_names(fields(2:), report)
       end select
    end subroutine take_foreign_keyword
+
+   !> Reports a comma that is missing behind a known keyword. The parameter behind it is lost.
+   subroutine cut_keyword(field, report, card)
+      type(field_type), intent(in) :: field
+      type(deck_report_type), intent(inout) :: report
+      type(keyword_card_type), intent(inout) :: card
+      integer :: blank
+
+      blank = end_of_keyword(field%text)
+      if (blank == 0) return
+      call report%error(place_type(field%place%image, field%place%column + blank - 2 + &
+         first_text(field%text(blank:))), 'a comma is missing after '// &
+         to_upper(field%text(:blank - 1)))
+      card%known = find_keyword(field%text(2:blank - 1))
+      card%flawed = .true.
+   end subroutine cut_keyword
 
    !> The names that a refused card or one that nobody knows may define are missing elsewhere.
    subroutine lose_names(fields, report)
@@ -215,10 +233,10 @@ contains
       type(keyword_card_type), intent(inout) :: card
       type(parameter_type), intent(out) :: parameter
       logical, intent(out) :: valid
-      type(known_parameter_type) :: known
+      type(known_parameter_type) :: known, other
       type(advice_type) :: advice
       character(:), allocatable :: value
-      integer :: equals, errors
+      integer :: blank, equals, errors
 
       errors = report%error_count()
       equals = index(field%text, '=')
@@ -232,6 +250,10 @@ contains
       parameter%value_place = field%place
       value = field%text(min(equals + 1, len(field%text) + 1):)
       parameter%text = without_quotes(value(first_text(value):))
+      blank = scan(value(:index(value, '=')), ' ', back=.true.)
+      other%name = ''
+      if (blank > 0 .and. index(value, '"') == 0) other = find_parameter(card%known, &
+         value(blank + 1:index(value, '=') - 1))
       if (len(value) > 0) parameter%value_place%column = field%place%column + equals + &
          first_text(value) - 1
       if (len(field%text) == 0 .and. .not. field%undefined) then
@@ -248,10 +270,14 @@ contains
          call report%error(field%place, known%name//' needs a value')
       else if (.not. known%takes_value .and. equals <= len(field%text)) then
          call report%error(field%place, known%name//' takes no value')
+      else if (len(other%name) > 0) then
+         call report%error(place_type(field%place%image, field%place%column + equals + blank), &
+            'a comma is missing before this parameter')
       end if
       valid = len(known%name) > 0 .and. known%status == built
       if (valid) valid = len(parameter%text) > 0 .or. .not. known%needs_value
       if (valid .and. .not. known%takes_value) valid = equals > len(field%text)
+      valid = valid .and. len(other%name) == 0
       card%flawed = card%flawed .or. field%undefined .or. &
          (report%error_count() > errors .and. .not. valid)
       if (len(known%name) > 0 .and. known%status == not_needed .and. &
@@ -275,8 +301,11 @@ contains
       group = 'parameter '//to_upper(trim(name))//' of *'//card%name
       names = parameter_names(card%known)
       hint = ''
+      known = find_parameter(card%known, name(:index(name//' ', ' ') - 1))
+      if (known%takes_value) hint = 'an equals sign is missing after '//known%name
+      known%name = ''
       i = nearest_name(name, names)
-      if (i > 0) then
+      if (i > 0 .and. len(hint) == 0) then
          if (is_slip(name, names(i)%value)) known = find_parameter(card%known, names(i)%value)
          if (len(known%name) > 0 .or. is_near(name, names(i)%value)) then
             hint = 'the nearest known is '//names(i)%value
