@@ -2,7 +2,7 @@
 !> `--resume`, at the increment that *RESTART, READ or the command line says, or the last one kept.
 module deck_origins
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use card_parameters, only: has_parameter, parameter_place, take_from
+   use card_parameters, only: take_from
    use cards, only: cards_type
    use command_line, only: command_type, settings_in_words
    use deck_files, only: results_of
@@ -86,7 +86,7 @@ contains
 
       reads_restart = first_card(cards) > 0
       if (reads_restart) reads_restart = cards%keywords(first_card(cards))%name == 'RESTART' .and. &
-         has_parameter(cards%keywords(first_card(cards)), 'READ')
+         cards%keywords(first_card(cards))%has('READ')
    end function reads_restart
 
    !> The first card that is no *HEADING; 0 for none.
@@ -111,10 +111,9 @@ contains
 
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
-            if (card%name == 'RESTART' .and. k > first_card(cards) .and. has_parameter(card, &
-               'READ')) call &
-               report%error(parameter_place(card, 'READ'), 'READ belongs on the first card of '// &
-               'a deck behind *HEADING; the deck then has steps alone')
+            if (card%name == 'RESTART' .and. k > first_card(cards) .and. &
+               card%has('READ')) call report%error(card%place_of('READ'), 'READ belongs on the '// &
+               'first card of a deck behind *HEADING; the deck then has steps alone')
          end associate
       end do
       do k = 1, size(cards%keywords)

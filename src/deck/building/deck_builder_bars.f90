@@ -1,10 +1,8 @@
 !> *SPRING, and *SOLID SECTION of trusses -> springs and trusses.
 module deck_builder_bars
    use bars, only: bar_type
-   use card_parameters, only: parameter_place
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, field_place, keyword_card_type
-   use deck_builder_lines, only: element_cards
+   use cards, only: cards_type, keyword_card_type
    use deck_context, only: deck_context_type, need_named
    use deck_report, only: deck_report_type
    use deck_structure, only: cards_of
@@ -29,13 +27,12 @@ contains
       type(model_type), intent(inout) :: model             !! receives the bars
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(bar_type) :: of_line(size(context%line_number))
-      integer :: places(size(context%line_number)), i
+      integer :: i
       integer, allocatable :: card(:)
 
-      places = element_cards(cards, of_lines=.true.)
       card = cards_of(cards, 'SPRING')
       do i = 1, size(card)
-         call read_spring(cards, cards%keywords(card(i)), context, model, report, of_line)
+         call read_spring(cards%keywords(card(i)), context, model, report, of_line)
       end do
       card = cards_of(cards, 'SOLID SECTION')
       do i = 1, size(card)
@@ -43,16 +40,15 @@ contains
       end do
       do i = 1, size(of_line)
          if (context%line_kind(i) <= drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle
-         if (.not. report%has_errors()) call report%error(field_place(cards%data(places(i)), 1), &
-            'element '//to_text(context%line_number(i))//' has no '//trim(merge('*SOLID SECTION', &
-            '*SPRING       ', context%line_kind(i) == truss)))
+         if (.not. report%has_errors()) call report%error(context%line_place(i), &
+            'element '//to_text(context%line_number(i))//' has no '// &
+            trim(merge('*SOLID SECTION', '*SPRING       ', context%line_kind(i) == truss)))
       end do
       model%bars = pack(of_line, [(allocated(of_line(i)%elongation%node), i=1, size(of_line))])
    end subroutine build_bars
 
    !> Reads one *SPRING: degrees of freedom where its elements have some, then the constant.
-   subroutine read_spring(cards, card, context, model, report, of_line)
-      type(cards_type), intent(in) :: cards
+   subroutine read_spring(card, context, model, report, of_line)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
@@ -66,12 +62,12 @@ contains
       call take_lines(card, context, report, members)
       if (.not. allocated(members)) return
       valid = size(members) > 0 .and. all(context%line_kind(members) > truss)
-      if (.not. valid) call report%error(parameter_place(card, 'ELSET'), &
-         'this set has elements that are no springs')
+      if (.not. valid) call report%error(card%place_of('ELSET'), 'this set has elements that '// &
+         'are no springs')
       has_dofs = any(context%line_kind(members) >= ground_spring)
       dof = 0
       if (has_dofs .and. valid) then
-         associate (data => cards%data(card%first_data))
+         associate (data => card%data(1))
             do k = 1, maxval(context%line_kind(members)) - ground_spring + 1
                call need_field(data, k, 'degree of freedom', report, dof(k), valid)
                associate (ends => context%line_nodes(k, members))
@@ -79,23 +75,23 @@ contains
                      pack(ends, ends > 0), dof(k))
                end associate
                if (valid .and. (dof(k) < 1 .or. dof(k) > 2)) then
-                  call report%error(field_place(data, k), 'springs act along 1 or 2')
+                  call report%error(data%place(k), 'springs act along 1 or 2')
                   valid = .false.
                end if
             end do
          end associate
       end if
-      if (card%last_data - card%first_data /= merge(1, 0, has_dofs) .and. valid) then
+      if (size(card%data) /= merge(2, 1, has_dofs) .and. valid) then
          call report%error(card%place, '*SPRING has one constant, behind a card of degrees of '// &
             'freedom for SPRING1 and SPRING2')
          return
       end if
-      associate (data => cards%data(card%last_data))
+      associate (data => card%data(size(card%data)))
          call need_field(data, 1, 'spring constant', report, stiffness, valid)
          call check_extra(data, 1, 'spring constant', report)
          if (.not. valid) return
          if (stiffness <= 0.0_dp) then
-            call report%error(field_place(data, 1), 'the constant of a spring must be positive')
+            call report%error(data%place(1), 'the constant of a spring must be positive')
             return
          end if
       end associate
@@ -134,8 +130,8 @@ contains
       associate (material => model%materials(model%sections(n)%material), &
          area => model%sections(n)%thickness)
          if (.not. is_plain(material)) then
-            call report%error(parameter_place(card, 'MATERIAL'), 'trusses need *ELASTIC, '// &
-               'isotropic, and properties that are constant')
+            call report%error(card%place_of('MATERIAL'), 'trusses need *ELASTIC, isotropic, '// &
+               'and properties that are constant')
             return
          end if
          do i = 1, size(members)

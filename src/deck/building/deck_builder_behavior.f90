@@ -1,8 +1,8 @@
 !> *SURFACE BEHAVIOR: parameters of a penalty, which are ignored, and laws of faces that overlap.
 module deck_builder_behavior
-   use card_parameters, only: choose, parameter_place, parameter_text
+   use card_parameters, only: choose
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
@@ -15,31 +15,30 @@ module deck_builder_behavior
 contains
 
    !> Reads one *SURFACE BEHAVIOR.
-   subroutine build_behavior(cards, card, context, report, law)
-      type(cards_type), intent(in) :: cards
+   subroutine build_behavior(card, context, report, law)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(overlap_law_type), intent(out) :: law           !! of hard faces, or of soft ones
       character(:), allocatable :: kind
 
-      kind = to_upper(parameter_text(card, 'PRESSURE-OVERCLOSURE'))
+      kind = to_upper(card%text('PRESSURE-OVERCLOSURE'))
       if (kind == 'TIED') then
-         call report%error(parameter_place(card, 'PRESSURE-OVERCLOSURE'), &
-            'PRESSURE-OVERCLOSURE='//kind//' is refused: tied faces do not open; take *TIE')
+         call report%error(card%place_of('PRESSURE-OVERCLOSURE'), 'PRESSURE-OVERCLOSURE='//kind// &
+            ' is refused: tied faces do not open; take *TIE')
          return
       end if
       call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD/EXPONENTIAL/TABULAR', report, kind)
       select case (kind)
       case ('EXPONENTIAL', 'TABULAR')
-         if (card%last_data < card%first_data) then
+         if (size(card%data) == 0) then
             call report%error(card%place, '*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE='//kind// &
                ' has no data: '//trim(merge('c0, p0                                ', &
                'pressure, overlap; a card for each row', kind == 'EXPONENTIAL')))
          else if (kind == 'EXPONENTIAL') then
-            call read_exponential(cards, card, report, law)
+            call read_exponential(card, report, law)
          else
-            call read_table(cards%data(card%first_data:card%last_data), report, law)
+            call read_table(card%data, report, law)
          end if
       case default
          call context%note('*SURFACE BEHAVIOR is ignored: contact is exact')
@@ -47,21 +46,20 @@ contains
    end subroutine build_behavior
 
    !> c0, at which the pressure is a hundredth of p0, and p0.
-   subroutine read_exponential(cards, card, report, law)
-      type(cards_type), intent(in) :: cards
+   subroutine read_exponential(card, report, law)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
       type(overlap_law_type), intent(inout) :: law
       logical :: valid
 
       valid = .true.
-      associate (data => cards%data(card%first_data))
+      associate (data => card%data(1))
          call need_positive(data, 1, 'clearance c0', report, law%clearance, valid)
          call need_positive(data, 2, 'pressure p0', report, law%touching_pressure, valid)
          call check_extra(data, 2, 'clearance c0, pressure p0', report)
       end associate
-      if (card%last_data > card%first_data) call report%error( &
-         field_place(cards%data(card%first_data + 1), 1), 'an exponential law has one card: c0, p0')
+      if (size(card%data) > 1) call report%error(card%data(2)%place(1), 'an exponential law '// &
+         'has one card: c0, p0')
    end subroutine read_exponential
 
    !> Reads a field that is above 0.
@@ -75,7 +73,7 @@ contains
 
       call need_field(data, position, name, report, value, valid)
       if (.not. valid .or. value > 0.0_dp) return
-      call report%error(field_place(data, position), 'the '//name//' must be positive')
+      call report%error(data%place(position), 'the '//name//' must be positive')
       valid = .false.
    end subroutine need_positive
 
@@ -95,15 +93,15 @@ contains
          call check_extra(rows(i), 2, 'pressure, overlap', report)
       end do
       if (.not. valid) return
-      if (abs(law%pressure(1)) > 0.0_dp) call report%error(field_place(rows(1), 1), &
-         'the first row must have pressure 0, and the overlap from which faces press')
-      if (size(rows) == 1) call report%error(field_place(rows(1), 1), 'a table of pressure and '// &
+      if (abs(law%pressure(1)) > 0.0_dp) call report%error(rows(1)%place(1), 'the first row '// &
+         'must have pressure 0, and the overlap from which faces press')
+      if (size(rows) == 1) call report%error(rows(1)%place(1), 'a table of pressure and '// &
          'overlap needs two rows or more')
       do i = 2, size(rows)
-         if (law%pressure(i) <= law%pressure(i - 1)) call report%error(field_place(rows(i), 1), &
+         if (law%pressure(i) <= law%pressure(i - 1)) call report%error(rows(i)%place(1), &
             'pressures must rise: '//to_text(law%pressure(i))//' follows '// &
             to_text(law%pressure(i - 1)))
-         if (law%overlap(i) <= law%overlap(i - 1)) call report%error(field_place(rows(i), 2), &
+         if (law%overlap(i) <= law%overlap(i - 1)) call report%error(rows(i)%place(2), &
             'overlaps must rise: '//to_text(law%overlap(i))//' follows '// &
             to_text(law%overlap(i - 1))//'; each card is pressure, overlap')
       end do

@@ -1,10 +1,9 @@
 !> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied;
 !> *CHANGE FRICTION, *MODEL CHANGE and *CONTACT INTERFERENCE -> what a step changes of contact.
 module deck_builder_contact
-   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, &
-      parameter_text, take_parameter
+   use card_parameters, only: choose, need_parameter, take_parameter
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
       friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
@@ -13,7 +12,7 @@ module deck_builder_contact
    use deck_context, only: deck_context_type, need_named, read_surface, take_named
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: cards_of, data_cards_of, is_keyword
+   use deck_structure, only: cards_of, data_count, is_keyword
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
@@ -35,15 +34,15 @@ contains
       integer :: i, k, n
 
       places = cards_of(cards, 'CONTACT PAIR')
-      allocate (model%contacts(size(data_cards_of(cards, 'CONTACT PAIR'))))
+      allocate (model%contacts(data_count(cards, places)))
       n = 0
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
             call read_parameters(card, context, report, common)
-            do i = card%first_data, card%last_data
+            do i = 1, size(card%data)
                n = n + 1
                model%contacts(n) = common
-               call read_faces(card, cards%data(i), context, model%mesh, report, model%contacts(n))
+               call read_faces(card, card%data(i), context, model%mesh, report, model%contacts(n))
                call check_name(card, model%mesh, context, model%contacts(:n), report)
             end do
          end associate
@@ -111,19 +110,19 @@ contains
       call choose(card, 'PAIRING', 'NODES/SURFACES', report, pairing)
       if (allocated(pairing)) contact%pairing = merge(pairing_nodes, pairing_surfaces, &
          pairing == 'NODES')
-      contact%adjusts = has_parameter(card, 'ADJUST')
+      contact%adjusts = card%has('ADJUST')
       if (contact%adjusts) then   ! a distance, or a node set
-         call read_real(parameter_text(card, 'ADJUST'), contact%adjusted, is_number)
+         call read_real(card%text('ADJUST'), contact%adjusted, is_number)
          if (.not. is_number) then
             call need_named(card, 'ADJUST', 'node set', context%node_index%sets, report, &
                contact%adjusted_set)
          else if (contact%adjusted < 0.0_dp) then
-            call report%error(parameter_place(card, 'ADJUST'), &
-               'the distance of ADJUST= must not be negative')
+            call report%error(card%place_of('ADJUST'), 'the distance of ADJUST= must not be '// &
+               'negative')
          end if
       end if
       contact%card = card%place%image
-      contact%name = parameter_text(card, 'NAME')
+      contact%name = card%text('NAME')
    end subroutine read_parameters
 
    !> Reads the two surfaces; the slave's name is that of a card without NAME=.
@@ -140,14 +139,13 @@ contains
       call read_surface(data, 1, 'slave surface', context%surfaces, report, faces%slave)
       call read_surface(data, 2, 'master surface', context%surfaces, report, faces%master)
       call check_extra(data, 2, 'slave surface, master surface', report)
-      if (faces%slave > 0 .and. faces%slave == faces%master) call report%error( &
-         field_place(data, 2), 'a surface cannot be '//trim(merge('tied to itself           ', &
-         'in contact with itself   ', faces%is_tied)))
-      call need_faces(mesh, field_place(data, 1), trim(merge(tied, held, faces%is_tied)), report, &
+      if (faces%slave > 0 .and. faces%slave == faces%master) call report%error(data%place(2), &
+         'a surface cannot be '// &
+         trim(merge('tied to itself           ', 'in contact with itself   ', faces%is_tied)))
+      call need_faces(mesh, data%place(1), trim(merge(tied, held, faces%is_tied)), report, &
          faces%slave)
-      if (faces%is_tied) call need_faces(mesh, field_place(data, 2), trim(tied), report, &
-         faces%master)
-      if (has_parameter(card, 'NAME')) return
+      if (faces%is_tied) call need_faces(mesh, data%place(2), trim(tied), report, faces%master)
+      if (card%has('NAME')) return
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
       if (faces%is_tied) call context%note('*'//card%name//' without NAME=: '//faces%name// &
          ', the slave surface')
@@ -166,10 +164,10 @@ contains
       logical :: is_taken, several
 
       n = size(contacts)
-      several = has_parameter(card, 'NAME') .and. card%last_data > card%first_data
+      several = card%has('NAME') .and. size(card%data) > 1
       if (several .and. contacts(n)%slave > 0) contacts(n)%name = contacts(n)%name//'-'// &
          mesh%surfaces(contacts(n)%slave)%name
-      if ((several .or. .not. has_parameter(card, 'NAME')) .and. contacts(n)%master > 0) then
+      if ((several .or. .not. card%has('NAME')) .and. contacts(n)%master > 0) then
          is_taken = context%contacts%find(contacts(n)%name) > 0
          if (is_taken) contacts(n)%name = contacts(n)%name//'-'// &
             mesh%surfaces(contacts(n)%master)%name
@@ -177,7 +175,7 @@ contains
             'without NAME=:   ', several))//' '//contacts(n)%name//', '//trim(merge( &
             'its surfaces     ', 'the slave surface', is_taken)))
       end if
-      associate (place => parameter_place(card, 'NAME'), name => contacts(n)%name)
+      associate (place => card%place_of('NAME'), name => contacts(n)%name)
          if (context%contacts%find(name) > 0) call report%error(place, &
             'contact pair '//name//' is defined twice')
          call context%contacts%add(name)
@@ -197,24 +195,24 @@ contains
       integer, allocatable :: places(:)
       integer :: i, k, n
 
-      allocate(model%ties(size(data_cards_of(cards, 'TIE'))))
-      n = 0
       places = cards_of(cards, 'TIE')
+      allocate(model%ties(data_count(cards, places)))
+      n = 0
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
             call check_tie_card(card, model%ties(:n), context, report)
-            do i = card%first_data, card%last_data
+            do i = 1, size(card%data)
                n = n + 1
                associate (tie => model%ties(n))
                   tie%faces%is_tied = .true.
                   tie%faces%card = card%place%image
-                  tie%faces%name = parameter_text(card, 'NAME')
-                  tie%has_tolerance = has_parameter(card, 'POSITION TOLERANCE')
+                  tie%faces%name = card%text('NAME')
+                  tie%has_tolerance = card%has('POSITION TOLERANCE')
                   tie%faces%either_side = tie%has_tolerance
                   call take_parameter(card, 'POSITION TOLERANCE', report, tie%tolerance)
-                  if (tie%tolerance < 0.0_dp) call report%error(parameter_place(card, &
-                     'POSITION TOLERANCE'), 'POSITION TOLERANCE is a distance, 0 or more')
-                  call read_faces(card, cards%data(i), context, model%mesh, report, tie%faces)
+                  if (tie%tolerance < 0.0_dp) call report%error(card%place_of('POSITION '// &
+                     'TOLERANCE'), 'POSITION TOLERANCE is a distance, 0 or more')
+                  call read_faces(card, card%data(i), context, model%mesh, report, tie%faces)
                end associate
             end do
          end associate
@@ -234,11 +232,10 @@ contains
       call choose(card, 'ADJUST', 'YES/NO', report, adjust)
       if (adjust == 'YES') call context%note('*TIE, ADJUST=YES: nodes are not moved, an '// &
          'initial gap is not closed')
-      if (.not. has_parameter(card, 'NAME')) return
+      if (.not. card%has('NAME')) return
       do i = 1, size(ties)
-         if (to_upper(ties(i)%faces%name) /= to_upper(parameter_text(card, 'NAME'))) cycle
-         call report%error(parameter_place(card, 'NAME'), ties(i)%faces%title()// &
-            ' is defined twice')
+         if (to_upper(ties(i)%faces%name) /= to_upper(card%text('NAME'))) cycle
+         call report%error(card%place_of('NAME'), ties(i)%faces%title()//' is defined twice')
          return
       end do
    end subroutine check_tie_card
@@ -262,7 +259,7 @@ contains
          call report%error(cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION after it')
       case ('FRICTION')
          if (is_keyword(cards, k - 1, 'CHANGE FRICTION')) then
-            call build_friction(cards, cards%keywords(k), context, report, change%friction)
+            call build_friction(cards%keywords(k), context, report, change%friction)
             call need_named(cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
                context%interactions, report, change%interaction)
             if (change%interaction == 0) return
@@ -273,16 +270,15 @@ contains
                '*FRICTION in a step needs *CHANGE FRICTION, INTERACTION= before it')
          end if
       case ('MODEL CHANGE')
-         call change_pairs(cards, cards%keywords(k), context, model, report, changes)
+         call change_pairs(cards%keywords(k), context, model, report, changes)
       case default
-         call change_interferences(cards, cards%keywords(k), step, model, context, report, changes)
+         call change_interferences(cards%keywords(k), step, model, context, report, changes)
       end select
       model%steps(step)%changes = changes
    end subroutine build_contact_change
 
    !> The interfaces that *MODEL CHANGE removes or adds.
-   subroutine change_pairs(cards, card, context, model, report, changes)
-      type(cards_type), intent(in) :: cards
+   subroutine change_pairs(card, context, model, report, changes)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
@@ -294,26 +290,25 @@ contains
 
       call need_parameter(card, 'TYPE', report, kind)
       if (kind == 'ELEMENT') then
-         call report%error(parameter_place(card, 'TYPE'), 'TYPE=ELEMENT is refused: '// &
-            'elements are the same in all steps')
+         call report%error(card%place_of('TYPE'), 'TYPE=ELEMENT is refused: elements are the '// &
+            'same in all steps')
          return
       end if
       call choose(card, 'TYPE', 'CONTACT PAIR', report, kind)
-      change%removes = has_parameter(card, 'REMOVE')
-      if ((change%removes .eqv. has_parameter(card, 'ADD')) .and. .not. card%flawed) then
+      change%removes = card%has('REMOVE')
+      if ((change%removes .eqv. card%has('ADD')) .and. .not. card%flawed) then
          call report%error(card%place, '*MODEL CHANGE needs either ADD or REMOVE')
       end if
       if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
-      do j = card%first_data, card%last_data
-         call read_contact(cards%data(j), 2, 'slave surface, master surface', context, model, &
+      do j = 1, size(card%data)
+         call read_contact(card%data(j), 2, 'slave surface, master surface', context, model, &
             report, change%contact)
          if (change%contact > 0) changes%pairs = [changes%pairs, change]
       end do
    end subroutine change_pairs
 
    !> The interferences of some interfaces.
-   subroutine change_interferences(cards, card, step, model, context, report, changes)
-      type(cards_type), intent(in) :: cards
+   subroutine change_interferences(card, step, model, context, report, changes)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step
       type(model_type), intent(in) :: model
@@ -329,31 +324,31 @@ contains
       operation = 'MOD'
       call choose(card, 'OP', 'MOD/NEW', report, operation)
       if (operation == 'NEW') changes%ends_interferences = .true.
-      given%shrinks = has_parameter(card, 'SHRINK')
-      if (given%shrinks .and. step > 1) call report%error(parameter_place(card, 'SHRINK'), &
-         'SHRINK is allowed in the first step only: it removes the initial overlaps')
-      if (given%shrinks .and. has_parameter(card, 'AMPLITUDE')) then
+      given%shrinks = card%has('SHRINK')
+      if (given%shrinks .and. step > 1) call report%error(card%place_of('SHRINK'), 'SHRINK is '// &
+         'allowed in the first step only: it removes the initial overlaps')
+      if (given%shrinks .and. card%has('AMPLITUDE')) then
          call context%note('*CONTACT INTERFERENCE, SHRINK: AMPLITUDE= is ignored')
       else
          call take_named(card, 'AMPLITUDE', 'amplitude', context%amplitudes, report, &
             given%amplitude)
       end if
       if (.not. allocated(changes%interferences)) allocate (changes%interferences(0))
-      do j = card%first_data, card%last_data
+      do j = 1, size(card%data)
          valid = .true.
          given%value = 1.0_dp
          if (given%shrinks) then
-            call read_contact(cards%data(j), 2, 'slave surface, master surface', context, model, &
+            call read_contact(card%data(j), 2, 'slave surface, master surface', context, model, &
                report, given%contact)
          else
-            call read_contact(cards%data(j), 3, 'slave surface, master surface, interference', &
+            call read_contact(card%data(j), 3, 'slave surface, master surface, interference', &
                context, model, report, given%contact)
-            call need_field(cards%data(j), 3, 'interference', report, given%value, valid)
+            call need_field(card%data(j), 3, 'interference', report, given%value, valid)
          end if
          if (given%contact == 0 .or. .not. valid) cycle
          changes%interferences = [changes%interferences, given]
-         if (.not. given%shrinks) call check_clearance(cards%data(j), model%contacts( &
-            given%contact), given%value, report)
+         if (.not. given%shrinks) call check_clearance(card%data(j), &
+            model%contacts(given%contact), given%value, report)
       end do
    end subroutine change_interferences
 
@@ -367,20 +362,20 @@ contains
       character(:), allocatable :: meaning
 
       associate (gap => contact%clearance + interference)
-         if (abs(contact%clearance - interference) <= 0.0_dp .and. abs(gap) > 0.0_dp) call &
-            report%warning(field_place(data, 3), contact%title()//': the interference and '// &
-            'the *CLEARANCE are both '//to_text(interference)//', and the faces begin with the '// &
-            'sum, '//to_text(gap)//'; give a gap that stays by *CLEARANCE alone, one that the '// &
-            'step takes away by *CONTACT INTERFERENCE alone')
+         if (abs(contact%clearance - interference) <= 0.0_dp .and. &
+            abs(gap) > 0.0_dp) call report%warning(data%place(3), contact%title()//': the '// &
+            'interference and the *CLEARANCE are both '//to_text(interference)//', and the '// &
+            'faces begin with the sum, '//to_text(gap)//'; give a gap that stays by *CLEARANCE '// &
+            'alone, one that the step takes away by *CONTACT INTERFERENCE alone')
          if (contact%clearance*interference >= 0.0_dp) return
          if (contact%clearance < 0.0_dp .and. gap <= 0.0_dp) return
          meaning = 'the faces touch'
          if (gap < 0.0_dp) meaning = 'the faces overlap by '//to_text(-gap)
          if (gap > 0.0_dp) meaning = 'the faces are '//to_text(gap)//' apart'
-         call report%warning(field_place(data, 3), contact%title()//': the interference '// &
-            to_text(interference)//' and the *CLEARANCE '//to_text(contact%clearance)// &
-            ' work against each other: with the sum, '//to_text(gap)//', '//meaning// &
-            '; give the gap that is meant by one of them')
+         call report%warning(data%place(3), contact%title()//': the interference '// &
+            to_text(interference)//' and the *CLEARANCE '//to_text(contact%clearance)//' work '// &
+            'against each other: with the sum, '//to_text(gap)//', '//meaning//'; give the gap '// &
+            'that is meant by one of them')
       end associate
    end subroutine check_clearance
 
@@ -398,8 +393,7 @@ contains
       call read_surface(data, 1, 'slave surface', context%surfaces, report, slave)
       call read_surface(data, 2, 'master surface', context%surfaces, report, master)
       call check_extra(data, most, layout, report)
-      call find_contact(slave, master, model%contacts, model%mesh, field_place(data, 1), report, &
-         contact)
+      call find_contact(slave, master, model%contacts, model%mesh, data%place(1), report, contact)
    end subroutine read_contact
 
 end module deck_builder_contact

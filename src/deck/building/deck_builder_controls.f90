@@ -1,11 +1,9 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choose, has_parameter, lacks_parameter, need_choice, &
-      parameter_place, parameter_text, take_from, take_parameter, take_positive
+   use card_parameters, only: choose, need_choice, take_from, take_parameter, take_positive
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
-      keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use controls, only: continuation_type, crank_nicolson_scheme, explicit_scheme, &
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
       start_both, start_closed, start_given, start_open, start_previous, start_type, &
@@ -73,7 +71,7 @@ contains
       call take_from(1, card, 'MAXITER', report, fixed_point%max_iterations)
       call take_parameter(card, 'G', report, fixed_point%g)
       if (fixed_point%g <= 0.0_dp .or. fixed_point%g > 1.0_dp) then
-         call report%error(parameter_place(card, 'G'), 'G= must be above 0 and at most 1')
+         call report%error(card%place_of('G'), 'G= must be above 0 and at most 1')
          fixed_point%g = before%g
       end if
       call take_from(0, card, 'CONSTANT', report, fixed_point%constant)
@@ -87,16 +85,16 @@ contains
       integer :: place
 
       place = 1
-      if (has_parameter(card, 'READ')) then
+      if (card%has('READ')) then
          call take_from(1, card, 'STEP', report, place)
          call take_from(1, card, 'INC', report, place)
-         if (has_parameter(card, 'INC') .and. .not. has_parameter(card, 'STEP')) call &
-            report%error(parameter_place(card, 'INC'), 'INC= needs STEP=')
+         if (card%has('INC') .and. .not. card%has('STEP')) call report%error(card%place_of('INC'), &
+            'INC= needs STEP=')
       else
          call report_alone('STEP', 'READ')
          call report_alone('INC', 'READ')
       end if
-      if (.not. has_parameter(card, 'WRITE')) then
+      if (.not. card%has('WRITE')) then
          call report_alone('FREQUENCY', 'WRITE')
          call report_alone('OVERLAY', 'WRITE')
          if (size(card%parameters) == 0 .and. .not. card%flawed) call report%error(card%place, &
@@ -105,19 +103,18 @@ contains
       end if
       controls%restart_frequency = 1
       call take_from(0, card, 'FREQUENCY', report, controls%restart_frequency)
-      controls%overlays_restarts = has_parameter(card, 'OVERLAY')
+      controls%overlays_restarts = card%has('OVERLAY')
    contains
       subroutine report_alone(parameter, other)
          character(*), intent(in) :: parameter, other
 
-         if (has_parameter(card, parameter)) call report%error(parameter_place(card, parameter), &
-            parameter//' needs '//other)
+         if (card%has(parameter)) call report%error(card%place_of(parameter), parameter// &
+            ' needs '//other)
       end subroutine report_alone
    end subroutine build_restart
 
    !> Reads one *THERMAL SCHEME; after an error the scheme stays as it was.
-   subroutine build_thermal_scheme(cards, card, report, scheme)
-      type(cards_type), intent(in) :: cards
+   subroutine build_thermal_scheme(card, report, scheme)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report         !! receives errors
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
@@ -126,14 +123,14 @@ contains
       call need_choice(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', &
          report, kind)
       if (kind == 'FREE') then
-         if (card%last_data < card%first_data) then
+         if (size(card%data) == 0) then
             call report%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
          else
-            call build_free_scheme(cards%data(card%first_data), report, scheme)
+            call build_free_scheme(card%data(1), report, scheme)
          end if
-      else if (card%last_data >= card%first_data .and. kind /= '') then
-         call report%error(field_place(cards%data(card%first_data), 1), &
-            'extra data card; *THERMAL SCHEME has one with TYPE=FREE only')
+      else if (size(card%data) > 0 .and. kind /= '') then
+         call report%error(card%data(1)%place(1), 'extra data card; *THERMAL SCHEME has one '// &
+            'with TYPE=FREE only')
       end if
       if (kind == 'IMPLICIT') scheme = implicit_scheme
       if (kind == 'L-STABLE') scheme = l_stable_scheme
@@ -160,18 +157,18 @@ contains
       if (.not. valid) return
       do i = 1, 3
          if (given(i) > 0.0_dp .or. (i > 1 .and. given(i) >= 0.0_dp)) cycle
-         call report%error(field_place(data, i), coefficient_names(i)// &
+         call report%error(data%place(i), coefficient_names(i)// &
             trim(merge(' must be positive    ', ' must not be negative', i == 1)))
          valid = .false.
       end do
       if (.not. valid) return
       sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
       if (given(2) + given(3) <= 0.0_dp) then
-         call report%error(field_place(data, 2), 'a2 + a3 must be positive')
+         call report%error(data%place(2), 'a2 + a3 must be positive')
       else if (sums(1) <= 0.0_dp) then
-         call report%error(field_place(data, 4), 'a1 + b1 must be positive')
+         call report%error(data%place(4), 'a1 + b1 must be positive')
       else if (any(abs(sums - sums(1)) > consistent*sums(1))) then
-         call report%error(field_place(data, 1), 'a steady state would not stay: a1 + b1 = '// &
+         call report%error(data%place(1), 'a steady state would not stay: a1 + b1 = '// &
             to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
             to_text(sums(3))//' must be equal')
       else
@@ -195,14 +192,12 @@ contains
       call choose(card, 'DIRECTION', 'UP/DOWN', report, direction)
       continuation%rises = direction == 'UP'
       if (continuation%range(1) < continuation%range(2)) return
-      call report%error(parameter_place(card, 'HIGHEST'), 'LOWEST='// &
-         to_text(continuation%range(1))//' must be below HIGHEST='// &
-         to_text(continuation%range(2))//': the range of load factors')
+      call report%error(card%place_of('HIGHEST'), 'LOWEST='//to_text(continuation%range(1))// &
+         ' must be below HIGHEST='//to_text(continuation%range(2))//': the range of load factors')
    end subroutine build_continuation
 
    !> Reads one *START; after an error the start stays as it was.
-   subroutine build_start(cards, card, context, model, report, start)
-      type(cards_type), intent(in) :: cards
+   subroutine build_start(card, context, model, report, start)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context     !! names of the interfaces
       type(model_type), intent(in) :: model              !! its interfaces
@@ -212,10 +207,10 @@ contains
 
       call need_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', report, from)
       if (from == 'GIVEN') then
-         call build_given(cards, card, context, model, report, start)
-      else if (card%last_data >= card%first_data .and. from /= '') then
-         call report%error(field_place(cards%data(card%first_data), 1), &
-            'extra data card; *START has them with FROM=GIVEN only')
+         call build_given(card, context, model, report, start)
+      else if (size(card%data) > 0 .and. from /= '') then
+         call report%error(card%data(1)%place(1), 'extra data card; *START has them with '// &
+            'FROM=GIVEN only')
       end if
       if (from == 'PREVIOUS') start%kind = start_previous
       if (from == 'OPEN') start%kind = start_open
@@ -224,8 +219,7 @@ contains
    end subroutine build_start
 
    !> Interface and conductance, a card each.
-   subroutine build_given(cards, card, context, model, report, start)
-      type(cards_type), intent(in) :: cards
+   subroutine build_given(card, context, model, report, start)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
@@ -238,20 +232,20 @@ contains
 
       given = 0.0_dp
       sound = .true.
-      do k = card%first_data, card%last_data
-         associate (data => cards%data(k))
+      do k = 1, size(card%data)
+         associate (data => card%data(k))
             valid = .true.
             name = ''
             call need_field(data, 1, 'contact pair', report, name, valid)
             i = context%contacts%find(name)
             if (valid .and. i == 0) call report_unknown('contact pair', name, &
-               context%contacts%known(), field_place(data, 1), report)
+               context%contacts%known(), data%place(1), report)
             valid = valid .and. i > 0
             value = 0.0_dp
             call need_field(data, 2, 'conductance', report, value, valid)
             call check_extra(data, 2, 'contact pair, conductance', report)
             if (valid .and. value <= 0.0_dp) then
-               call report%error(field_place(data, 2), 'the conductance must be positive')
+               call report%error(data%place(2), 'the conductance must be positive')
                valid = .false.
             end if
             if (valid) given(i) = value
@@ -270,8 +264,7 @@ contains
 
    !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
    !> former steps.
-   subroutine build_print(cards, card, is_first, context, mesh, report, requests)
-      type(cards_type), intent(in) :: cards
+   subroutine build_print(card, is_first, context, mesh, report, requests)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: is_first                     !! first of its keyword in its step
       type(deck_context_type), intent(inout) :: context   !! whether the sets are sound; notes
@@ -291,7 +284,7 @@ contains
          keys = node_keys
          if (names_set(card, 'NSET', context%node_index%sets, context)) call take_named(card, &
             'NSET', 'node set', context%node_index%sets, report, request%set)
-         is_known = request%set > 0 .or. lacks_parameter(card, 'NSET')
+         is_known = request%set > 0 .or. card%lacks('NSET')
          if (is_dropped(card, context, mesh, report, request%set)) is_known = .false.
          call choose(card, 'TOTALS', 'YES/NO/ONLY', report, choice)
          request%each_node = choice /= 'ONLY'
@@ -300,12 +293,11 @@ contains
       else
          if (names_set(card, 'ELSET', context%element_index%sets, context)) call take_named( &
             card, 'ELSET', 'element set', context%element_index%sets, report, request%set)
-         is_known = request%set > 0 .or. lacks_parameter(card, 'ELSET')
+         is_known = request%set > 0 .or. card%lacks('ELSET')
          if (request%set > 0) then
             if (mesh%element_sets(request%set)%of_lines) then
-               call report%warning(parameter_place(card, 'ELSET'), 'element set '// &
-                  mesh%element_sets(request%set)%name//' has only lines, springs or trusses: '// &
-                  'nothing is printed')
+               call report%warning(card%place_of('ELSET'), 'element set '//mesh%element_sets( &
+                  request%set)%name//' has only lines, springs or trusses: nothing is printed')
                is_known = .false.
             end if
          end if
@@ -314,14 +306,13 @@ contains
       request%local_axes = choice == 'NO'
       call read_frequency(card, context, report, request%frequency, request%points)
       allocate(request%quantities(0))
-      do j = card%first_data, card%last_data
-         do i = 1, size(cards%data(j)%fields)
-            if (has_field(cards%data(j), i)) call take_quantity(card, cards%data(j), i, keys, &
-               report, request%quantities)
+      do j = 1, size(card%data)
+         do i = 1, size(card%data(j)%fields)
+            if (card%data(j)%has(i)) call take_quantity(card, card%data(j), i, keys, report, &
+               request%quantities)
          end do
       end do
-      if (card%last_data < card%first_data) call context%note('*'//card%name// &
-         ' without data prints nothing')
+      if (size(card%data) == 0) call context%note('*'//card%name//' without data prints nothing')
       if (.not. is_known .or. size(request%quantities) == 0) return
       if (.not. allocated(requests)) allocate (requests(0))
       requests = [requests, request]
@@ -334,7 +325,7 @@ contains
       class(name_index_type), intent(in) :: sets
       type(deck_context_type), intent(in) :: context
 
-      names_set = context%sets_sound .or. sets%find(parameter_text(card, parameter)) > 0
+      names_set = context%sets_sound .or. sets%find(card%text(parameter)) > 0
    end function names_set
 
    !> Whether ORDER=1 leaves no node of a set, which is warned of: there is nothing to print.
@@ -351,8 +342,8 @@ contains
          is_dropped = size(members) > 0
          if (is_dropped) is_dropped = all(context%dropped(members))
       end associate
-      if (is_dropped) call report%warning(parameter_place(card, 'NSET'), 'ORDER=1 leaves no '// &
-         'node of '//mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
+      if (is_dropped) call report%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
+         mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
    end function is_dropped
 
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.
@@ -367,21 +358,21 @@ contains
       character(:), allocatable :: key
       integer :: i
 
-      key = to_upper(field_text(data, position))
+      key = to_upper(data%text(position))
       allocate(known(0))
       do i = 1, size(keys)
          if (keys(i)%quantity /= not_computed) call append(known, trim(keys(i)%name))
          if (keys(i)%name /= key) cycle
          if (keys(i)%quantity == not_computed) then
-            call report%warning(field_place(data, position), key//' of *'//card%name// &
-               ' is not computed: it is not printed')
+            call report%warning(data%place(position), key//' of *'//card%name//' is not '// &
+               'computed: it is not printed')
          else if (.not. any(quantities == keys(i)%quantity)) then
             quantities = [quantities, keys(i)%quantity]
          end if
          return
       end do
-      call report%warning(field_place(data, position), 'unknown quantity '//key//' of *'// &
-         card%name//' is not printed'//known_choices(key, known))
+      call report%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
+         ' is not printed'//known_choices(key, known))
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.

@@ -2,7 +2,7 @@
 !> for.
 module deck_builder_drawings
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, data_card_type, field_place, field_text, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use drawn_lines, only: drawn_line_type, sharpest_corner
@@ -22,8 +22,7 @@ module deck_builder_drawings
 contains
 
    !> Reads the cards START, LINE and CIRCL of a surface.
-   subroutine build_drawing(cards, card, report, surface)
-      type(cards_type), intent(in) :: cards
+   subroutine build_drawing(card, report, surface)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(surface_type), intent(inout) :: surface         !! receives the drawing
@@ -35,12 +34,12 @@ contains
 
       errors = report%error_count()
       allocate (line%start(2, 0), line%finish(2, 0), line%centre(2, 0), line%is_arc(0))
-      do j = card%first_data, card%last_data
-         associate (data => cards%data(j))
-            word = to_upper(field_text(data, 1))
-            if ((word == 'START') .neqv. (j == card%first_data)) then
-               call report%error(field_place(data, 1), 'a drawing begins with one card START, '// &
-                  'x, y; the cards behind it are LINE, x, y and CIRCL, x, y, x and y of the centre')
+      do j = 1, size(card%data)
+         associate (data => card%data(j))
+            word = to_upper(data%text(1))
+            if ((word == 'START') .neqv. (j == 1)) then
+               call report%error(data%place(1), 'a drawing begins with one card START, x, y; '// &
+                  'the cards behind it are LINE, x, y and CIRCL, x, y, x and y of the centre')
                exit
             end if
             call read_points(data, word, report, x, valid)
@@ -62,7 +61,7 @@ contains
          line%closed = n > 1 .and. norm2(line%finish(:, n) - line%start(:, 1)) <= &
             same_point*maxval(norm2(line%finish - line%start, dim=1))
       end associate
-      call check_smooth([(field_place(cards%data(j), 1), j=card%first_data + 1, card%last_data)], &
+      call check_smooth([(card%data(j)%place(1), j=2, size(card%data))], &
          surface%name, line, report)
       call turn_round(line)
       surface%drawing = line
@@ -86,8 +85,8 @@ contains
       case ('CIRCL')
          points = 2
       case default
-         call report%error(field_place(data, 1), ''''//field_text(data, 1)// &
-            ''' is no piece of a drawing; known are START, LINE and CIRCL')
+         call report%error(data%place(1), ''''//data%text(1)//''' is no piece of a drawing; '// &
+            'known are START, LINE and CIRCL')
          valid = .false.
          return
       end select
@@ -111,18 +110,18 @@ contains
 
       n = size(line%is_arc)
       if (norm2(line%finish(:, n) - line%start(:, n)) <= 0.0_dp) then
-         call report%error(field_place(data, 2), 'this piece ends where it begins')
+         call report%error(data%place(2), 'this piece ends where it begins')
          return
       end if
       if (.not. line%is_arc(n)) return
       radius = [norm2(line%start(:, n) - line%centre(:, n)), &
          norm2(line%finish(:, n) - line%centre(:, n))]
       if (abs(radius(2) - radius(1)) > same_radius*maxval(radius)) then
-         call report%error(field_place(data, 4), 'the ends of the arc are '//to_text(radius(1))// &
+         call report%error(data%place(4), 'the ends of the arc are '//to_text(radius(1))// &
             ' and '//to_text(radius(2))//' from its centre; let both be one radius')
       else if (abs(line%sweep(n)) > pi - half_turn) then
-         call report%error(field_place(data, 1), 'the arc turns by 180 degrees or more, so '// &
-            'that its side of the centre is not known; make two arcs of it')
+         call report%error(data%place(1), 'the arc turns by 180 degrees or more, so that its '// &
+            'side of the centre is not known; make two arcs of it')
       end if
    end subroutine check_piece
 

@@ -2,7 +2,7 @@
 !> *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
 module deck_builder_element_loads
    use card_values, only: check_extra, need_field, need_plane_vector, need_vector
-   use cards, only: data_card_type, field_place, field_text, has_field
+   use cards, only: data_card_type
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_context_type, read_surface, read_target
    use deck_report, only: deck_report_type
@@ -81,9 +81,9 @@ contains
       type(mesh_type), intent(in) :: mesh
       integer :: set
 
-      named_surface = context%surfaces%find(field_text(data, 1))
-      if (.not. has_field(data, 1)) named_surface = 0
-      set = context%element_index%sets%find(field_text(data, 1))
+      named_surface = context%surfaces%find(data%text(1))
+      if (.not. data%has(1)) named_surface = 0
+      set = context%element_index%sets%find(data%text(1))
       if (set == 0) return
       if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
    end function named_surface
@@ -150,7 +150,7 @@ contains
          first = first + slash
          if (first > len(labels)) exit
       end do
-      call report%error(field_place(data, 2), 'unknown load '//label//' of *'//keyword// &
+      call report%error(data%place(2), 'unknown load '//label//' of *'//keyword// &
          known_choices(label, names))
    end subroutine report_label
 
@@ -171,7 +171,7 @@ contains
          if (.not. context%element_valid(elements(i))) cycle
          associate (sides => element_corner_count(model%mesh%element_kind(elements(i))))
             if (request%component <= sides) cycle
-            call report%error(field_place(data, 2), 'element '// &
+            call report%error(data%place(2), 'element '// &
                to_text(model%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
          end associate
          valid = .false.
@@ -191,8 +191,8 @@ contains
       if (.not. valid) return
       elements = request%members(mesh%element_sets)
       valid = all(mesh%element_plane(elements) == axisymmetric)
-      if (.not. valid) call report%error(field_place(data, 2), 'BR and BZ are forces on '// &
-         'axisymmetric elements; those of a plane are BX and BY')
+      if (.not. valid) call report%error(data%place(2), 'BR and BZ are forces on axisymmetric '// &
+         'elements; those of a plane are BX and BY')
    end subroutine check_axis
 
    !> A load with one value.
@@ -241,12 +241,12 @@ contains
       sink%kind = load_film_sink
       film%kind = load_film_coefficient
       call need_field(data, 3, 'sink temperature', report, sink%value, valid)
-      if (report%has_lost('film property', field_text(data, 4))) return   ! a refused *FILM PROPERTY
+      if (report%has_lost('film property', data%text(4))) return   ! a refused *FILM PROPERTY
       call need_field(data, 4, 'film coefficient', report, film%value, valid)
       call check_extra(data, 4, 'element or set, face, sink temperature, film coefficient', report)
       if (.not. valid) return
       if (film%value <= 0.0_dp) then
-         call report%error(field_place(data, 4), 'a film coefficient must be positive')
+         call report%error(data%place(4), 'a film coefficient must be positive')
          return
       end if
       call context%loads%add(film)
@@ -294,9 +294,9 @@ contains
          'element or set, CENTRIF, speed squared, point x, y, z, direction x, y, z', report)
       if (.not. valid) return
       if (request%value < 0.0_dp) then
-         call report%error(field_place(data, 3), 'the square of a speed is not negative')
+         call report%error(data%place(3), 'the square of a speed is not negative')
       else if (norm2(direction) <= 0.0_dp) then
-         call report%error(field_place(data, 7), 'the direction is zero')
+         call report%error(data%place(7), 'the direction is zero')
       else if (norm2(direction(:2)) <= 0.0_dp) then
          request%kind = load_centrifugal
          values(1:2) = request%value
@@ -307,9 +307,9 @@ contains
             call context%loads%add(request)
          end do
       else if (norm2(direction([1, 3])) > 0.0_dp) then
-         call report%error(field_place(data, 7), 'the axis must be the y axis, or along z')
+         call report%error(data%place(7), 'the axis must be the y axis, or along z')
       else if (norm2(point([1, 3])) > 0.0_dp) then
-         call report%error(field_place(data, 4), 'the axis must be the y axis: x and z are 0 on it')
+         call report%error(data%place(4), 'the axis must be the y axis: x and z are 0 on it')
       else
          request%kind = load_centrifugal
          request%component = centrifugal_round
@@ -336,7 +336,7 @@ contains
       advice = 'load its reference node by *CLOAD'
       if (keyword /= 'DSLOAD') advice = 'prescribe the temperature of its reference node'
       call read_surface(data, 1, 'surface', context%surfaces, report, surface)
-      call need_faces(model%mesh, field_place(data, 1), advice, report, surface)
+      call need_faces(model%mesh, data%place(1), advice, report, surface)
       valid = surface > 0
       select case (keyword)
       case ('DSFLUX')
@@ -406,11 +406,11 @@ contains
             bow = mesh%coordinates(:, nodes(n - 1)) - mesh%coordinates(:, nodes(1))
             along = dot_product(chord, vector)
             if (abs(chord(1)*bow(2) - chord(2)*bow(1)) > straight*norm2(bow)) then
-               call report%error(field_place(data, 2), 'TRSHR acts on straight sides, but that '// &
-                  'of element '//to_text(mesh%element_number(element))//' is curved; give TRVEC')
+               call report%error(data%place(2), 'TRSHR acts on straight sides, but that of '// &
+                  'element '//to_text(mesh%element_number(element))//' is curved; give TRVEC')
                return
             else if (abs(along) <= straight*norm2(vector) .and. norm2(vector) > 0.0_dp) then
-               call report%error(field_place(data, 4), 'the direction is normal to the side of '// &
+               call report%error(data%place(4), 'the direction is normal to the side of '// &
                   'element '//to_text(mesh%element_number(element)))
                return
             end if

@@ -1,9 +1,9 @@
 !> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom;
 !> *TRANSFORM -> nodes with axes of their own, and what cards say of them.
 module deck_builder_equations
-   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place
+   use card_parameters, only: choose, need_parameter
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use equations, only: coupling_type, equation_type
    use deck_context, only: deck_context_type, need_named, read_target
@@ -52,14 +52,14 @@ contains
       places = cards_of(cards, 'EQUATION')
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
-            data = card%first_data
-            do while (data <= card%last_data)
+            data = 1
+            do while (data <= size(card%data))
                first = data
-               call read_terms(cards, card, data, context, model, report, terms)
+               call read_terms(card, data, context, model, report, terms)
                valid = allocated(terms)
                if (valid) call check_terms(terms, model, report, valid)
-               if (valid) call add_equations(terms, field_place(cards%data(first), 1), model, &
-                  report, list, count)
+               if (valid) call add_equations(terms, card%data(first)%place(1), model, report, &
+                  list, count)
                if (.not. valid) call report%lose('equation')
             end do
          end associate
@@ -68,8 +68,7 @@ contains
    end subroutine build_equations
 
    !> Reads one equation: the number of its terms, then the terms, any number on a card.
-   subroutine read_terms(cards, card, data, context, model, report, terms)
-      type(cards_type), intent(in) :: cards
+   subroutine read_terms(card, data, context, model, report, terms)
       type(keyword_card_type), intent(in) :: card
       integer, intent(inout) :: data               ! its first data card; then that behind it
       type(deck_context_type), intent(in) :: context
@@ -83,23 +82,23 @@ contains
 
       n = 0
       valid = .true.
-      place = field_place(cards%data(data), 1)
-      call need_field(cards%data(data), 1, 'number of terms', report, n, valid)
-      call check_extra(cards%data(data), 1, 'number of terms', report)
+      place = card%data(data)%place(1)
+      call need_field(card%data(data), 1, 'number of terms', report, n, valid)
+      call check_extra(card%data(data), 1, 'number of terms', report)
       if (valid .and. n < 1) then
          call report%error(place, 'an equation has at least one term')
          valid = .false.
       end if
       data = data + 1
       allocate (found(0))
-      do while (valid .and. size(found) < n .and. data <= card%last_data)
-         do i = 1, size(cards%data(data)%fields), term_fields
-            call read_term(cards%data(data), i, context, model, report, found, valid)
+      do while (valid .and. size(found) < n .and. data <= size(card%data))
+         do i = 1, size(card%data(data)%fields), term_fields
+            call read_term(card%data(data), i, context, model, report, found, valid)
          end do
          data = data + 1
       end do
       if (.not. valid) then
-         data = card%last_data + 1
+         data = size(card%data) + 1
       else if (size(found) /= n) then
          call report%error(place, 'the equation should have '//to_text(n)//' terms; '// &
             to_text(size(found))//' are given')
@@ -120,7 +119,7 @@ contains
       type(term_type) :: term
       integer :: dof
 
-      term%place = field_place(card, position)
+      term%place = card%place(position)
       call read_target(card, position, context%node_index, model%mesh%node_sets, report, &
          term%target_type, valid)
       call need_field(card, position + 1, 'degree of freedom', report, dof, valid)
@@ -129,8 +128,8 @@ contains
       term%dof = axis_in_plane(model%transforms, model%mesh%node_sets, &
          term%members(model%mesh%node_sets), dof)
       if (all(term%dof /= [1, 2, dof_temperature])) then
-         call report%error(field_place(card, position + 1), 'degree of freedom '// &
-            to_text(dof)//'; an equation relates 1 and 2, or 11')
+         call report%error(card%place(position + 1), 'degree of freedom '//to_text(dof)//'; an '// &
+            'equation relates 1 and 2, or 11')
          valid = .false.
       end if
       terms = [terms, term]
@@ -227,7 +226,7 @@ contains
          if (cards%keywords(k)%name == 'RIGID BODY') then
             n = n + 1
             call begin_coupling(cards%keywords(k), n, context, model, report)
-            if (has_parameter(cards%keywords(k), 'ROT NODE')) call find_reference('ROT NODE', &
+            if (cards%keywords(k)%has('ROT NODE')) call find_reference('ROT NODE', &
                cards%keywords(k), context, model, report, model%couplings(n)%rotation_node)
             call build_rigid_body(cards%keywords(k), context, model, report, model%couplings(n))
          else if (cards%keywords(k)%name == 'COUPLING') then
@@ -235,15 +234,14 @@ contains
             call begin_coupling(cards%keywords(k), n, context, model, report)
             call need_named(cards%keywords(k), 'SURFACE', 'surface', context%surfaces, report, &
                model%couplings(n)%surface)
-            call need_faces(model%mesh, parameter_place(cards%keywords(k), 'SURFACE'), &
-               'it follows the reference node of its *RIGID BODY', report, &
-               model%couplings(n)%surface)
+            call need_faces(model%mesh, cards%keywords(k)%place_of('SURFACE'), 'it follows the '// &
+               'reference node of its *RIGID BODY', report, model%couplings(n)%surface)
             if (is_keyword(cards, k + 1, 'KINEMATIC')) cycle
             call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
                'directly follow *COUPLING and name the degrees of freedom')
          else if (cards%keywords(k)%name == 'KINEMATIC') then
             if (is_keyword(cards, k - 1, 'COUPLING')) then
-               call read_degrees(cards, cards%keywords(k), context, report, model%couplings(n))
+               call read_degrees(cards%keywords(k), context, report, model%couplings(n))
             else
                call report%error(cards%keywords(k)%place, &
                   '*KINEMATIC must directly follow *COUPLING')
@@ -287,7 +285,7 @@ contains
       node = 0
       call need_parameter(card, parameter, report, name)
       if (len(name) == 0) return
-      associate (place => parameter_place(card, parameter), sets => model%mesh%node_sets)
+      associate (place => card%place_of(parameter), sets => model%mesh%node_sets)
          call read_integer(name, number, is_number)
          if (is_number) then
             node = context%node_index%find(number)
@@ -306,20 +304,19 @@ contains
    end subroutine find_reference
 
    !> First and last degree of freedom on each data card; without one all follow.
-   subroutine read_degrees(cards, card, context, report, coupling)
-      type(cards_type), intent(in) :: cards
+   subroutine read_degrees(card, context, report, coupling)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       type(coupling_type), intent(inout) :: coupling
       integer :: j
 
-      if (card%last_data < card%first_data) then
+      if (size(card%data) == 0) then
          coupling%follows = .true.
          call context%note('*KINEMATIC without data: displacements along x and y follow')
       end if
-      do j = card%first_data, card%last_data
-         call read_range(cards%data(j), context, report, coupling)
+      do j = 1, size(card%data)
+         call read_range(card%data(j), context, report, coupling)
       end do
    end subroutine read_degrees
 
@@ -339,7 +336,7 @@ contains
       call check_extra(data, 2, 'first and last degree of freedom', report)
       if (.not. valid) return
       if (last < first) then
-         call report%error(field_place(data, 2), 'the last degree of freedom is below the first')
+         call report%error(data%place(2), 'the last degree of freedom is below the first')
          return
       end if
       do dof = first, last
@@ -352,8 +349,8 @@ contains
          case (dof_temperature)
             coupling%is_warm = .true.
          case default
-            call report%error(field_place(data, merge(1, 2, dof == first)), &
-               'degree of freedom '//to_text(dof)//'; faces follow in 1, 2 and 11')
+            call report%error(data%place(merge(1, 2, dof == first)), 'degree of freedom '// &
+               to_text(dof)//'; faces follow in 1, 2 and 11')
             return
          end select
       end do
@@ -371,14 +368,12 @@ contains
       places = cards_of(cards, 'TRANSFORM')
       allocate (model%transforms(size(places)))
       do n = 1, size(places)
-         call build_transform(cards, cards%keywords(places(n)), context, report, &
-            model%transforms(n))
+         call build_transform(cards%keywords(places(n)), context, report, model%transforms(n))
          call check_nodes(cards%keywords(places(n)), n, model, report)
       end do
    end subroutine build_transforms
 
-   subroutine build_transform(cards, card, context, report, transform)
-      type(cards_type), intent(in) :: cards
+   subroutine build_transform(card, context, report, transform)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(deck_report_type), intent(inout) :: report
@@ -391,8 +386,7 @@ contains
       kind = 'R'
       call choose(card, 'TYPE', 'R/C', report, kind)
       transform%cylindrical = kind == 'C'
-      if (card%last_data >= card%first_data) call read_points(cards%data(card%first_data), report, &
-         transform)
+      if (size(card%data) > 0) call read_points(card%data(1), report, transform)
    end subroutine build_transform
 
    !> Two points: on the first axis and in the plane of the first two; or on the axis of a cylinder.
@@ -420,14 +414,14 @@ contains
       if (transform%cylindrical) then
          x(:, 2) = x(:, 2) - x(:, 1)
          transform%sense = sign(1.0_dp, x(3, 2))
-         if (norm2(x(:2, 2)) > negligible*norm2(x(:, 2)) .or. norm2(x(:, 2)) <= 0.0_dp) call &
-            report%error(field_place(data, 1), 'TYPE=C of a plane is round an axis along z, '// &
-            'such as 0., 0., 0., 0., 0., 1.')
+         if (norm2(x(:2, 2)) > negligible*norm2(x(:, 2)) .or. &
+            norm2(x(:, 2)) <= 0.0_dp) call report%error(data%place(1), 'TYPE=C of a plane is '// &
+            'round an axis along z, such as 0., 0., 0., 0., 0., 1.')
       else
          call set_axes(x, transform, valid)
-         if (.not. valid) call report%error(field_place(data, 1), 'TYPE=R of a plane has two '// &
-            'points, not in line with the origin, that put one of the three axes along z, such '// &
-            'as 1., 1., 0., -1., 1., 0.')
+         if (.not. valid) call report%error(data%place(1), 'TYPE=R of a plane has two points, '// &
+            'not in line with the origin, that put one of the three axes along z, such as 1., '// &
+            '1., 0., -1., 1., 0.')
       end if
    end subroutine read_points
 
@@ -472,15 +466,14 @@ contains
             do k = 1, n - 1
                if (model%transforms(k)%set == 0) cycle
                if (all(model%mesh%node_sets(model%transforms(k)%set)%members /= members(i))) cycle
-               call report%error(parameter_place(card, 'NSET'), 'node '// &
-                  to_text(number(members(i)))//' has axes of its own by '// &
-                  model%transforms(k)%title//' already')
+               call report%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
+                  ' has axes of its own by '//model%transforms(k)%title//' already')
                return
             end do
             if (.not. model%transforms(n)%cylindrical) cycle
             if (norm2(x(:, members(i)) - model%transforms(n)%point) > negligible*extent_of(x)) cycle
-            call report%error(parameter_place(card, 'NSET'), 'node '// &
-               to_text(number(members(i)))//' is on the axis, where no direction is radial')
+            call report%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
+               ' is on the axis, where no direction is radial')
             return
          end do
       end associate

@@ -1,11 +1,9 @@
 !> *GAP CONDUCTANCE: a table of conductance over the pressure, or over the clearance, at one mean
 !> temperature of the faces or at several.
 module deck_builder_gap_conductance
-   use card_parameters, only: has_parameter, parameter_place
    use card_values, only: check_extra, check_unneeded_temperature, decimal_comma, need_field, &
       report_decimal_comma, take_field
-   use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
-      keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
       line_value
    use deck_context, only: deck_context_type
@@ -31,8 +29,7 @@ contains
    !> Reads one *GAP CONDUCTANCE. With CLEARANCE it has the meaning that it has in Abaqus: beyond
    !> the last row no heat crosses. Without, the law is one of its own: whether it acts is seen when
    !> all laws of the interaction are known.
-   subroutine build_gap_conductance(cards, card, name, is_open, context, report, law)
-      type(cards_type), intent(in) :: cards
+   subroutine build_gap_conductance(card, name, is_open, context, report, law)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       logical, intent(in) :: is_open                       !! whether it is over the clearance
@@ -48,21 +45,21 @@ contains
       title = '*GAP CONDUCTANCE'
       if (is_open) then
          title = '*GAP CONDUCTANCE, CLEARANCE'
-         if (has_parameter(card, 'PRESSURE')) call report%error(parameter_place(card, &
-            'CLEARANCE'), 'PRESSURE and CLEARANCE exclude each other: both name the second column')
+         if (card%has('PRESSURE')) call report%error(card%place_of('CLEARANCE'), 'PRESSURE and '// &
+            'CLEARANCE exclude each other: both name the second column')
          if (law%open_kind /= law_none) call report%error(card%place, &
             'a second open law in one surface interaction')
       else if (law%closed_kind /= law_none) then
          call report%error(card%place, 'a second *GAP CONDUCTANCE in one surface interaction')
       end if
-      call read_temperatures(cards, card, context, report, temperature)
-      call read_table(cards, card, trim(merge('gap     ', 'pressure', is_open)), temperature, &
-         report, table)
+      call read_temperatures(card, context, report, temperature)
+      call read_table(card, trim(merge('gap     ', 'pressure', is_open)), temperature, report, &
+         table)
       if (report%error_count() == errors) call check_columns(card, name, is_open, &
          table, report)
       if (allocated(table%temperature)) then
-         if (is_open .and. report%error_count() == errors) call check_last_gaps(cards, card, &
-            temperature, report)
+         if (is_open .and. report%error_count() == errors) call check_last_gaps(card, temperature, &
+            report)
          call note_ends(title, name, 'mean temperatures', table%temperature, context)
          if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
       end if
@@ -92,14 +89,13 @@ contains
    !> Whether a table is over the clearance: it says so, or it is one of Abaqus, which has no
    !> parameter there. Without one it is over the pressure in CalculiX, but that of Abaqus if the
    !> interaction has another one that says PRESSURE, or if the conductance falls along it.
-   logical function is_of_clearance(cards, card, has_pressure)
-      type(cards_type), intent(in) :: cards
+   logical function is_of_clearance(card, has_pressure)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: has_pressure    !! whether a card of the interaction says PRESSURE
 
-      is_of_clearance = has_parameter(card, 'CLEARANCE')
-      if (is_of_clearance .or. has_parameter(card, 'PRESSURE')) return
-      is_of_clearance = has_pressure .or. falls(cards%data(card%first_data:card%last_data))
+      is_of_clearance = card%has('CLEARANCE')
+      if (is_of_clearance .or. card%has('PRESSURE')) return
+      is_of_clearance = has_pressure .or. falls(card%data)
    end function is_of_clearance
 
    !> Whether the conductance falls along rows, and rises nowhere, at each temperature.
@@ -111,11 +107,11 @@ contains
 
       falls = .false.
       do i = 1, size(rows)
-         call read_real(field_text(rows(i), 1), conductance(i), valid)
+         call read_real(rows(i)%text(1), conductance(i), valid)
          if (.not. valid) return
       end do
       do i = 2, size(rows)
-         if (field_text(rows(i), 3) /= field_text(rows(i - 1), 3)) cycle
+         if (rows(i)%text(3) /= rows(i - 1)%text(3)) cycle
          if (conductance(i) > conductance(i - 1)) then
             falls = .false.
             return
@@ -138,11 +134,11 @@ contains
       if (all(table%columns <= 0.0_dp)) call report%warning(card%place, &
          'all conductances of this table of '//name//' are 0: it conducts no heat; the first '// &
          'column of *GAP CONDUCTANCE is the conductance')
-      if (is_open .and. .not. has_parameter(card, 'CLEARANCE')) call report%warning(card%place, &
-         'the second column of this table of '//name//' is taken as the clearance, as in '// &
-         'Abaqus; in CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or '// &
-         'PRESSURE if that is meant')
-      if (is_open .or. has_parameter(card, 'PRESSURE') .or. all(table%columns <= 0.0_dp)) return
+      if (is_open .and. .not. card%has('CLEARANCE')) call report%warning(card%place, 'the '// &
+         'second column of this table of '//name//' is taken as the clearance, as in Abaqus; '// &
+         'in CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or PRESSURE if '// &
+         'that is meant')
+      if (is_open .or. card%has('PRESSURE') .or. all(table%columns <= 0.0_dp)) return
       n = size(table%abscissa)
       associate (before => table%columns(:n - 1, :), behind => table%columns(2:, :))
          if (any(behind < before)) then
@@ -160,8 +156,7 @@ contains
 
    !> Refuses a table that ends at other gaps at other temperatures: between them it would end at
    !> none.
-   subroutine check_last_gaps(cards, card, temperature, report)
-      type(cards_type), intent(in) :: cards
+   subroutine check_last_gaps(card, temperature, report)
       type(keyword_card_type), intent(in) :: card
       real(dp), intent(in) :: temperature(:)
       type(deck_report_type), intent(inout) :: report
@@ -175,12 +170,12 @@ contains
          if (i < n) then
             if (temperature(i + 1) <= temperature(i)) cycle
          end if
-         associate (data => cards%data(card%first_data + i - 1))
+         associate (data => card%data(i))
             call need_field(data, 2, 'gap', report, gap, valid)
             if (temperature(i) <= temperature(1)) first = gap
-            if (abs(gap - first) > 0.0_dp) call report%error(field_place(data, 2), &
-               'the table ends at a different gap than at the first temperature; no heat '// &
-               'crosses beyond the end, which must be the same at all temperatures')
+            if (abs(gap - first) > 0.0_dp) call report%error(data%place(2), 'the table ends at '// &
+               'a different gap than at the first temperature; no heat crosses beyond the end, '// &
+               'which must be the same at all temperatures')
          end associate
       end do
    end subroutine check_last_gaps
@@ -210,8 +205,7 @@ contains
 
    !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
    !> it and are in groups of one temperature.
-   subroutine read_table(cards, card, noun, temperature, report, table)
-      type(cards_type), intent(in) :: cards
+   subroutine read_table(card, noun, temperature, report, table)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
       real(dp), intent(in) :: temperature(:)               !! (rows) equal for one temperature
@@ -220,12 +214,12 @@ contains
       integer :: i, n
       logical :: valid(2), valid_before
 
-      n = card%last_data - card%first_data + 1
+      n = size(card%data)
       allocate (table%abscissa(n), table%omega(n), source=0.0_dp)
       valid_before = .false.
       associate (abscissa => table%abscissa, omega => table%omega)
          do i = 1, n
-            associate (data => cards%data(card%first_data + i - 1))
+            associate (data => card%data(i))
                valid = .true.
                call need_field(data, 1, 'conductance', report, omega(i), valid(1))
                call need_field(data, 2, noun, report, abscissa(i), valid(2))
@@ -235,15 +229,15 @@ contains
                   call check_extra(data, 2, 'conductance, '//noun, report)
                end if
                if (valid(1) .and. omega(i) < 0.0_dp) then
-                  call report%error(field_place(data, 1), 'the conductance must not be negative')
+                  call report%error(data%place(1), 'the conductance must not be negative')
                end if
                if (i > 1) valid_before = valid_before .and. &
                   abs(temperature(i) - temperature(max(i - 1, 1))) <= 0.0_dp
                if (valid(2) .and. abscissa(i) < 0.0_dp) then
-                  call report%error(field_place(data, 2), 'the '//noun//' must not be negative')
+                  call report%error(data%place(2), 'the '//noun//' must not be negative')
                else if (valid(2) .and. valid_before) then
                   if (abscissa(i) <= abscissa(i - 1)) then
-                     call report%error(field_place(data, 2), noun//'s must ascend')
+                     call report%error(data%place(2), noun//'s must ascend')
                   end if
                end if
                valid_before = valid(2)
@@ -259,8 +253,7 @@ contains
 
    !> Temperatures behind the rows of a *GAP CONDUCTANCE: one for all of them means nothing, several
    !> ascend.
-   subroutine read_temperatures(cards, card, context, report, temperature)
-      type(cards_type), intent(in) :: cards
+   subroutine read_temperatures(card, context, report, temperature)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors
@@ -268,7 +261,7 @@ contains
       integer :: comma, i
       logical :: valid
 
-      associate (rows => cards%data(card%first_data:card%last_data))
+      associate (rows => card%data)
          allocate (temperature(size(rows)), source=0.0_dp)
          valid = .true.
          do i = 1, size(rows)
@@ -276,28 +269,28 @@ contains
          end do
          if (.not. valid) temperature = 0.0_dp
          do i = 2, size(rows)
-            if (.not. (has_field(rows(i), 3) .neqv. has_field(rows(i - 1), 3))) cycle
+            if (.not. (rows(i)%has(3) .neqv. rows(i - 1)%has(3))) cycle
             if (all(abs(temperature - temperature(1)) <= 0.0_dp)) exit
             comma = decimal_comma(rows(i))
             if (comma > 0 .and. size(rows(i)%fields) > size(rows(1)%fields)) then
                call report_decimal_comma(rows(i), comma, report)
             else
-               call report%error(field_place(rows(i), 3), 'a temperature in some rows only; '// &
-                  'give one in each row or in none')
+               call report%error(rows(i)%place(3), 'a temperature in some rows only; give one '// &
+                  'in each row or in none')
             end if
             return
          end do
          do i = 2, size(rows)
             if (temperature(i) >= temperature(i - 1)) cycle
-            call report%error(field_place(rows(i), 3), 'temperatures must ascend, and the rows '// &
-               'of each temperature must be consecutive')
+            call report%error(rows(i)%place(3), 'temperatures must ascend, and the rows of '// &
+               'each temperature must be consecutive')
             return
          end do
          if (any(temperature > temperature(1)) .or. .not. valid) return
          call check_unneeded_temperature(rows(1), 3, report)
          do i = 1, size(rows)
-            if (has_field(rows(i), 3)) call context%note('*GAP CONDUCTANCE: the temperature, '// &
-               'the same in every row, is ignored')
+            if (rows(i)%has(3)) call context%note('*GAP CONDUCTANCE: the temperature, the same '// &
+               'in every row, is ignored')
          end do
       end associate
    end subroutine read_temperatures

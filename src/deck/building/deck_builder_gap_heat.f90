@@ -1,9 +1,9 @@
 !> *GAP HEAT GENERATION -> the heat of friction of a surface interaction; *GAP RADIATION ->
 !> radiation in its gap.
 module deck_builder_gap_heat
-   use card_parameters, only: has_parameter, parameter_place, take_positive
+   use card_parameters, only: take_positive
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_gas, law_none
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -20,8 +20,7 @@ module deck_builder_gap_heat
 contains
 
    !> Reads one *GAP HEAT GENERATION.
-   subroutine build_friction_heat(cards, card, model, report, heat)
-      type(cards_type), intent(in) :: cards
+   subroutine build_friction_heat(card, model, report, heat)
       type(keyword_card_type), intent(in) :: card
       type(model_type), intent(in) :: model                !! with its mesh
       type(deck_report_type), intent(inout) :: report      !! receives errors
@@ -29,23 +28,22 @@ contains
       logical :: valid
 
       heat%efficiency = 1.0_dp
-      if (card%last_data >= card%first_data) then
-         associate (data => cards%data(card%first_data))
+      if (size(card%data) > 0) then
+         associate (data => card%data(1))
             call take_part(data, 1, 'eta (heat per work of friction)', report, heat%efficiency)
             call take_part(data, 2, 'f (share of the slave)', report, heat%slave_share)
             valid = .true.
             call take_field(data, 3, 'sliding speed', report, heat%speed, valid)
             call check_extra(data, 3, 'eta, f, sliding speed', report)
-            if (has_parameter(card, 'ANGULAR VELOCITY') .and. has_field(data, 3)) call &
-               report%error(field_place(data, 3), 'a sliding speed and ANGULAR VELOCITY= '// &
-               'exclude each other; give one of them')
+            if (card%has('ANGULAR VELOCITY') .and. data%has(3)) call report%error(data%place(3), &
+               'a sliding speed and ANGULAR VELOCITY= exclude each other; give one of them')
          end associate
       end if
-      if (.not. has_parameter(card, 'ANGULAR VELOCITY')) return
+      if (.not. card%has('ANGULAR VELOCITY')) return
       if (any(model%mesh%element_plane == axisymmetric)) then
          call take_positive(card, 'ANGULAR VELOCITY', report, heat%angular_velocity)
       else
-         call report%error(parameter_place(card, 'ANGULAR VELOCITY'), 'ANGULAR VELOCITY= needs '// &
+         call report%error(card%place_of('ANGULAR VELOCITY'), 'ANGULAR VELOCITY= needs '// &
             'axisymmetric elements, which turn about their axis; give a sliding speed')
       end if
    end subroutine build_friction_heat
@@ -62,7 +60,7 @@ contains
       valid = .true.
       call take_field(data, i, what, report, part, valid)
       if (part >= 0.0_dp .and. part <= 1.0_dp) return
-      call report%error(field_place(data, i), what//' must be between 0 and 1')
+      call report%error(data%place(i), what//' must be between 0 and 1')
       part = 1.0_dp
    end subroutine take_part
 
@@ -117,8 +115,7 @@ contains
 
    !> Reads one *GAP RADIATION: emissivities of both faces, then view factors over the clearance.
    !> Two large grey faces exchange sigma/(1/e1 + 1/e2 - 1) (T1^4 - T2^4), times the view factor.
-   subroutine build_gap_radiation(cards, card, constants, context, report, law)
-      type(cards_type), intent(in) :: cards
+   subroutine build_gap_radiation(card, constants, context, report, law)
       type(keyword_card_type), intent(in) :: card
       type(physical_constants_type), intent(in) :: constants
       type(deck_context_type), intent(inout) :: context    !! receives a note
@@ -128,21 +125,20 @@ contains
       real(dp), allocatable :: gap(:), view_factor(:)
       integer :: i
 
-      associate (data => cards%data(card%first_data))
+      associate (data => card%data(1))
          do i = 1, 2
             emissivity(i) = part_of(data, i, 'emissivity', report)
             if (emissivity(i) <= 0.0_dp) then
-               call report%error(field_place(data, i), 'the emissivity must not be 0')
+               call report%error(data%place(i), 'the emissivity must not be 0')
                emissivity(i) = 1.0_dp
             end if
          end do
          call check_extra(data, 2, 'two emissivities', report)
       end associate
-      call read_view_factors(cards%data(card%first_data + 1:card%last_data), report, gap, &
-         view_factor)
-      if (card%last_data > card%first_data .and. view_factor(size(view_factor)) > 0.0_dp) call &
-         context%note('*GAP RADIATION: faces radiate at all clearances, also beyond that of '// &
-         'the last view factor')
+      call read_view_factors(card%data(2:), report, gap, view_factor)
+      if (size(card%data) > 1 .and. view_factor(size(view_factor)) > 0.0_dp) call context%note( &
+         '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last view '// &
+         'factor')
       if (.not. constants%has_radiation) call report%error(card%place, '*GAP RADIATION needs '// &
          '*PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
       if (law%open_kind == law_none) law%open_kind = law_gas
@@ -175,15 +171,14 @@ contains
          call take_field(rows(i), 2, 'clearance', report, gap(i), valid)
          call check_extra(rows(i), 2, 'view factor, clearance', report)
          if (gap(i) < 0.0_dp) then
-            call report%error(field_place(rows(i), 2), 'the clearance must not be negative')
+            call report%error(rows(i)%place(2), 'the clearance must not be negative')
          else if (i > 1 .and. valid) then
-            if (gap(i) <= gap(i - 1)) call report%error(field_place(rows(i), 2), &
-               'clearances must ascend')
+            if (gap(i) <= gap(i - 1)) call report%error(rows(i)%place(2), 'clearances must ascend')
          end if
       end do
       if (maxval(view_factor) > 0.0_dp) return
-      call report%error(field_place(rows(1), 1), 'all view factors are 0: the faces do not '// &
-         'radiate; leave *GAP RADIATION out')
+      call report%error(rows(1)%place(1), 'all view factors are 0: the faces do not radiate; '// &
+         'leave *GAP RADIATION out')
       view_factor = 1.0_dp
    end subroutine read_view_factors
 
@@ -199,7 +194,7 @@ contains
       part = 1.0_dp
       call need_field(data, i, what, report, part, valid)
       if (part >= 0.0_dp .and. part <= 1.0_dp) return
-      call report%error(field_place(data, i), 'the '//what//' must be between 0 and 1')
+      call report%error(data%place(i), 'the '//what//' must be between 0 and 1')
       part = 1.0_dp
    end function part_of
 

@@ -1,8 +1,8 @@
 !> *GAP LAW -> one side of the conductance of a surface interaction.
 module deck_builder_gap_laws
-   use card_parameters, only: has_parameter, need_choice, parameter_place, take_parameter
+   use card_parameters, only: need_choice, take_parameter
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
    use deck_builder_gap_conductance, only: gap_table_type, note_ends, read_table
    use deck_context, only: deck_context_type
@@ -27,8 +27,7 @@ module deck_builder_gap_laws
 contains
 
    !> Reads one *GAP LAW.
-   subroutine build_gap_law(cards, card, name, constants, context, report, law)
-      type(cards_type), intent(in) :: cards
+   subroutine build_gap_law(card, name, constants, context, report, law)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(physical_constants_type), intent(in) :: constants
@@ -49,30 +48,28 @@ contains
       end if
       if (kind == 'GAS') then
          law%open_kind = law_gas
-         call build_gas_law(cards, card, name, constants, context, report, law)
+         call build_gas_law(card, name, constants, context, report, law)
          return
       end if
       do i = 1, size(of_gas)
-         if (has_parameter(card, trim(of_gas(i)))) call report%error(parameter_place(card, &
-            trim(of_gas(i))), trim(of_gas(i))//'= belongs to *GAP LAW, TYPE=GAS')
+         if (card%has(trim(of_gas(i)))) call report%error(card%place_of(trim(of_gas(i))), &
+            trim(of_gas(i))//'= belongs to *GAP LAW, TYPE=GAS')
       end do
       if (kind == 'CLEARANCE') then
          law%open_kind = law_clearance
-         call read_table(cards, card, 'gap', spread(0.0_dp, 1, &
-            card%last_data - card%first_data + 1), report, table)
+         call read_table(card, 'gap', spread(0.0_dp, 1, size(card%data)), report, table)
          call move_alloc(table%abscissa, law%table_gap)
          call move_alloc(table%omega, law%open_omega)
          call note_ends('*GAP LAW, TYPE=CLEARANCE', name, 'gaps', law%table_gap, context)
          return
       end if
-      if (card%last_data > card%first_data) call report%error( &
-         field_place(cards%data(card%first_data + 1), 1), &
-         'extra data card; *GAP LAW, TYPE='//kind//' has one')
+      if (size(card%data) > 1) call report%error(card%data(2)%place(1), 'extra data card; *GAP '// &
+         'LAW, TYPE='//kind//' has one')
       law%closed_kind = law_power
       if (kind == 'POWER') then
-         call build_power_law(cards%data(card%first_data), report, law)
+         call build_power_law(card%data(1), report, law)
       else
-         call build_solid_spots(cards%data(card%first_data), kind, report, law)
+         call build_solid_spots(card%data(1), kind, report, law)
       end if
    end subroutine build_gap_law
 
@@ -89,16 +86,16 @@ contains
       call need_field(data, 3, 'n', report, law%power_n, valid(3))
       call check_extra(data, 3, 'C0, C1, n of C0 + C1 pressure^n', report)
       if (valid(1) .and. law%power_c0 < 0.0_dp) then
-         call report%error(field_place(data, 1), 'C0 must not be negative')
+         call report%error(data%place(1), 'C0 must not be negative')
       end if
       if (valid(2) .and. law%power_c1 < 0.0_dp) then
-         call report%error(field_place(data, 2), 'C1 must not be negative')
+         call report%error(data%place(2), 'C1 must not be negative')
       end if
       if (valid(3) .and. law%power_n <= 0.0_dp) then
-         call report%error(field_place(data, 3), 'n must be positive')
+         call report%error(data%place(3), 'n must be positive')
          law%power_n = 1.0_dp
       else if (valid(3) .and. law%power_n > largest_exponent) then
-         call report%error(field_place(data, 3), 'n must not exceed '//to_text(largest_exponent)// &
+         call report%error(data%place(3), 'n must not exceed '//to_text(largest_exponent)// &
             '; for rough faces it is about 0.95')
          law%power_n = 1.0_dp
       end if
@@ -127,7 +124,7 @@ contains
       do i = 1, 5
          call need_field(data, i, trim(names(i)), report, value(i), valid(i))
          if (.not. valid(i) .or. value(i) > 0.0_dp) cycle
-         call report%error(field_place(data, i), trim(names(i))//' must be positive')
+         call report%error(data%place(i), trim(names(i))//' must be positive')
          valid(i) = .false.
       end do
       if (kind == 'CMY') then
@@ -147,7 +144,7 @@ contains
             log(value(4)) - log(value(5))
       end if
       if (magnitude > log(largest_magnitude)) then
-         call report%error(field_place(data, 1), 'the conductance at a pressure of 1 exceeds '// &
+         call report%error(data%place(1), 'the conductance at a pressure of 1 exceeds '// &
             to_text(largest_magnitude))
       else if (kind == 'CMY') then
          law%power_c1 = cmy_factor*harmonic_mean(value(1), value(2))*(value(3)/value(4))/ &
@@ -165,8 +162,7 @@ contains
 
    !> omega = A/(B + JUMP + ROUGHNESS + gamma) + radiation; A and B of one row, or of a row for each
    !> mean temperature of the faces.
-   subroutine build_gas_law(cards, card, name, constants, context, report, law)
-      type(cards_type), intent(in) :: cards
+   subroutine build_gas_law(card, name, constants, context, report, law)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(physical_constants_type), intent(in) :: constants
@@ -178,7 +174,7 @@ contains
 
       law%added_length = length_of(card, 'JUMP', report) + length_of(card, 'ROUGHNESS', report)
       call take_emissivity(card, constants, report, law)
-      n = card%last_data - card%first_data + 1
+      n = size(card%data)
       allocate (a(n), b(n), temperature(n))
       do i = 1, n
          call read_row(i, a(i), b(i), temperature(i))
@@ -202,7 +198,7 @@ contains
          b = 0.0_dp
          at = 0.0_dp
          valid = .true.
-         associate (data => cards%data(card%first_data + i - 1))
+         associate (data => card%data(i))
             call need_field(data, 1, 'A', report, a, valid(1))
             if (law%added_length > 0.0_dp) then
                call take_field(data, 2, 'B', report, b, valid(2))
@@ -212,12 +208,12 @@ contains
             if (n > 1) call need_field(data, 3, 'temperature', report, at, valid(3))
             if (n == 1) call take_field(data, 3, 'temperature', report, at, valid(3))
             call check_extra(data, 3, 'A, B of A/(B + gap), temperature', report)
-            call check_values(data, a, b, law%added_length, has_parameter(card, 'EMISSIVITY'), &
-               valid(:2), report)
+            call check_values(data, a, b, law%added_length, card%has('EMISSIVITY'), valid(:2), &
+               report)
             if (.not. all(valid(2:)) .or. b + law%added_length <= 0.0_dp) b = 1.0_dp
             if (i == 1 .or. .not. valid(3)) return
-            if (at <= temperature(i - 1)) call report%error(field_place(data, 3), &
-               'temperatures must ascend')
+            if (at <= temperature(i - 1)) call report%error(data%place(3), 'temperatures must '// &
+               'ascend')
          end associate
       end subroutine read_row
    end subroutine build_gas_law
@@ -232,16 +228,16 @@ contains
       type(deck_report_type), intent(inout) :: report
 
       if (valid(1) .and. a < 0.0_dp .and. radiates) then
-         call report%error(field_place(data, 1), 'A must not be negative')
+         call report%error(data%place(1), 'A must not be negative')
       else if (valid(1) .and. a <= 0.0_dp .and. .not. radiates) then
-         call report%error(field_place(data, 1), 'A must be positive')
+         call report%error(data%place(1), 'A must be positive')
       end if
       if (valid(2) .and. b < 0.0_dp) then
-         call report%error(field_place(data, 2), 'B must not be negative')
+         call report%error(data%place(2), 'B must not be negative')
       else if (valid(2) .and. b + added <= 0.0_dp) then
-         call report%error(field_place(data, 2), 'B must be positive')
+         call report%error(data%place(2), 'B must be positive')
       else if (all(valid) .and. a > largest_magnitude*(b + added)) then
-         call report%error(field_place(data, 1), 'the conductance A/B at gap 0 exceeds '// &
+         call report%error(data%place(1), 'the conductance A/B at gap 0 exceeds '// &
             to_text(largest_magnitude))
       end if
    end subroutine check_values
@@ -256,7 +252,7 @@ contains
       length = 0.0_dp
       call take_parameter(card, name, report, length)
       if (length >= 0.0_dp) return
-      call report%error(parameter_place(card, name), name//'= must not be negative')
+      call report%error(card%place_of(name), name//'= must not be negative')
       length = 0.0_dp
    end function length_of
 
@@ -268,12 +264,12 @@ contains
       type(conductance_law_type), intent(inout) :: law
       real(dp) :: emissivity
 
-      if (.not. has_parameter(card, 'EMISSIVITY')) return
+      if (.not. card%has('EMISSIVITY')) return
       emissivity = 1.0_dp
       call take_parameter(card, 'EMISSIVITY', report, emissivity)
       if (emissivity <= 0.0_dp .or. emissivity > 1.0_dp) call report%error( &
-         parameter_place(card, 'EMISSIVITY'), 'EMISSIVITY= must be above 0 and at most 1')
-      if (.not. constants%has_radiation) call report%error(parameter_place(card, 'EMISSIVITY'), &
+         card%place_of('EMISSIVITY'), 'EMISSIVITY= must be above 0 and at most 1')
+      if (.not. constants%has_radiation) call report%error(card%place_of('EMISSIVITY'), &
          'EMISSIVITY= needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
       if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
       law%by_temperature%radiance = max(emissivity, 0.0_dp)*constants%stefan_boltzmann

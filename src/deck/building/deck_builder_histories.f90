@@ -3,10 +3,9 @@
 !> points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choose, chosen, has_parameter, lacks_parameter, parameter_place, &
-      parameter_text, take_parameter, take_positive
+   use card_parameters, only: choose, chosen, take_parameter, take_positive
    use card_values, only: check_extra, decimal_comma, need_field, report_decimal_comma, take_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_context_type, read_target, take_name
    use deck_report, only: deck_report_type
    use deck_structure, only: cards_of
@@ -49,7 +48,7 @@ contains
       do n = 1, size(places)
          call take_name(cards, places(n), 'amplitude', context%amplitudes, &
             model%amplitudes(n)%name, report)
-         call build_amplitude(cards, cards%keywords(places(n)), report, model%amplitudes(n))
+         call build_amplitude(cards%keywords(places(n)), report, model%amplitudes(n))
       end do
    end subroutine build_amplitudes
 
@@ -74,22 +73,22 @@ contains
             call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)
             points%total_time = kind == 'TOTAL TIME'
             allocate (points%times(0))
-            do j = card%first_data, card%last_data
+            do j = 1, size(card%data)
                valid = .true.
-               if (has_parameter(card, 'GENERATE')) then
-                  call need_field(cards%data(j), 1, 'start', report, values(1), valid)
-                  call need_field(cards%data(j), 2, 'end', report, values(2), valid)
-                  call need_field(cards%data(j), 3, 'interval', report, values(3), valid)
-                  call check_extra(cards%data(j), 3, 'start, end, interval', report)
-                  if (valid .and. .not. (values(3) > 0.0_dp .and. values(2) >= values(1))) call &
-                     report%error(field_place(cards%data(j), 3), 'time points go up from the '// &
-                     'start to the end by a positive interval')
+               if (card%has('GENERATE')) then
+                  call need_field(card%data(j), 1, 'start', report, values(1), valid)
+                  call need_field(card%data(j), 2, 'end', report, values(2), valid)
+                  call need_field(card%data(j), 3, 'interval', report, values(3), valid)
+                  call check_extra(card%data(j), 3, 'start, end, interval', report)
+                  if (valid .and. .not. (values(3) > 0.0_dp .and. &
+                     values(2) >= values(1))) call report%error(card%data(j)%place(3), 'time '// &
+                     'points go up from the start to the end by a positive interval')
                   if (valid .and. values(3) > 0.0_dp) points%times = [points%times, (values(1) + &
                      i*values(3), i=0, floor((values(2) - values(1))/values(3) + 1.0e-6_dp))]
                   cycle
                end if
-               do i = 1, size(cards%data(j)%fields)
-                  call need_field(cards%data(j), i, 'time', report, values(1), valid)
+               do i = 1, size(card%data(j)%fields)
+                  call need_field(card%data(j), i, 'time', report, values(1), valid)
                   if (valid) points%times = [points%times, values(1)]
                end do
             end do
@@ -100,8 +99,7 @@ contains
    end subroutine build_time_points
 
    !> Parameters of the card, then its points.
-   subroutine build_amplitude(cards, card, report, amplitude)
-      type(cards_type), intent(in) :: cards
+   subroutine build_amplitude(card, report, amplitude)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
       type(amplitude_type), intent(inout) :: amplitude
@@ -112,12 +110,12 @@ contains
       amplitude%total_time = kind == 'TOTAL TIME'
       kind = 'RELATIVE'
       call choose(card, 'VALUE', 'RELATIVE', report, kind)
-      kind = to_upper(parameter_text(card, 'DEFINITION'))
+      kind = to_upper(card%text('DEFINITION'))
       select case (kind)
       case ('PERIODIC', 'MODULATED', 'DECAY', 'SOLUTION DEPENDENT', 'ACTUATOR', 'SPECTRUM', &
          'USER', 'BUBBLE')
-         call report%error(parameter_place(card, 'DEFINITION'), 'DEFINITION='//kind// &
-            ' is refused; give times and values')
+         call report%error(card%place_of('DEFINITION'), 'DEFINITION='//kind//' is refused; '// &
+            'give times and values')
          kind = ''
       case default
          kind = 'TABULAR'
@@ -127,19 +125,18 @@ contains
       if (len(kind) == 0) then
          allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
       else if (kind == 'EQUALLY SPACED') then
-         call read_values(cards, card, report, amplitude)
+         call read_values(card, report, amplitude)
       else
-         if (has_parameter(card, 'FIXED INTERVAL')) call report%error(parameter_place(card, &
-            'FIXED INTERVAL'), 'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
-         if (has_parameter(card, 'BEGIN')) call report%error(parameter_place(card, 'BEGIN'), &
-            'BEGIN= needs DEFINITION=EQUALLY SPACED')
-         call read_points(cards, card, report, amplitude)
+         if (card%has('FIXED INTERVAL')) call report%error(card%place_of('FIXED INTERVAL'), &
+            'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
+         if (card%has('BEGIN')) call report%error(card%place_of('BEGIN'), 'BEGIN= needs '// &
+            'DEFINITION=EQUALLY SPACED')
+         call read_points(card, report, amplitude)
       end if
    end subroutine build_amplitude
 
    !> Values at equal intervals, any number of them a card.
-   subroutine read_values(cards, card, report, amplitude)
-      type(cards_type), intent(in) :: cards
+   subroutine read_values(card, report, amplitude)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
       type(amplitude_type), intent(inout) :: amplitude
@@ -151,24 +148,23 @@ contains
       interval = 1.0_dp
       call take_parameter(card, 'BEGIN', report, begin)
       call take_positive(card, 'FIXED INTERVAL', report, interval)
-      if (lacks_parameter(card, 'FIXED INTERVAL')) call report%error(card%place, &
-         'DEFINITION=EQUALLY SPACED needs FIXED INTERVAL=')
-      n = sum([(size(cards%data(j)%fields), j=card%first_data, card%last_data)])
+      if (card%lacks('FIXED INTERVAL')) call report%error(card%place, 'DEFINITION=EQUALLY '// &
+         'SPACED needs FIXED INTERVAL=')
+      n = sum([(size(card%data(j)%fields), j=1, size(card%data))])
       allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
       n = 0
-      do j = card%first_data, card%last_data
-         do i = 1, size(cards%data(j)%fields)
+      do j = 1, size(card%data)
+         do i = 1, size(card%data(j)%fields)
             n = n + 1
             amplitude%times(n) = begin + (n - 1)*interval
             valid = .true.
-            call need_field(cards%data(j), i, 'value', report, amplitude%values(n), valid)
+            call need_field(card%data(j), i, 'value', report, amplitude%values(n), valid)
          end do
       end do
    end subroutine read_values
 
    !> Pairs of time and value, any number of them a card.
-   subroutine read_points(cards, card, report, amplitude)
-      type(cards_type), intent(in) :: cards
+   subroutine read_points(card, report, amplitude)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
       type(amplitude_type), intent(inout) :: amplitude
@@ -176,25 +172,25 @@ contains
       logical :: valid
 
       n = 0
-      do j = card%first_data, card%last_data
-         n = n + (size(cards%data(j)%fields) + 1)/2
+      do j = 1, size(card%data)
+         n = n + (size(card%data(j)%fields) + 1)/2
       end do
       allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
       n = 0
-      do j = card%first_data, card%last_data
-         i = decimal_comma(cards%data(j))
-         if (i > 0 .and. .not. is_history(cards%data(j), amplitude%times(:n))) then
-            call report_decimal_comma(cards%data(j), i, report)
+      do j = 1, size(card%data)
+         i = decimal_comma(card%data(j))
+         if (i > 0 .and. .not. is_history(card%data(j), amplitude%times(:n))) then
+            call report_decimal_comma(card%data(j), i, report)
             return
          end if
-         do i = 1, size(cards%data(j)%fields), 2
+         do i = 1, size(card%data(j)%fields), 2
             n = n + 1
             valid = .true.
-            call need_field(cards%data(j), i, 'time', report, amplitude%times(n), valid)
-            call need_field(cards%data(j), i + 1, 'value', report, amplitude%values(n), valid)
+            call need_field(card%data(j), i, 'time', report, amplitude%times(n), valid)
+            call need_field(card%data(j), i + 1, 'value', report, amplitude%values(n), valid)
             if (n < 2 .or. .not. valid) cycle
             if (amplitude%times(n) <= amplitude%times(n - 1)) then
-               call report%error(field_place(cards%data(j), i), 'times must ascend')
+               call report%error(card%data(j)%place(i), 'times must ascend')
             end if
          end do
       end do
@@ -233,7 +229,7 @@ contains
       places = cards_of(cards, 'INITIAL CONDITIONS')
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
-            if (lacks_parameter(card, 'TYPE')) then
+            if (card%lacks('TYPE')) then
                call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE '// &
                   'or TYPE=STRESS')
             end if
@@ -243,13 +239,13 @@ contains
                context%note('*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing depends '// &
                'on it')
             if (kind /= 'TEMPERATURE') cycle
-            do j = card%first_data, card%last_data
+            do j = 1, size(card%data)
                valid = .true.
-               request%place = field_place(cards%data(j), 1)
-               call read_target(cards%data(j), 1, context%node_index, model%mesh%node_sets, &
-                  report, request%target_type, valid)
-               call need_field(cards%data(j), 2, 'temperature', report, request%value, valid)
-               call check_extra(cards%data(j), 2, 'node or set, temperature', report)
+               request%place = card%data(j)%place(1)
+               call read_target(card%data(j), 1, context%node_index, model%mesh%node_sets, report, &
+                  request%target_type, valid)
+               call need_field(card%data(j), 2, 'temperature', report, request%value, valid)
+               call check_extra(card%data(j), 2, 'node or set, temperature', report)
                if (valid) call context%temperatures%add(request)
             end do
          end associate
@@ -272,11 +268,11 @@ contains
             if (.not. allocated(mesh%initial_stress)) allocate (mesh%initial_stress(4, &
                size(mesh%element_number)), source=0.0_dp)
             points = spread(0, 1, size(mesh%element_number))
-            do j = card%first_data, card%last_data
-               if (size(cards%data(j)%fields) > most_fields) then
-                  call take_point(cards%data(j), context, points, mesh, report)
+            do j = 1, size(card%data)
+               if (size(card%data(j)%fields) > most_fields) then
+                  call take_point(card%data(j), context, points, mesh, report)
                else
-                  call take_elements(cards%data(j), context, mesh, report)
+                  call take_elements(card%data(j), context, mesh, report)
                end if
             end do
             do j = 1, size(points)
@@ -312,8 +308,8 @@ contains
          call read_integer(data%fields(2)%text, number, valid)
          if (valid .and. number > 0 .and. number <= &
             solid_points(mesh%element_kind(target%item))) then
-            call report%error(field_place(data, 2), 'integration point or stress? Give '// &
-               layout//', or a stress with a decimal point')
+            call report%error(data%place(2), 'integration point or stress? Give '//layout// &
+               ', or a stress with a decimal point')
             return
          end if
       end if
@@ -323,8 +319,8 @@ contains
       end do
       if (is_flat .and. size(data%fields) == 4) stress = [stress(:2), 0.0_dp, stress(3)]
       if (any(mesh%element_plane(members) == plane_stress) .and. abs(stress(3)) > 0.0_dp) then
-         call report%error(field_place(data, 4), 's33 is 0 in plane stress; the card is '// &
-            'element or set, s11, s22, s12, or with s33=0 before s12')
+         call report%error(data%place(4), 's33 is 0 in plane stress; the card is element or '// &
+            'set, s11, s22, s12, or with s33=0 before s12')
          return
       end if
       mesh%initial_stress(:, members) = spread(stress, 2, size(members))
@@ -358,21 +354,20 @@ contains
          end if
          if (.not. valid) return
          if (target%set > 0) then
-            call report%error(field_place(data, 1), 'an element set has no integration points; '// &
-               'the card is set, s11, s22, s33, s12, or '//layout)
+            call report%error(data%place(1), 'an element set has no integration points; the '// &
+               'card is set, s11, s22, s33, s12, or '//layout)
          else if (any(abs(stress(5:)) > 0.0_dp)) then
-            call report%error(field_place(data, 7), 's13 and s23 are 0 in a plane')
+            call report%error(data%place(7), 's13 and s23 are 0 in a plane')
          else if (mesh%element_plane(item) == plane_stress .and. abs(stress(3)) > 0.0_dp) then
-            call report%error(field_place(data, 5), 's33 is 0 in plane stress')
+            call report%error(data%place(5), 's33 is 0 in plane stress')
          else if (point /= next .or. point > solid_points(mesh%element_kind(item))) then
-            call report%error(field_place(data, 2), 'the integration points of an element '// &
-               'follow each other from 1 to '//to_text(solid_points(mesh%element_kind(item)))// &
-               ', as in CalculiX')
+            call report%error(data%place(2), 'the integration points of an element follow each '// &
+               'other from 1 to '//to_text(solid_points(mesh%element_kind(item)))//', as in '// &
+               'CalculiX')
          else if (point > 1 .and. maxval(abs(stress(:4) - mesh%initial_stress(:, item))) > &
             printed*maxval(abs(stress))) then
-            call report%error(field_place(data, 2), 'the stress differs from that at point 1 '// &
-               'of element '//to_text(mesh%element_number(item))// &
-               '; an element has one stress here')
+            call report%error(data%place(2), 'the stress differs from that at point 1 of '// &
+               'element '//to_text(mesh%element_number(item))//'; an element has one stress here')
          else
             if (point == 1) mesh%initial_stress(:, item) = stress(:4)
             points(item) = point

@@ -1,8 +1,8 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
-   use card_parameters, only: has_parameter, parameter_place, take_parameter
+   use card_parameters, only: take_parameter
    use card_values, only: check_extra, check_unneeded, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
@@ -55,7 +55,7 @@ contains
                call take_name(cards, k, 'surface interaction', context%interactions, &
                   model%interactions(n)%name, report)
                law_place = card%place
-               call ignore_thickness(cards, card, context, report)
+               call ignore_thickness(card, context, report)
                interaction = model%interactions(n)
                call build_laws(cards, k, model, context, report, interaction, law_place)
                model%interactions(n) = interaction
@@ -75,21 +75,20 @@ contains
    end subroutine build_interactions
 
    !> Thickness of the contact out of the plane, which Abaqus needs for surfaces of nodes alone.
-   subroutine ignore_thickness(cards, card, context, report)
-      type(cards_type), intent(in) :: cards
+   subroutine ignore_thickness(card, context, report)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
       real(dp) :: thickness
       logical :: valid
 
-      if (card%last_data < card%first_data) return
+      if (size(card%data) == 0) return
       valid = .true.
       thickness = 1.0_dp
-      call take_field(cards%data(card%first_data), 1, 'thickness', report, thickness, valid)
-      call check_extra(cards%data(card%first_data), 1, 'thickness', report)
-      if (thickness <= 0.0_dp) call report%error(field_place(cards%data(card%first_data), 1), &
-         'the thickness must be positive')
+      call take_field(card%data(1), 1, 'thickness', report, thickness, valid)
+      call check_extra(card%data(1), 1, 'thickness', report)
+      if (thickness <= 0.0_dp) call report%error(card%data(1)%place(1), 'the thickness must be '// &
+         'positive')
       call context%note('*SURFACE INTERACTION: the thickness is ignored: that of '// &
          '*SOLID SECTION is taken')
    end subroutine ignore_thickness
@@ -113,33 +112,33 @@ contains
       do k = place + 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
-            if (card%last_data < card%first_data .and. .not. any(card%name == &
-               ['FRICTION           ', 'GAP HEAT GENERATION', 'SURFACE BEHAVIOR   '])) cycle
+            if (size(card%data) == 0 .and. .not. any(card%name == ['FRICTION           ', 'GAP '// &
+               'HEAT GENERATION', 'SURFACE BEHAVIOR   '])) cycle
             if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
-               law_place = field_place(cards%data(card%first_data), 1)
+               law_place = card%data(1)%place(1)
             end if
             select case (card%name)
             case ('FRICTION')
                call count_once(cards, k, friction, report)
-               call build_friction(cards, card, context, report, interaction%friction)
+               call build_friction(card, context, report, interaction%friction)
             case ('SURFACE BEHAVIOR')
                call count_once(cards, k, behavior, report)
-               call build_behavior(cards, card, context, report, interaction%overlap)
+               call build_behavior(card, context, report, interaction%overlap)
             case ('GAP HEAT GENERATION')
                call count_once(cards, k, heat, report)
-               call build_friction_heat(cards, card, model, report, interaction%heat)
+               call build_friction_heat(card, model, report, interaction%heat)
             case ('GAP RADIATION')
                call count_once(cards, k, radiation, report)
             case ('GAP LAW')
-               call build_gap_law(cards, card, interaction%name, model%constants, context, report, &
+               call build_gap_law(card, interaction%name, model%constants, context, report, &
                   interaction%law)
             case ('GAP CONDUCTANCE')
-               if (is_of_clearance(cards, card, has_pressure(cards, place))) then
-                  call build_gap_conductance(cards, card, interaction%name, .true., context, &
-                     report, interaction%law)
+               if (is_of_clearance(card, has_pressure(cards, place))) then
+                  call build_gap_conductance(card, interaction%name, .true., context, report, &
+                     interaction%law)
                else
-                  call build_gap_conductance(cards, card, interaction%name, .false., context, &
-                     report, table)
+                  call build_gap_conductance(card, interaction%name, .false., context, report, &
+                     table)
                end if
             case default
                cycle
@@ -147,8 +146,8 @@ contains
          end associate
       end do
       call join_gap_conductance(table, interaction%name, context, interaction%law)
-      if (radiation > 0) call build_gap_radiation(cards, cards%keywords(radiation), &
-         model%constants, context, report, interaction%law)
+      if (radiation > 0) call build_gap_radiation(cards%keywords(radiation), model%constants, &
+         context, report, interaction%law)
    end subroutine build_laws
 
    !> Whether the laws behind a *SURFACE INTERACTION have a *GAP CONDUCTANCE, PRESSURE.
@@ -160,7 +159,7 @@ contains
       has_pressure = .false.
       do k = place + 1, size(cards%keywords)
          if (any(cards%keywords(k)%name == ['SURFACE INTERACTION', 'STEP               '])) return
-         has_pressure = has_pressure .or. has_parameter(cards%keywords(k), 'PRESSURE')
+         has_pressure = has_pressure .or. cards%keywords(k)%has('PRESSURE')
       end do
    end function has_pressure
 
@@ -180,25 +179,23 @@ contains
    end subroutine count_once
 
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
-   subroutine build_friction(cards, card, context, report, friction)
-      type(cards_type), intent(in) :: cards
+   subroutine build_friction(card, context, report, friction)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context    !! receives notes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(friction_law_type), intent(out) :: friction
 
       call take_parameter(card, 'TAUMAX', report, friction%largest_shear)
-      if (friction%largest_shear <= 0.0_dp) call report%error(parameter_place(card, 'TAUMAX'), &
+      if (friction%largest_shear <= 0.0_dp) call report%error(card%place_of('TAUMAX'), &
          'TAUMAX= must be positive; without friction leave out the card')
-      if (has_parameter(card, 'ROUGH')) then
+      if (card%has('ROUGH')) then
          friction%coefficient = rough_coefficient
-         if (has_parameter(card, 'TAUMAX')) call report%error(parameter_place(card, 'ROUGH'), &
-            'TAUMAX= and ROUGH exclude each other: rough faces do not slip')
-         if (card%last_data >= card%first_data) call report%error( &
-            field_place(cards%data(card%first_data), 1), '*FRICTION, ROUGH has no data')
-      else if (card%last_data >= card%first_data) then
-         call read_coefficient(cards%data(card%first_data), context, report, &
-            friction%coefficient)
+         if (card%has('TAUMAX')) call report%error(card%place_of('ROUGH'), 'TAUMAX= and ROUGH '// &
+            'exclude each other: rough faces do not slip')
+         if (size(card%data) > 0) call report%error(card%data(1)%place(1), '*FRICTION, ROUGH '// &
+            'has no data')
+      else if (size(card%data) > 0) then
+         call read_coefficient(card%data(1), context, report, friction%coefficient)
       end if
    end subroutine build_friction
 
@@ -217,12 +214,12 @@ contains
       call take_field(data, 2, 'stick slope', report, slope, valid)
       call check_extra(data, 2, 'coefficient of friction, stick slope', report)
       if (coefficient < 0.0_dp) then
-         call report%error(field_place(data, 1), 'the coefficient of friction must not be negative')
+         call report%error(data%place(1), 'the coefficient of friction must not be negative')
       else if (coefficient > rough_coefficient) then
-         call report%error(field_place(data, 1), 'the coefficient of friction must not exceed '// &
+         call report%error(data%place(1), 'the coefficient of friction must not exceed '// &
             to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
       else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then
-         call report%warning(field_place(data, 1), 'a coefficient of friction of '// &
+         call report%warning(data%place(1), 'a coefficient of friction of '// &
             to_text(coefficient)//' is unusual: is it in per cent? Use ROUGH for faces that '// &
             'never slip while closed')
       end if

@@ -1,12 +1,11 @@
 !> *ELEMENT of lines, which mesh generators write for the curves of a drawing: they are no elements
 !> of the mesh, but their sets name nodes, and the faces under them.
 module deck_builder_lines
-   use card_parameters, only: parameter_place, parameter_text
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
-   use deck_structure, only: cards_of, data_cards_behind
+   use deck_structure, only: cards_of, data_count
    use element_kinds, only: element_corner_count, side_node_count, side_nodes
    use element_types, only: drawn_line, line_kind, line_node_count
    use mesh, only: mesh_type, set_type
@@ -28,21 +27,19 @@ contains
 
       is_line_card = .false.
       if (card%name /= 'ELEMENT') return
-      is_line_card = line_node_count(to_upper(parameter_text(card, 'TYPE'))) > 0
+      is_line_card = line_node_count(to_upper(card%text('TYPE'))) > 0
    end function is_line_card
 
-   !> The data cards of all *ELEMENT, of lines or of all others.
+   !> The *ELEMENT cards of lines, or of all other elements.
    pure function element_cards(cards, of_lines) result(places)
       type(cards_type), intent(in) :: cards
       logical, intent(in) :: of_lines         !! whether those of lines are wanted
-      integer, allocatable :: places(:)       !! indexes into the data cards
-      integer, allocatable :: keywords(:)
+      integer, allocatable :: places(:)       !! indexes into the keyword cards
       integer :: k
 
-      keywords = cards_of(cards, 'ELEMENT')
-      keywords = pack(keywords, [(is_line_card(cards%keywords(keywords(k))) .eqv. of_lines, k=1, &
-         size(keywords))])
-      places = data_cards_behind(cards, keywords)
+      places = cards_of(cards, 'ELEMENT')
+      places = pack(places, [(is_line_card(cards%keywords(places(k))) .eqv. of_lines, k=1, &
+         size(places))])
    end function element_cards
 
    !> Builds the lines, in the order of the deck; the nodes are known.
@@ -51,28 +48,32 @@ contains
       type(deck_context_type), intent(inout) :: context    !! receives the lines
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name
+      integer, allocatable :: places(:)
       integer :: k, j, n
 
-      n = size(element_cards(cards, of_lines=.true.))
+      places = element_cards(cards, of_lines=.true.)
+      n = data_count(cards, places)
       allocate(context%line_number(n), context%line_nodes(nodes_per_line, n), source=0)
       allocate(context%line_kind(n), source=drawn_line)
+      allocate(context%line_place(n))
       n = 0
-      do k = 1, size(cards%keywords)
-         if (.not. is_line_card(cards%keywords(k))) cycle
-         name = to_upper(parameter_text(cards%keywords(k), 'TYPE'))
-         if (line_kind(name) == drawn_line) call context%note('*ELEMENT, TYPE='//name// &
-            ': lines are ignored, except for sets and surfaces that are made of them')
-         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
-            n = n + 1
-            context%line_kind(n) = line_kind(name)
-            call read_line(cards%data(j), context, report, context%line_number(n), &
-               context%line_nodes(:line_node_count(name), n))
-         end do
-         if (size(element_cards(cards, of_lines=.false.)) > 0) cycle
-         call report%missing(parameter_place(cards%keywords(k), 'TYPE'), &
-            'the deck has lines, but no elements')
-         return
+      do k = 1, size(places)
+         associate (card => cards%keywords(places(k)))
+            name = to_upper(card%text('TYPE'))
+            if (line_kind(name) == drawn_line) call context%note('*ELEMENT, TYPE='//name// &
+               ': lines are ignored, except for sets and surfaces that are made of them')
+            do j = 1, size(card%data)
+               n = n + 1
+               context%line_kind(n) = line_kind(name)
+               context%line_place(n) = card%data(j)%place(1)
+               call read_line(card%data(j), context, report, context%line_number(n), &
+                  context%line_nodes(:line_node_count(name), n))
+            end do
+         end associate
       end do
+      if (size(places) > 0 .and. data_count(cards, element_cards(cards, of_lines=.false.)) == 0) &
+         call report%missing(cards%keywords(places(1))%place_of('TYPE'), &
+         'the deck has lines, but no elements')
    end subroutine build_lines
 
    !> Number and nodes of one line; nodes that do not exist are errors, and 0.
@@ -106,8 +107,8 @@ contains
       call need_field(data, q + 1, 'node '//to_text(q), report, number, valid)
       if (.not. valid) return
       node = context%node_index%find(number)
-      if (node == 0) call report%missing(field_place(data, q + 1), 'there is no node '// &
-         to_text(number), 'node', to_text(number))
+      if (node == 0) call report%missing(data%place(q + 1), 'there is no node '//to_text(number), &
+         'node', to_text(number))
    end subroutine read_node
 
    !> Parts sets of elements and lines: the elements stay, the lines are kept beside them.

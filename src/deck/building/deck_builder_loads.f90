@@ -1,8 +1,8 @@
 !> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
-   use card_parameters, only: choose, has_parameter, parameter_place, parameter_text
+   use card_parameters, only: choose
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, field_text, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_builder_element_loads, only: build_element_load, build_surface_load
    use deck_context, only: deck_context_type, read_target, take_named
    use deck_report, only: deck_report_type
@@ -33,8 +33,7 @@ module deck_builder_loads
 contains
 
    !> Takes one card of loads or prescribed values.
-   subroutine build_load_card(cards, card, step, model, context, report)
-      type(cards_type), intent(in) :: cards
+   subroutine build_load_card(card, step, model, context, report)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
       type(model_type), intent(inout) :: model   !! mesh, sets, amplitudes; the step takes OP=NEW
@@ -52,39 +51,38 @@ contains
       call choose(card, 'TYPE', 'DISPLACEMENT', report, kind)
       call read_operation(card, step, model, context, report)
       call take_named(card, 'AMPLITUDE', 'amplitude', context%amplitudes, report, request%amplitude)
-      request%keeps = has_parameter(card, 'FIXED')
-      if (request%keeps .and. request%amplitude > 0) call report%error(parameter_place(card, &
-         'AMPLITUDE'), 'FIXED holds the values at the start of the step, which no amplitude '// &
-         'changes; leave one of the two out')
+      request%keeps = card%has('FIXED')
+      if (request%keeps .and. request%amplitude > 0) call report%error(card%place_of('AMPLITUDE'), &
+         'FIXED holds the values at the start of the step, which no amplitude changes; leave '// &
+         'one of the two out')
       call take_named(card, 'FILM AMPLITUDE', 'amplitude', context%amplitudes, report, &
          film_amplitude)
       if (film_amplitude > 0) then
          associate (film => model%amplitudes(film_amplitude))
-            if (any(film%values < 0.0_dp)) call report%error(parameter_place(card, &
-               'FILM AMPLITUDE'), 'amplitude '//film%name//' becomes negative ('// &
-               to_text(minval(film%values))//'), but a film coefficient must not; give '// &
-               'factors of at least 0')
+            if (any(film%values < 0.0_dp)) call report%error(card%place_of('FILM AMPLITUDE'), &
+               'amplitude '//film%name//' becomes negative ('//to_text(minval(film%values))// &
+               '), but a film coefficient must not; give factors of at least 0')
          end associate
       end if
       if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, &
          model%steps(step)%ramped, context)
-      do j = card%first_data, card%last_data
-         request%place = field_place(cards%data(j), 1)
+      do j = 1, size(card%data)
+         request%place = card%data(j)%place(1)
          if (card%name == 'BOUNDARY') then
-            call build_boundary(cards%data(j), request, model, context, report)
+            call build_boundary(card%data(j), request, model, context, report)
             cycle
          end if
          context%load_cards = context%load_cards + 1
          request%card = context%load_cards
          select case (card%name)
          case ('DSLOAD', 'DSFLUX', 'SFILM')
-            call build_surface_load(card%name, cards%data(j), request, film_amplitude, model, &
+            call build_surface_load(card%name, card%data(j), request, film_amplitude, model, &
                context, report)
          case ('DLOAD', 'DFLUX', 'FILM')
-            call build_element_load(card%name, cards%data(j), request, film_amplitude, model, &
+            call build_element_load(card%name, card%data(j), request, film_amplitude, model, &
                context, report)
          case default
-            call build_nodal_load(card%name, cards%data(j), request, model, context, report)
+            call build_nodal_load(card%name, card%data(j), request, model, context, report)
          end select
       end do
       if (card%name == 'BOUNDARY' .and. (card%flawed .or. report%error_count() > errors)) then
@@ -108,8 +106,8 @@ contains
       context%load_step(card%known) = step
       if (operation /= 'NEW' .or. step == 0) return
       if (.not. first) then
-         call report%warning(parameter_place(card, 'OP'), 'OP=NEW is ignored: it must be on '// &
-            'the first *'//card%name//' of a step')
+         call report%warning(card%place_of('OP'), 'OP=NEW is ignored: it must be on the first *'// &
+            card%name//' of a step')
          return
       end if
       call end_loads(card%name, model%steps(step))
@@ -154,17 +152,15 @@ contains
       type(deck_context_type), intent(inout) :: context
       character(:), allocatable :: coefficient
 
-      if (has_parameter(card, 'AMPLITUDE') .and. has_parameter(card, 'FILM AMPLITUDE')) return
+      if (card%has('AMPLITUDE') .and. card%has('FILM AMPLITUDE')) return
       coefficient = 'the coefficient acts fully at once'
       if (ramped) coefficient = 'the coefficient ramps over the step'
-      if (has_parameter(card, 'AMPLITUDE')) then
-         call context%note('*'//card%name//', AMPLITUDE='// &
-            to_upper(parameter_text(card, 'AMPLITUDE'))// &
+      if (card%has('AMPLITUDE')) then
+         call context%note('*'//card%name//', AMPLITUDE='//to_upper(card%text('AMPLITUDE'))// &
             ': the sink temperature follows it, '//coefficient)
-      else if (has_parameter(card, 'FILM AMPLITUDE')) then
-         call context%note('*'//card%name//', FILM AMPLITUDE='// &
-            to_upper(parameter_text(card, 'FILM AMPLITUDE'))// &
-            ': the coefficient follows it, the sink temperature acts fully at once')
+      else if (card%has('FILM AMPLITUDE')) then
+         call context%note('*'//card%name//', FILM AMPLITUDE='//to_upper(card%text('FILM '// &
+            'AMPLITUDE'))//': the coefficient follows it, the sink temperature acts fully at once')
       else
          call context%note('*'//card%name//' without amplitudes: '//coefficient// &
             ', the sink temperature acts fully at once')
@@ -206,9 +202,9 @@ contains
          names_rotation(request, model)))) then
          call add_moment(data, request, model, context, report)
       else if (keyword == 'CLOAD' .and. all(request%component /= [1, 2])) then
-         call report%error(field_place(data, 2), 'a force acts on degree of freedom 1 or 2')
+         call report%error(data%place(2), 'a force acts on degree of freedom 1 or 2')
       else if (keyword == 'CFLUX' .and. dof /= dof_temperature) then
-         call report%error(field_place(data, 2), 'heat acts on degree of freedom 11')
+         call report%error(data%place(2), 'heat acts on degree of freedom 11')
       else
          if (keyword == 'CFLUX') request%component = 1
          call context%loads%add(request)
@@ -229,9 +225,8 @@ contains
          .and. .not. model%couplings%is_section(), &
          .true., dim=1)
       if (i == 0 .or. node == 0) then
-         call report%error(field_place(data, 2), &
-            'a moment acts on the reference node of a *COUPLING or *RIGID BODY; forces act on '// &
-            '1 and 2')
+         call report%error(data%place(2), 'a moment acts on the reference node of a *COUPLING '// &
+            'or *RIGID BODY; forces act on 1 and 2')
          return
       end if
       request%set = 0
@@ -261,14 +256,14 @@ contains
          request%target_type, valid)
       if (valid) then
          if (place_in_plane(request, model, 1) == 0) then
-            call report%error(field_place(data, 1), 'these nodes have axes by *TRANSFORM that '// &
-               'differ in which one is out of the plane; name the nodes of each on a card')
+            call report%error(data%place(1), 'these nodes have axes by *TRANSFORM that differ '// &
+               'in which one is out of the plane; name the nodes of each on a card')
             return
          end if
       end if
-      held = held_degrees(to_upper(field_text(data, 2)))
+      held = held_degrees(to_upper(data%text(2)))
       if (size(held) > 0) then
-         call check_extra(data, 2, 'node or set, '//to_upper(field_text(data, 2)), report)
+         call check_extra(data, 2, 'node or set, '//to_upper(data%text(2)), report)
          if (valid) call hold(held, request, model, context)
          return
       end if
@@ -297,17 +292,17 @@ contains
                cycle
             end if
             if (abs(request%value) > 0.0_dp) then
-               call report%error(field_place(data, 4), 'degree of freedom '//to_text(dof)// &
-                  ' can only be 0 in the plane')
+               call report%error(data%place(4), 'degree of freedom '//to_text(dof)//' can only '// &
+                  'be 0 in the plane')
                return
             end if
             call context%note(out_of_plane)
             if (place_in_plane(request, model, first) /= 3) cycle
-            if (first == 3 .and. dof == last) call report%warning(field_place(data, 2), &
-               'degree of freedom 3 does not exist in a plane model: this support is ignored')
+            if (first == 3 .and. dof == last) call report%warning(data%place(2), 'degree of '// &
+               'freedom 3 does not exist in a plane model: this support is ignored')
          case default
-            call report%error(field_place(data, merge(2, 3, dof == first)), &
-               'degree of freedom '//to_text(dof)//'; the plane has 1, 2 and 11')
+            call report%error(data%place(merge(2, 3, dof == first)), 'degree of freedom '// &
+               to_text(dof)//'; the plane has 1, 2 and 11')
             return
          end select
       end do
@@ -330,7 +325,7 @@ contains
       call take_field(data, 4, 'value', report, value, valid)
       call check_extra(data, 4, 'node or set, first and last degree of freedom, value', report)
       if (last >= first .or. .not. valid) return
-      call report%error(field_place(data, 3), 'the last degree of freedom is below the first')
+      call report%error(data%place(3), 'the last degree of freedom is below the first')
       valid = .false.
    end subroutine read_degrees
 
@@ -342,10 +337,9 @@ contains
       logical :: is_number
 
       advice = ''
-      call read_real(field_text(data, 3), value, is_number)
+      call read_real(data%text(3), value, is_number)
       if (is_number .and. size(data%fields) == 3) advice = '; the value is the fourth field: '// &
-         field_text(data, 1)//', '//field_text(data, 2)//', '//field_text(data, 2)//', '// &
-         field_text(data, 3)
+         data%text(1)//', '//data%text(2)//', '//data%text(2)//', '//data%text(3)
    end function value_advice
 
    !> Reports a likely misspelling of the name of a support.
@@ -356,11 +350,11 @@ contains
       character(:), allocatable :: name
       integer :: i
 
-      name = to_upper(field_text(data, 2))
+      name = to_upper(data%text(2))
       do i = 1, size(support_names)
          if (.not. is_slip(name, trim(support_names(i)))) cycle
-         call report%error(field_place(data, 2), 'unknown support '//name// &
-            '; the nearest known is '//trim(support_names(i)))
+         call report%error(data%place(2), 'unknown support '//name//'; the nearest known is '// &
+            trim(support_names(i)))
          valid = .false.
          return
       end do
@@ -469,10 +463,10 @@ contains
       real(dp), intent(in) :: angle                        ! [rad]
       type(deck_report_type), intent(inout) :: report
 
-      if (abs(angle) > large_turn) call report%warning(field_place(data, 4), 'a rotation of '// &
-         to_text(angle)//' rad is large: points move along their tangents, and gaps '// &
-         'and normals stay those of the undeformed model; turn the drawing, and let the '// &
-         'rotation be below '//to_text(large_turn))
+      if (abs(angle) > large_turn) call report%warning(data%place(4), 'a rotation of '// &
+         to_text(angle)//' rad is large: points move along their tangents, and gaps and '// &
+         'normals stay those of the undeformed model; turn the drawing, and let the rotation '// &
+         'be below '//to_text(large_turn))
    end subroutine warn_of_turn
 
    !> Requests the rotations of reference nodes.

@@ -1,10 +1,10 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *ORIENTATION and
 !> *SOLID SECTION, which give elements their material, its axes and their thickness.
 module deck_builder_materials
-   use card_parameters, only: choose, has_parameter, parameter_place, take_parameter
+   use card_parameters, only: choose, take_parameter
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
       take_field
-   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_context_type, need_element_set, need_named, take_name, &
       take_named
    use deck_report, only: deck_report_type
@@ -67,8 +67,8 @@ contains
                if (n == 0) then
                   if (len(card%meant) == 0) call report%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')
-               else if (card%last_data >= card%first_data) then
-                  call build_property(cards, card, context, report, model%materials(n))
+               else if (size(card%data) > 0) then
+                  call build_property(card, context, report, model%materials(n))
                end if
             case default
                cycle
@@ -78,8 +78,7 @@ contains
    end subroutine build_materials
 
    !> Reads a property. One with errors in it is not kept.
-   subroutine build_property(cards, card, context, report, material)
-      type(cards_type), intent(in) :: cards
+   subroutine build_property(card, context, report, material)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
@@ -91,7 +90,7 @@ contains
       select case (card%name)
       case ('ELASTIC')
          material%has_elasticity = .true.
-         call build_elasticity(cards, card, context, report, property, valid)
+         call build_elasticity(card, context, report, property, valid)
       case ('EXPANSION')
          material%has_expansion = .true.
          if (is_isotropic(card, report)) then
@@ -99,25 +98,25 @@ contains
          else
             property%names = [character(24) :: 'alpha11', 'alpha22', 'alpha33']
          end if
-         call read_rows(cards, card, context, report, property, valid)
+         call read_rows(card, context, report, property, valid)
          call take_parameter(card, 'ZERO', report, material%no_strain)
-         if (valid .and. has_parameter(card, 'ZERO')) then
+         if (valid .and. card%has('ZERO')) then
             if (size(property%temperature) == 1) call context%note('*EXPANSION: ZERO is '// &
                'ignored with a single row: strains begin at the initial temperature')
          end if
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
-         call build_conductivity(cards, card, context, report, property, valid)
+         call build_conductivity(card, context, report, property, valid)
       case ('SPECIFIC HEAT')
          material%has_specific_heat = .true.
          property%names = [character(24) :: 'specific heat']
-         call read_rows(cards, card, context, report, property, valid)
-         if (valid) call refuse_not_positive(cards, card, property, [1], report, valid)
+         call read_rows(card, context, report, property, valid)
+         if (valid) call refuse_not_positive(card, property, [1], report, valid)
       case default
          material%has_density = .true.
          property%names = [character(24) :: 'density']
-         call read_rows(cards, card, context, report, property, valid)
-         if (valid) call refuse_not_positive(cards, card, property, [1], report, valid)
+         call read_rows(card, context, report, property, valid)
+         if (valid) call refuse_not_positive(card, property, [1], report, valid)
       end select
       if (valid) call set_property(material, property)
    end subroutine build_property
@@ -134,8 +133,7 @@ contains
       is_isotropic = symmetry(:3) == 'ISO'
    end function is_isotropic
 
-   subroutine build_elasticity(cards, card, context, report, property, valid)
-      type(cards_type), intent(in) :: cards
+   subroutine build_elasticity(card, context, report, property, valid)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
@@ -164,16 +162,16 @@ contains
       case default
          property%names = isotropic_names
       end select
-      call read_rows(cards, card, context, report, property, valid)
+      call read_rows(card, context, report, property, valid)
       if (.not. valid) return
-      if (property%symmetry == isotropic) call refuse_not_positive(cards, card, property, [1], &
+      if (property%symmetry == isotropic) call refuse_not_positive(card, property, [1], report, &
+         valid)
+      if (property%symmetry == engineering) call refuse_not_positive(card, property, moduli, &
          report, valid)
-      if (property%symmetry == engineering) call refuse_not_positive(cards, card, property, &
-         moduli, report, valid)
       do row = 1, size(property%temperature)
          if (.not. valid .and. property%symmetry /= isotropic) cycle
-         call check_elasticity(field_place(cards%data(first_card(card, property, row)), merge(2, &
-            1, property%symmetry == isotropic)), property, row, report, valid)
+         call check_elasticity(card%data(first_card(property, row))%place( &
+            merge(2, 1, property%symmetry == isotropic)), property, row, report, valid)
       end do
    end subroutine build_elasticity
 
@@ -214,8 +212,7 @@ contains
    end subroutine check_elasticity
 
    !> K11 and K22; K33, which CalculiX wants, is read and means nothing in the plane.
-   subroutine build_conductivity(cards, card, context, report, property, valid)
-      type(cards_type), intent(in) :: cards
+   subroutine build_conductivity(card, context, report, property, valid)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
@@ -225,24 +222,24 @@ contains
 
       if (is_isotropic(card, report)) then
          property%names = [character(24) :: 'conductivity']
-         call read_rows(cards, card, context, report, property, valid)
-         if (valid) call refuse_not_positive(cards, card, property, [1], report, valid)
+         call read_rows(card, context, report, property, valid)
+         if (valid) call refuse_not_positive(card, property, [1], report, valid)
          return
       end if
-      fields = size(cards%data(card%first_data)%fields)
+      fields = size(card%data(1)%fields)
       n = min(max(fields, 2), 3)
       property%names = [character(24) :: 'K11', 'K22', 'K33']
       property%names = property%names(:n)
-      call read_rows(cards, card, context, report, property, valid)
+      call read_rows(card, context, report, property, valid)
       if (n == 3) call context%note('*CONDUCTIVITY: K33 is ignored')
       if (.not. valid) return
-      call refuse_not_positive(cards, card, property, [1, 2], report, valid)
+      call refuse_not_positive(card, property, [1, 2], report, valid)
       if (n == 3) then
          ! Across the plane most materials conduct as along one of its axes.
          do row = 1, size(property%temperature)
             associate (constants => property%values(:, row))
                if (all(abs(constants(:2) - constants(3)) > 0.0_dp)) call check_unneeded( &
-                  cards%data(card%first_data + row - 1), 3, 'K33', report)
+                  card%data(row), 3, 'K33', report)
             end associate
          end do
       end if
@@ -251,12 +248,11 @@ contains
    end subroutine build_conductivity
 
    !> First data card of a row.
-   pure integer function first_card(card, property, row) result(first)
-      type(keyword_card_type), intent(in) :: card
+   pure integer function first_card(property, row) result(first)
       type(property_type), intent(in) :: property          ! with its names
       integer, intent(in) :: row
 
-      first = card%first_data + (row - 1)*cards_of_row(property)
+      first = 1 + (row - 1)*cards_of_row(property)
    end function first_card
 
    pure integer function cards_of_row(property)
@@ -266,8 +262,7 @@ contains
    end function cards_of_row
 
    !> Reads the rows of a property: constants, eight on a card, and the temperature behind the last.
-   subroutine read_rows(cards, card, context, report, property, valid)
-      type(cards_type), intent(in) :: cards
+   subroutine read_rows(card, context, report, property, valid)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
@@ -275,38 +270,37 @@ contains
       logical, intent(out) :: valid                         ! whether all could be read
       integer :: behind, last, n, row
 
-      n = (card%last_data - card%first_data)/cards_of_row(property) + 1
+      n = (size(card%data) - 1)/cards_of_row(property) + 1
       allocate (property%values(size(property%names), n), property%temperature(n), source=0.0_dp)
       behind = mod(size(property%names) - 1, per_card) + 2
       valid = .not. card%flawed
       if (.not. valid) return
       do row = 1, n
-         call read_constants(cards, card, first_card(card, property, row), property%names, report, &
+         call read_constants(card, first_card(property, row), property%names, report, &
             property%values(:, row), valid)
-         last = first_card(card, property, row + 1) - 1
-         if (last > card%last_data) return
+         last = first_card(property, row + 1) - 1
+         if (last > size(card%data)) return
          if (n > 1) then
-            call need_field(cards%data(last), behind, 'temperature', report, &
+            call need_field(card%data(last), behind, 'temperature', report, &
                property%temperature(row), valid)
             if (.not. valid .or. row == 1) cycle
             if (property%temperature(row) > property%temperature(row - 1)) cycle
             valid = .false.
-            call report%error(field_place(cards%data(last), behind), 'the temperatures of the '// &
-               'rows must ascend: '//to_text(property%temperature(row))//' follows '// &
+            call report%error(card%data(last)%place(behind), 'the temperatures of the rows '// &
+               'must ascend: '//to_text(property%temperature(row))//' follows '// &
                to_text(property%temperature(row - 1)))
-         else if (has_field(cards%data(last), behind)) then
+         else if (card%data(last)%has(behind)) then
             ! One temperature behind them means nothing.
-            call take_field(cards%data(last), behind, 'temperature', report, &
+            call take_field(card%data(last), behind, 'temperature', report, &
                property%temperature(row), valid)
             call context%note('the temperature field of a single property row is ignored')
-            if (valid) call check_unneeded_temperature(cards%data(last), behind, report)
+            if (valid) call check_unneeded_temperature(card%data(last), behind, report)
          end if
       end do
    end subroutine read_rows
 
    !> Reads the constants of a row.
-   subroutine read_constants(cards, card, first, names, report, values, valid)
-      type(cards_type), intent(in) :: cards
+   subroutine read_constants(card, first, names, report, values, valid)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: first                          ! its first data card
       character(*), intent(in) :: names(:)                  ! (constants)
@@ -319,21 +313,21 @@ contains
       last = first + (size(values) - 1)/per_card
       do i = 1, size(values)
          place = first + (i - 1)/per_card
-         if (place > card%last_data) then
-            call report%error(cards%data(card%last_data)%end, 'a card is missing after '// &
-               'this one: '//trim(names(i)))
+         if (place > size(card%data)) then
+            call report%error(card%data(size(card%data))%end, 'a card is missing after this '// &
+               'one: '//trim(names(i)))
             valid = .false.
             return
          end if
-         call need_field(cards%data(place), mod(i - 1, per_card) + 1, trim(names(i)), report, &
+         call need_field(card%data(place), mod(i - 1, per_card) + 1, trim(names(i)), report, &
             values(i), valid)
-         if (.not. has_field(cards%data(place), mod(i - 1, per_card) + 1)) return
+         if (.not. card%data(place)%has(mod(i - 1, per_card) + 1)) return
          if (place == last) cycle
-         if (mod(i, per_card) == 0) call check_extra(cards%data(place), per_card, &
+         if (mod(i, per_card) == 0) call check_extra(card%data(place), per_card, &
             'eight constants', report)
       end do
       behind = mod(size(values) - 1, per_card) + 2
-      call check_extra(cards%data(last), behind, joined(names(per_card*(last - first) + 1:))// &
+      call check_extra(card%data(last), behind, joined(names(per_card*(last - first) + 1:))// &
          ', temperature', report)
    end subroutine read_constants
 
@@ -349,8 +343,7 @@ contains
    end function joined
 
    !> Reports constants that must be positive and are not.
-   subroutine refuse_not_positive(cards, card, property, which, report, valid)
-      type(cards_type), intent(in) :: cards
+   subroutine refuse_not_positive(card, property, which, report, valid)
       type(keyword_card_type), intent(in) :: card
       type(property_type), intent(in) :: property         !! as read
       integer, intent(in) :: which(:)                     !! indexes of those that must be positive
@@ -362,9 +355,9 @@ contains
          do i = 1, size(which)
             if (property%values(which(i), row) > 0.0_dp) cycle
             valid = .false.
-            call report%error(field_place(cards%data(first_card(card, property, row) + &
-               (which(i) - 1)/per_card), mod(which(i) - 1, per_card) + 1), &
-               trim(property%names(which(i)))//' must be positive')
+            call report%error(card%data(first_card(property, row) + &
+               (which(i) - 1)/per_card)%place(mod(which(i) - 1, per_card) + 1), trim( &
+               property%names(which(i)))//' must be positive')
          end do
       end do
    end subroutine refuse_not_positive
@@ -384,16 +377,14 @@ contains
          associate (card => cards%keywords(places(n)))
             call take_name(cards, places(n), 'orientation', context%orientations, &
                model%orientations(n)%name, report)
-            if (card%last_data >= card%first_data) call build_axes(cards, card, &
-               model%orientations(n), report)
+            if (size(card%data) > 0) call build_axes(card, model%orientations(n), report)
          end associate
       end do
    end subroutine build_orientations
 
    !> Two points. a lies on axis 1, b in the plane of axes 1 and 2 on the side of axis 2; or both
    !> lie on the axis of a cylinder, along which axis 3 points from a to b.
-   subroutine build_axes(cards, card, orientation, report)
-      type(cards_type), intent(in) :: cards
+   subroutine build_axes(card, orientation, report)
       type(keyword_card_type), intent(in) :: card
       type(orientation_type), intent(inout) :: orientation
       type(deck_report_type), intent(inout) :: report
@@ -404,7 +395,7 @@ contains
       system = 'RECTANGULAR'
       call choose(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', report, system)
       valid = .true.
-      associate (data => cards%data(card%first_data))
+      associate (data => card%data(1))
          call read_point(data, 1, 'a', report, a, valid)
          call read_point(data, 4, 'b', report, b, valid)
          call check_extra(data, 6, 'a(1), a(2), a(3), b(1), b(2), b(3)', report)
@@ -412,23 +403,23 @@ contains
          orientation%cylindrical = system == 'CYLINDRICAL'
          turn = a(1)*b(2) - a(2)*b(1)
          if (orientation%cylindrical) then
-            if (norm2(b(1:2) - a(1:2)) > 0.0_dp .or. .not. abs(b(3) - a(3)) > 0.0_dp) call &
-               report%error(field_place(data, 4), &
-               'the axis through a and b must be parallel to z')
+            if (norm2(b(1:2) - a(1:2)) > 0.0_dp .or. &
+               .not. abs(b(3) - a(3)) > 0.0_dp) call report%error(data%place(4), 'the axis '// &
+               'through a and b must be parallel to z')
             orientation%centre = a(1:2)
             orientation%hand = sign(1.0_dp, b(3) - a(3))
          else if (abs(a(3)) > 0.0_dp .or. abs(b(3)) > 0.0_dp) then
-            call report%error(field_place(data, merge(3, 6, abs(a(3)) > 0.0_dp)), &
-               'axes 1 and 2 lie in the plane: the z components of a and b must be 0')
+            call report%error(data%place(merge(3, 6, abs(a(3)) > 0.0_dp)), 'axes 1 and 2 lie '// &
+               'in the plane: the z components of a and b must be 0')
          else if (.not. abs(turn) > epsilon(turn)*norm2(a)*norm2(b)) then
-            call report%error(field_place(data, 1), 'a and b must not lie on one line')
+            call report%error(data%place(1), 'a and b must not lie on one line')
          else
             orientation%direction = a(1:2)/norm2(a(1:2))
             orientation%hand = sign(1.0_dp, turn)
          end if
       end associate
-      if (card%last_data > card%first_data) then
-         call turn_axes(cards%data(card%first_data + 1), orientation, report)
+      if (size(card%data) > 1) then
+         call turn_axes(card%data(2), orientation, report)
       end if
    end subroutine build_axes
 
@@ -444,7 +435,7 @@ contains
       point = 0.0_dp
       do i = 1, 3
          call need_field(data, first + i - 1, 'component of '//name, report, point(i), valid)
-         if (.not. has_field(data, first + i - 1)) exit
+         if (.not. data%has(first + i - 1)) exit
       end do
    end subroutine read_point
 
@@ -465,8 +456,7 @@ contains
       call check_extra(data, 2, 'axis, angle', report)
       if (.not. valid) return
       if (axis /= 3) then
-         call report%error(field_place(data, 1), &
-            'a turn about axis 1 or 2 leaves the plane: only axis 3')
+         call report%error(data%place(1), 'a turn about axis 1 or 2 leaves the plane: only axis 3')
          return
       end if
       angle = angle*degree
@@ -497,20 +487,20 @@ contains
                section%material)
             call take_named(card, 'ORIENTATION', 'orientation', context%orientations, report, &
                section%orientation)
-            if (card%last_data >= card%first_data) then
-               associate (data => cards%data(card%first_data))
+            if (size(card%data) > 0) then
+               associate (data => card%data(1))
                   call take_field(data, 1, 'thickness', report, section%thickness, valid)
                   if (size(data%fields) > 1) then
                      call check_extra(data, 2, 'thickness, points', report)
                      call check_unneeded(data, 2, 'a number of points', report)
                      call context%note('*SOLID SECTION: what is behind the thickness is ignored')
                   end if
-                  if (section%thickness <= 0.0_dp) call report%error(field_place(data, 1), &
-                     'the thickness must be positive')
+                  if (section%thickness <= 0.0_dp) call report%error(data%place(1), 'the '// &
+                     'thickness must be positive')
                end associate
             end if
             call give_section(card, n, context, model%mesh, report, set)
-            if (card%last_data >= card%first_data .or. set == 0) cycle
+            if (size(card%data) > 0 .or. set == 0) cycle
             if (any(model%mesh%element_plane(model%mesh%element_sets(set)%members) /= &
                axisymmetric)) call context%note('*SOLID SECTION without a thickness: '// &
                to_text(section%thickness))
@@ -537,9 +527,8 @@ contains
       end if
       context%sections_sound = context%sections_sound .and. set > 0
       if (set == 0) return
-      if (size(kinds) > 0 .and. all(kinds /= truss)) call report%warning( &
-         parameter_place(card, 'ELSET'), 'element set '//mesh%element_sets(set)%name// &
-         ' also has lines, which are ignored')
+      if (size(kinds) > 0 .and. all(kinds /= truss)) call report%warning(card%place_of('ELSET'), &
+         'element set '//mesh%element_sets(set)%name//' also has lines, which are ignored')
       associate (members => mesh%element_sets(set)%members)
          if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
             'this section replaces an earlier one; elements concerned: '// &

@@ -1,21 +1,21 @@
 !> *NODE and *ELEMENT -> nodes and elements of the mesh.
 module deck_builder_mesh
-   use card_parameters, only: need_parameter, parameter_place
+   use card_parameters, only: need_parameter
    use card_values, only: check_extra, check_unneeded, may_be_decimals, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, has_field, is_undefined
-   use deck_builder_lines, only: element_cards, is_line_card, read_node
+   use cards, only: cards_type, data_card_type
+   use deck_builder_lines, only: element_cards, read_node
    use deck_context, only: deck_context_type, plane_by_element
    use deck_reader, only: keyword_of
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: data_cards_of
+   use deck_structure, only: cards_of, data_count
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, plane_stress, &
       quad8
    use element_types, only: take_element_type
    use kinds, only: dp
    use mesh, only: add_node, extent_of, mesh_type, nodes_per_element
    use sorting, only: repeated
-   use text, only: to_text
+   use text, only: read_integer, to_text
    implicit none
    private
    public :: build_nodes, build_elements
@@ -33,20 +33,31 @@ contains
       type(mesh_type), intent(inout) :: mesh               !! receives the nodes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), allocatable :: heights(:)
-      integer, allocatable :: card(:)
-      integer :: j, n
+      integer, allocatable :: places(:)
+      integer :: j, k, n
+      logical :: told
 
-      card = data_cards_of(cards, 'NODE')
-      n = size(card)
+      places = cards_of(cards, 'NODE')
+      n = data_count(cards, places)
       allocate(mesh%node_number(n), mesh%coordinates(2, n), heights(n))
       allocate(context%node_place(n), context%node_valid(n))
-      do j = 1, n
-         context%node_place(j) = field_place(cards%data(card(j)), 1)
-         call build_node(cards%data(card(j)), context, report, mesh%node_number(j), &
-            mesh%coordinates(:, j), heights(j), context%node_valid(j))
+      n = 0
+      told = .false.
+      do k = 1, size(places)
+         associate (rows => cards%keywords(places(k))%data)
+            do j = 1, size(rows)
+               n = n + 1
+               context%node_place(n) = rows(j)%place(1)
+               call build_node(rows(j), context, report, mesh%node_number(n), &
+                  mesh%coordinates(:, n), heights(n), context%node_valid(n))
+               ! Decimal commas tear the coordinates, and the last of their parts means nothing.
+               if (told .or. .not. may_be_decimals(rows(j), 5)) cycle
+               call check_unneeded(rows(j), 5, 'a direction', report)
+               told = .true.
+            end do
+         end associate
       end do
       call move_alloc(heights, context%node_height)
-      call warn_of_decimals(cards, card, report)
       call drop_repeated(mesh, context, report)
       if (n == 0) call report%lose('node')
       context%node_index%noun = 'node'
@@ -124,12 +135,12 @@ contains
       call read_number(data, 'node', report, number)
       do i = 1, 2
          call take_field(data, i + 1, names(i:i), report, coordinates(i), valid)
-         if (has_field(data, i + 1) .or. is_undefined(data, i + 1) .or. number == 0) cycle
-         call report%warning(field_place(data, i + 1), 'node '//to_text(number)// &
-            ' has no '//names(i:i)//': 0 is used')
+         if (data%has(i + 1) .or. data%is_undefined(i + 1) .or. number == 0) cycle
+         call report%warning(data%place(i + 1), 'node '//to_text(number)//' has no '//names(i:i)// &
+            ': 0 is used')
       end do
       call take_field(data, 4, 'z', report, z, valid)
-      if (has_field(data, 4)) then
+      if (data%has(4)) then
          call context%note('*NODE: third coordinates are ignored')
       end if
       call check_extra(data, 7, 'number, x, y', report)
@@ -144,11 +155,11 @@ contains
       type(deck_context_type), intent(in) :: context       ! whether the elements are sound
       type(mesh_type), intent(in) :: mesh
       type(deck_report_type), intent(inout) :: report
-      integer, allocatable :: card(:)
+      integer, allocatable :: places(:)
       logical :: has_element(0:size(mesh%node_number))
-      type(place_type) :: place
       real(dp) :: rounding
-      integer :: e, i, j
+      integer :: e, i, j, k, number
+      logical :: valid
 
       if (size(mesh%node_number) == 0) return
       rounding = height_rounding*extent_of(mesh%coordinates)
@@ -156,32 +167,23 @@ contains
       do e = 1, size(mesh%element_number)
          if (context%element_valid(e)) has_element(mesh%element_nodes(:, e)) = .true.
       end do
-      card = data_cards_of(cards, 'NODE')
-      do i = 1, size(context%node_height)
-         if (.not. has_element(i) .or. abs(context%node_height(i)) <= rounding) cycle
-         do j = i, size(card) - 1   ! nodes that are given twice move the others up
-            place = field_place(cards%data(card(j)), 1)
-            if (place%image == context%node_place(i)%image) exit
-         end do
-         call report%error(field_place(cards%data(card(j)), 4), &
-            'models are two-dimensional: z must be 0', 'z')
+      has_element(0) = .false.
+      if (.not. any(has_element(1:size(context%node_height)) .and. &
+         abs(context%node_height) > rounding)) return
+      places = cards_of(cards, 'NODE')
+      do k = 1, size(places)
+         associate (rows => cards%keywords(places(k))%data)
+            do j = 1, size(rows)
+               call read_integer(rows(j)%text(1), number, valid)
+               i = context%node_index%find(number)
+               if (.not. has_element(i)) cycle
+               if (abs(context%node_height(i)) <= rounding) cycle
+               if (rows(j)%end%image == context%node_place(i)%image) call report%error( &
+                  rows(j)%place(4), 'models are two-dimensional: z must be 0', 'z')
+            end do
+         end associate
       end do
    end subroutine check_heights
-
-   !> Warns of the first node whose coordinates may be torn by decimal commas, so that the last of
-   !> their parts means nothing.
-   subroutine warn_of_decimals(cards, card, report)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: card(:)
-      type(deck_report_type), intent(inout) :: report
-      integer :: i
-
-      do i = 1, size(card)
-         if (.not. may_be_decimals(cards%data(card(i)), 5)) cycle
-         call check_unneeded(cards%data(card(i)), 5, 'a direction', report)
-         return
-      end do
-   end subroutine warn_of_decimals
 
    !> The number of a node or element, from 1; 0 after an error.
    subroutine read_number(data, noun, report, number)
@@ -195,28 +197,27 @@ contains
       valid = .true.
       call need_field(data, 1, noun//' number', report, number, valid)
       if (valid .and. number < 1) then
-         call report%error(field_place(data, 1), 'numbers begin with 1')
+         call report%error(data%place(1), 'numbers begin with 1')
          number = 0
       end if
       if (number == 0) call report%lose(noun)
    end subroutine read_number
 
    !> Reports elements that are given twice: one of the two may stand for one that is missing.
-   subroutine check_repeated(cards, card, numbers, report, places)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: card(:), numbers(:)
+   subroutine check_repeated(places, numbers, report)
+      type(place_type), intent(in) :: places(:)        ! where each is
+      integer, intent(in) :: numbers(:)
       type(deck_report_type), intent(inout) :: report
-      integer, allocatable, intent(out) :: places(:)   ! indexes into numbers
-      integer :: i, first
+      integer, allocatable :: second(:)                ! indexes into numbers
+      integer :: i
 
-      places = repeated(numbers)
-      places = pack(places, numbers(places) > 0)
-      do i = 1, size(places)
-         first = findloc(numbers, numbers(places(i)), dim=1)
-         call report%twice(field_place(cards%data(card(places(i))), 1), &
-            'element '//to_text(numbers(places(i))), field_place(cards%data(card(first)), 1))
+      second = repeated(numbers)
+      second = pack(second, numbers(second) > 0)
+      do i = 1, size(second)
+         call report%twice(places(second(i)), 'element '//to_text(numbers(second(i))), &
+            places(findloc(numbers, numbers(second(i)), dim=1)))
       end do
-      if (size(places) > 0) call report%lose('element')
+      if (size(second) > 0) call report%lose('element')
    end subroutine check_repeated
 
    !> Builds the elements, in the order of the deck; one of a type that cannot be used keeps its
@@ -227,11 +228,11 @@ contains
       type(mesh_type), intent(inout) :: mesh               !! receives the elements
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, message, note
-      integer, allocatable :: card(:), places(:)
-      integer :: k, j, kind, n, plane
+      integer, allocatable :: places(:)
+      integer :: i, k, j, kind, n, plane
 
-      card = element_cards(cards, of_lines=.false.)
-      n = size(card)
+      places = element_cards(cards, of_lines=.false.)
+      n = data_count(cards, places)
       allocate(mesh%element_number(n), mesh%element_section(n))
       allocate(mesh%element_nodes(nodes_per_element, n), source=0)
       allocate(mesh%element_kind(n), source=quad8)
@@ -240,8 +241,8 @@ contains
       allocate(context%element_valid(n), source=.false.)
       mesh%element_section = 0
       n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= 'ELEMENT' .or. is_line_card(cards%keywords(k))) cycle
+      do i = 1, size(places)
+         k = places(i)
          call need_parameter(cards%keywords(k), 'TYPE', report, name)
          message = ''
          if (len(name) > 0) then
@@ -249,20 +250,19 @@ contains
             if (len(note) > 0) call context%note(note)
          end if
          if (plane == plane_stress .and. context%plane == plane_by_element) call warn_of_gmsh( &
-            parameter_place(cards%keywords(k), 'TYPE'), report)
+            cards%keywords(k)%place_of('TYPE'), report)
          if (context%plane /= plane_by_element) plane = context%plane
-         if (len(message) > 0) call report%error(parameter_place(cards%keywords(k), 'TYPE'), &
-            message)
-         do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
+         if (len(message) > 0) call report%error(cards%keywords(k)%place_of('TYPE'), message)
+         do j = 1, size(cards%keywords(k)%data)
             n = n + 1
-            context%element_place(n) = field_place(cards%data(j), 1)
-            call read_number(cards%data(j), 'element', report, mesh%element_number(n))
+            context%element_place(n) = cards%keywords(k)%data(j)%place(1)
+            call read_number(cards%keywords(k)%data(j), 'element', report, mesh%element_number(n))
             if (len(name) == 0 .or. len(message) > 0) cycle
             mesh%element_kind(n) = kind
             mesh%element_plane(n) = plane
-            call read_element_nodes(cards%data(j), context, report, &
+            call read_element_nodes(cards%keywords(k)%data(j), context, report, &
                mesh%element_nodes(:element_node_count(kind), n), context%element_valid(n))
-            call check_layout(cards%data(j), kind, cards%keywords(k)%place, report)
+            call check_layout(cards%keywords(k)%data(j), kind, cards%keywords(k)%place, report)
          end do
       end do
       call check_heights(cards, context, mesh, report)
@@ -270,8 +270,8 @@ contains
       context%element_index%noun = 'element'
       call context%element_index%build(mesh%element_number)
       ! Elements and lines have different numbers.
-      call check_repeated(cards, [card, element_cards(cards, of_lines=.true.)], &
-         [mesh%element_number, context%line_number], report, places)
+      call check_repeated([context%element_place, context%line_place], &
+         [mesh%element_number, context%line_number], report)
       context%member_index%noun = 'element'
       call context%member_index%build([mesh%element_number, context%line_number])
    end subroutine build_elements
@@ -312,7 +312,7 @@ contains
       if (.not. valid) return
       do q = 2, size(nodes)
          if (all(nodes(:q - 1) /= nodes(q))) cycle
-         call report%error(field_place(data, q + 1), 'a node appears twice in this element')
+         call report%error(data%place(q + 1), 'a node appears twice in this element')
          valid = .false.
       end do
    end subroutine read_element_nodes
@@ -331,11 +331,11 @@ contains
          if (fields > due) then
             layout = 'element, '//to_text(corners)//' corners'
             if (due > corners + 1) layout = layout//', '//to_text(corners)//' midside nodes'
-            call report%error(field_place(data, due + 1), 'extra field; the card is '//layout, &
-               'extra fields of '//to_text(keyword%image))
-         else if (fields < due .and. .not. is_undefined(data, fields)) then
-            call report%error(field_place(data, fields + 1), 'missing field: node '// &
-               to_text(fields), 'missing fields of '//to_text(keyword%image))
+            call report%error(data%place(due + 1), 'extra field; the card is '//layout, 'extra '// &
+               'fields of '//to_text(keyword%image))
+         else if (fields < due .and. .not. data%is_undefined(fields)) then
+            call report%error(data%place(fields + 1), 'missing field: node '//to_text(fields), &
+               'missing fields of '//to_text(keyword%image))
          end if
       end associate
    end subroutine check_layout

@@ -2,7 +2,7 @@
 module deck_builder_node_surfaces
    use card_parameters, only: chosen, surface_kinds
    use card_values, only: check_extra, take_field
-   use cards, only: cards_type, field_place, has_field, keyword_card_type
+   use cards, only: cards_type, keyword_card_type
    use deck_context, only: deck_context_type, read_target
    use deck_report, only: deck_report_type
    use deck_structure, only: cards_of
@@ -34,9 +34,9 @@ contains
          associate (card => cards%keywords(places(n)))
             if (chosen(card, 'TYPE', surface_kinds) /= 'NODE') cycle
             errors = report%error_count()
-            call read_nodes(cards, card, context, mesh, report, named)
+            call read_nodes(card, context, mesh, report, named)
             if (report%error_count() == errors .and. all(context%element_valid)) then
-               call find_faces(cards, card, named, mesh, report, n, context)
+               call find_faces(card, named, mesh, report, n, context)
             end if
             if (size(mesh%surfaces(n)%faces, 2) == 0) call report%lose('surface')
          end associate
@@ -44,8 +44,7 @@ contains
    end subroutine build_node_surfaces
 
    !> The nodes that a surface names.
-   subroutine read_nodes(cards, card, context, mesh, report, named)
-      type(cards_type), intent(in) :: cards
+   subroutine read_nodes(card, context, mesh, report, named)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(mesh_type), intent(in) :: mesh
@@ -57,11 +56,11 @@ contains
       real(dp) :: area
 
       allocate (named(size(mesh%node_number)), source=.false.)
-      do j = card%first_data, card%last_data
-         associate (data => cards%data(j))
+      do j = 1, size(card%data)
+         associate (data => card%data(j))
             valid = .true.
             call read_target(data, 1, context%node_index, mesh%node_sets, report, target, valid)
-            if (has_field(data, 2)) then
+            if (data%has(2)) then
                call take_field(data, 2, 'area', report, area, valid)
                call context%note('*SURFACE, TYPE=NODE: areas are ignored: those of the faces '// &
                   'are taken')
@@ -74,8 +73,7 @@ contains
    end subroutine read_nodes
 
    !> The outer sides of elements all of whose nodes are named. A node on none of them is an error.
-   subroutine find_faces(cards, card, named, mesh, report, surface, context)
-      type(cards_type), intent(in) :: cards
+   subroutine find_faces(card, named, mesh, report, surface, context)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: named(:)
       type(mesh_type), intent(inout) :: mesh
@@ -104,10 +102,10 @@ contains
       context%face_places(surface)%items = spread(card%place, 1, &
          size(mesh%surfaces(surface)%faces, 2))
       e = findloc(named .and. .not. taken(1:), .true., dim=1)
-      if (e > 0) call report%error(field_place(cards%data(card%first_data), 1), 'node '// &
-         to_text(mesh%node_number(e))//' of surface '//mesh%surfaces(surface)%name// &
-         ' is on no side of an element, at the edge of its body, whose nodes are all in the '// &
-         'surface: add the nodes that are missing, or name elements and faces S1 to S4')
+      if (e > 0) call report%error(card%data(1)%place(1), 'node '//to_text(mesh%node_number(e))// &
+         ' of surface '//mesh%surfaces(surface)%name//' is on no side of an element, at the '// &
+         'edge of its body, whose nodes are all in the surface: add the nodes that are '// &
+         'missing, or name elements and faces S1 to S4')
    end subroutine find_faces
 
 end module deck_builder_node_surfaces

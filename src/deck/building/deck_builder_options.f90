@@ -1,7 +1,6 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choose, has_parameter, lacks_parameter, need_choice, &
-      parameter_place, parameter_text, take_parameter, take_positive
+   use card_parameters, only: choose, need_choice, take_parameter, take_positive
    use cards, only: cards_type, keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_builder_rigid, only: need_faces
@@ -43,17 +42,17 @@ contains
          associate (card => cards%keywords(k))
             select case (card%name)
             case ('HEADING')
-               if (card%last_data < card%first_data .or. len(model%heading) > 0) cycle
-               model%heading = cards%data(card%first_data)%fields(1)%text
+               if (size(card%data) == 0 .or. len(model%heading) > 0) cycle
+               model%heading = card%data(1)%fields(1)%text
             case ('OPTIONS')
                call build_option_card(card, context, model, report)
             case ('PHYSICAL CONSTANTS')
                call take_parameter(card, 'ABSOLUTE ZERO', report, model%constants%absolute_zero)
-               if (has_parameter(card, 'STEFAN BOLTZMANN')) call take_positive(card, &
-                  'STEFAN BOLTZMANN', report, model%constants%stefan_boltzmann)
-               model%constants%has_absolute_zero = has_parameter(card, 'ABSOLUTE ZERO')
+               if (card%has('STEFAN BOLTZMANN')) call take_positive(card, 'STEFAN BOLTZMANN', &
+                  report, model%constants%stefan_boltzmann)
+               model%constants%has_absolute_zero = card%has('ABSOLUTE ZERO')
                model%constants%has_radiation = model%constants%has_absolute_zero .and. &
-                  has_parameter(card, 'STEFAN BOLTZMANN')
+                  card%has('STEFAN BOLTZMANN')
             case ('SOLVER')
                call need_choice(card, 'TYPE', 'SKYLINE/MUMPS', report, solver)
                if (solver == 'SKYLINE') model%solver = solver_skyline
@@ -82,13 +81,13 @@ contains
       if (plane == 'STRAIN') context%plane = plane_strain
       if (plane == 'STRESS') context%plane = plane_stress
       if (plane == 'AXISYMMETRIC') context%plane = axisymmetric
-      if (has_parameter(card, 'ORDER')) call build_order(card, context, model, report)
+      if (card%has('ORDER')) call build_order(card, context, model, report)
       call choose(card, 'ERRORS', 'YES/NO', report, errors)
-      if (has_parameter(card, 'ERRORS')) model%estimates_errors = errors == 'YES'
-      if (has_parameter(card, 'UNITS')) call build_units(card, model, report)
-      if (.not. has_parameter(card, 'LOAD')) return
-      context%load_set = to_upper(parameter_text(card, 'LOAD'))
-      context%load_place = parameter_place(card, 'LOAD')
+      if (card%has('ERRORS')) model%estimates_errors = errors == 'YES'
+      if (card%has('UNITS')) call build_units(card, model, report)
+      if (.not. card%has('LOAD')) return
+      context%load_set = to_upper(card%text('LOAD'))
+      context%load_place = card%place_of('LOAD')
    end subroutine build_option_card
 
    subroutine build_order(card, context, model, report)
@@ -99,7 +98,7 @@ contains
       integer :: errors
 
       errors = report%error_count()
-      model%order_place = parameter_place(card, 'ORDER')
+      model%order_place = card%place_of('ORDER')
       call take_parameter(card, 'ORDER', report, context%order)
       if (any(context%order == [1, 2])) return
       if (report%error_count() == errors) call report%error(model%order_place, &
@@ -113,10 +112,10 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: rest
-      character(len(parameter_text(card, 'UNITS'))) :: words(4)
+      character(len(card%text('UNITS'))) :: words(4)
       integer :: i, blank
 
-      rest = trim(adjustl(parameter_text(card, 'UNITS')))
+      rest = trim(adjustl(card%text('UNITS')))
       words = ''
       do i = 1, 4
          blank = index(rest//' ', ' ')
@@ -124,8 +123,8 @@ contains
          rest = trim(adjustl(rest(blank:)))
       end do
       if (len(rest) > 0 .or. words(4) == '') then
-         call report%error(parameter_place(card, 'UNITS'), &
-            'UNITS= has four words: length, stress, power, temperature')
+         call report%error(card%place_of('UNITS'), 'UNITS= has four words: length, stress, '// &
+            'power, temperature')
          return
       end if
       model%units%length = trim(words(1))
@@ -139,14 +138,14 @@ contains
       type(deck_context_type), intent(inout) :: context
       type(deck_report_type), intent(inout) :: report
 
-      if (has_parameter(card, 'SURFACE') .or. has_parameter(card, 'ELSET')) return
-      if (has_parameter(card, 'DISTANCE')) call report%error(parameter_place(card, 'DISTANCE'), &
-         'DISTANCE= is measured from a surface or a set: give SURFACE= or ELSET= too')
+      if (card%has('SURFACE') .or. card%has('ELSET')) return
+      if (card%has('DISTANCE')) call report%error(card%place_of('DISTANCE'), 'DISTANCE= is '// &
+         'measured from a surface or a set: give SURFACE= or ELSET= too')
       if (context%levels_place%image > 0) then
          call report%error(card%place, 'a second *REFINE of the whole model')
          return
       end if
-      context%levels_place = parameter_place(card, 'LEVELS')
+      context%levels_place = card%place_of('LEVELS')
       call take_levels(card, report, context%levels)
    end subroutine build_levels
 
@@ -156,11 +155,10 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, intent(inout) :: levels                     !! 0 before
 
-      if (lacks_parameter(card, 'LEVELS')) call report%error(card%place, &
-         '*REFINE needs LEVELS=')
+      if (card%lacks('LEVELS')) call report%error(card%place, '*REFINE needs LEVELS=')
       call take_parameter(card, 'LEVELS', report, levels)
       if (levels >= 0 .and. levels <= most_levels) return
-      call report%error(parameter_place(card, 'LEVELS'), 'LEVELS= must lie between 0 and '// &
+      call report%error(card%place_of('LEVELS'), 'LEVELS= must lie between 0 and '// &
          to_text(most_levels))
       levels = 0
    end subroutine take_levels
@@ -266,7 +264,7 @@ contains
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (card%name /= 'REFINE') cycle
-            if (.not. (has_parameter(card, 'SURFACE') .or. has_parameter(card, 'ELSET'))) cycle
+            if (.not. (card%has('SURFACE') .or. card%has('ELSET'))) cycle
             call build_region(card, context, model%mesh, report, region)
             model%regions = [model%regions, region]
          end associate
@@ -283,23 +281,23 @@ contains
 
       region%card = card%place%image
       call take_levels(card, report, region%levels)
-      if (has_parameter(card, 'SURFACE') .and. has_parameter(card, 'ELSET')) then
-         call report%error(parameter_place(card, 'ELSET'), '*REFINE takes SURFACE= or ELSET=, '// &
-            'not both; give a card for each')
-      else if (has_parameter(card, 'SURFACE')) then
+      if (card%has('SURFACE') .and. card%has('ELSET')) then
+         call report%error(card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, not '// &
+            'both; give a card for each')
+      else if (card%has('SURFACE')) then
          call need_named(card, 'SURFACE', 'surface', context%surfaces, report, surface)
-         call need_faces(mesh, parameter_place(card, 'SURFACE'), 'name the face that touches it', &
-            report, surface)
+         call need_faces(mesh, card%place_of('SURFACE'), 'name the face that touches it', report, &
+            surface)
          region%surfaces = [surface]
       else
          call need_element_set(card, context%element_index%sets, mesh%element_sets, report, &
             region%set)
       end if
-      if (.not. has_parameter(card, 'DISTANCE')) return
+      if (.not. card%has('DISTANCE')) return
       errors = report%error_count()
       call take_parameter(card, 'DISTANCE', report, region%distance)
       if (region%distance <= 0.0_dp .and. report%error_count() == errors) call report%error( &
-         parameter_place(card, 'DISTANCE'), 'DISTANCE= must be above 0')
+         card%place_of('DISTANCE'), 'DISTANCE= must be above 0')
    end subroutine build_region
 
 end module deck_builder_options

@@ -1,6 +1,6 @@
 !> *RIGID BODY -> what follows a reference node; where decks may name rigid surfaces.
 module deck_builder_rigid
-   use card_parameters, only: choose, has_parameter, is_on, parameter_place
+   use card_parameters, only: choose, is_on
    use cards, only: keyword_card_type
    use deck_builder_rigid_lines, only: lines_of
    use deck_context, only: deck_context_type, take_named
@@ -47,7 +47,7 @@ contains
       call take_named(card, 'ANALYTICAL SURFACE', 'surface', context%surfaces, report, surface)
       if (surface > 0) then
          if (.not. allocated(model%mesh%surfaces(surface)%drawing)) then
-            call report%error(parameter_place(card, 'ANALYTICAL SURFACE'), 'surface '// &
+            call report%error(card%place_of('ANALYTICAL SURFACE'), 'surface '// &
                model%mesh%surfaces(surface)%name//' is no drawing; name one of *SURFACE, '// &
                'TYPE=SEGMENTS, or the elements by ELSET=')
             return
@@ -69,9 +69,8 @@ contains
          end associate
       end do
       if (surface > 0 .or. coupling%element_set > 0 .or. size(coupling%node_sets) > 0) return
-      if (has_parameter(card, 'NSET') .or. has_parameter(card, 'ELSET') .or. &
-         has_parameter(card, 'TIE NSET') .or. has_parameter(card, 'PIN NSET') .or. &
-         has_parameter(card, 'ANALYTICAL SURFACE')) return
+      if (card%has('NSET') .or. card%has('ELSET') .or. card%has('TIE NSET') .or. &
+         card%has('PIN NSET') .or. card%has('ANALYTICAL SURFACE')) return
       call report%error(card%place, '*RIGID BODY names nothing that is rigid; give ELSET=, '// &
          'NSET= or ANALYTICAL SURFACE=')
    end subroutine build_rigid_body

@@ -1,7 +1,7 @@
 !> Surfaces of R2D2 and RAX2 elements -> lines of rigid bodies.
 module deck_builder_rigid_lines
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, data_card_type, field_place, field_text, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_builder_drawings, only: check_smooth, turn_round
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
@@ -23,7 +23,7 @@ contains
       type(deck_context_type), intent(in) :: context
       integer, allocatable :: lines(:)
 
-      lines = lines_of(field_text(data, 1), context)
+      lines = lines_of(data%text(1), context)
       is_rigid_side = size(lines) > 0
       if (is_rigid_side) is_rigid_side = all(context%line_kind(lines) == rigid_line)
    end function is_rigid_side
@@ -49,8 +49,7 @@ contains
 
    !> Builds the surface of the sides of rigid line elements: SPOS is on the left from the first to
    !> the second node, SNEG on the right.
-   subroutine build_line_surface(cards, card, context, mesh, report, surface)
-      type(cards_type), intent(in) :: cards
+   subroutine build_line_surface(card, context, mesh, report, surface)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
@@ -62,16 +61,16 @@ contains
       logical :: valid
 
       allocate (lines(0), ends(2, 0))
-      do j = card%first_data, card%last_data
+      do j = 1, size(card%data)
          valid = .true.
-         call need_field(cards%data(j), 2, 'side SPOS or SNEG', report, side, valid)
-         call check_extra(cards%data(j), 2, 'element or set, side', report)
+         call need_field(card%data(j), 2, 'side SPOS or SNEG', report, side, valid)
+         call check_extra(card%data(j), 2, 'element or set, side', report)
          if (.not. valid) return
          side = to_upper(side)
-         more = lines_of(field_text(cards%data(j), 1), context)
+         more = lines_of(card%data(j)%text(1), context)
          if ((side /= 'SPOS' .and. side /= 'SNEG') .or. size(more) == 0) then
-            call report%error(field_place(cards%data(j), merge(1, 2, size(more) == 0)), &
-               'a surface of rigid elements has sides SPOS or SNEG of such elements only')
+            call report%error(card%data(j)%place(merge(1, 2, size(more) == 0)), 'a surface of '// &
+               'rigid elements has sides SPOS or SNEG of such elements only')
             return
          end if
          if (any(context%line_nodes(:2, more) == 0)) return

@@ -1,8 +1,7 @@
 !> *PRE-TENSION SECTION -> a body cut in two, and the section that joins its faces again.
 module deck_builder_sections
-   use card_parameters, only: parameter_place
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_equations, only: find_reference
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_context_type, need_named
@@ -32,7 +31,7 @@ contains
 
       places = cards_of(cards, 'PRE-TENSION SECTION')
       do k = 1, size(places)
-         call build_section(cards, cards%keywords(places(k)), context, model, report, section)
+         call build_section(cards%keywords(places(k)), context, model, report, section)
          if (section%opposite > 0) then
             model%couplings = [model%couplings, section]
          else
@@ -42,8 +41,7 @@ contains
    end subroutine build_pre_tensions
 
    !> Builds one section; without an opposite face after an error.
-   subroutine build_section(cards, card, context, model, report, section)
-      type(cards_type), intent(in) :: cards
+   subroutine build_section(card, context, model, report, section)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(model_type), intent(inout) :: model
@@ -56,13 +54,12 @@ contains
       section%title = '*PRE-TENSION SECTION, '//report%source%words_of(card%place)
       call find_reference('NODE', card, context, model, report, section%reference)
       call need_named(card, 'SURFACE', 'surface', context%surfaces, report, section%surface)
-      call need_faces(model%mesh, parameter_place(card, 'SURFACE'), 'a section lies between '// &
-         'elements of a body', report, section%surface)
+      call need_faces(model%mesh, card%place_of('SURFACE'), 'a section lies between elements '// &
+         'of a body', report, section%surface)
       valid = section%reference > 0 .and. section%surface > 0 .and. all(context%element_valid)
       if (valid) valid = size(model%mesh%surfaces(section%surface)%faces) > 0
       if (valid) section%normal = section_normal(section%surface, model%mesh)
-      if (card%last_data >= card%first_data) call read_normal(cards%data(card%first_data), report, &
-         section%normal, valid)
+      if (size(card%data) > 0) call read_normal(card%data(1), report, section%normal, valid)
       if (.not. valid) return
       fault = ''
       if (norm2(section%normal) <= 0.0_dp) fault = 'is closed: it has no normal'
@@ -122,8 +119,8 @@ contains
       if (.not. valid) return
       normal = unit_vector(given(:2))
       if (norm2(normal) > 0.0_dp .and. abs(given(3)) <= 0.0_dp) return
-      call report%error(field_place(data, 1), 'the normal of a section is a direction in the '// &
-         'plane, such as 0., 1., 0.')
+      call report%error(data%place(1), 'the normal of a section is a direction in the plane, '// &
+         'such as 0., 1., 0.')
       valid = .false.
    end subroutine read_normal
 

@@ -1,10 +1,8 @@
 !> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets; *SURFACE -> sets of faces.
 module deck_builder_sets
-   use card_parameters, only: choose, has_parameter, need_parameter, parameter_place, &
-      parameter_text, surface_kinds
+   use card_parameters, only: choose, need_parameter, surface_kinds
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
-      keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_drawings, only: build_drawing
    use deck_builder_lines, only: find_line_faces, is_line_card
    use deck_builder_rigid, only: need_faces
@@ -12,7 +10,6 @@ module deck_builder_sets
    use deck_context, only: deck_context_type, item_index_type, place_list_type, read_target, &
       take_name, take_named
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
    use load_requests, only: target_type
@@ -58,18 +55,18 @@ contains
          associate (card => cards%keywords(k))
             if (card%name == definer) then
                kind = merge(2, 1, is_line_card(card))
-               count = card%last_data - card%first_data + 1
-               if (has_parameter(card, parameter)) then
+               count = size(card%data)
+               if (card%has(parameter)) then
                   call open_set(card, parameter, report, draft, i)
                   if (noun == 'node') then
-                     call draft%members(i)%add(nodes_of(cards, card, draft%numbers))
+                     call draft%members(i)%add(nodes_of(card, draft%numbers))
                   else
                      call draft%members(i)%add(first(kind) + [(j, j=1, count)])
                   end if
                end if
                first(kind) = first(kind) + count
             else if (card%name == parameter) then
-               call build_set(cards, card, context, mesh, report, draft)
+               call build_set(card, context, mesh, report, draft)
             end if
          end associate
       end do
@@ -83,17 +80,16 @@ contains
    end subroutine build_sets
 
    !> The nodes that a *NODE card gives, of which some may be given again elsewhere.
-   function nodes_of(cards, card, numbers) result(nodes)
-      type(cards_type), intent(in) :: cards
+   function nodes_of(card, numbers) result(nodes)
       type(keyword_card_type), intent(in) :: card
       type(item_index_type), intent(in) :: numbers
       integer, allocatable :: nodes(:)
       integer :: j, number
       logical :: is_number
 
-      allocate (nodes(card%last_data - card%first_data + 1), source=0)
+      allocate (nodes(size(card%data)), source=0)
       do j = 1, size(nodes)
-         call read_integer(field_text(cards%data(card%first_data + j - 1), 1), number, is_number)
+         call read_integer(card%data(j)%text(1), number, is_number)
          if (is_number) nodes(j) = numbers%find(number)
       end do
       nodes = pack(nodes, nodes > 0)
@@ -110,12 +106,12 @@ contains
       integer :: number
       logical :: is_number
 
-      name = to_upper(parameter_text(card, parameter))
+      name = to_upper(card%text(parameter))
       set = draft%numbers%sets%find(name)
       if (set > 0) return
       call read_integer(name, number, is_number)
-      if (is_number) call report%error(parameter_place(card, parameter), &
-         'the name of a set must not be a number')
+      if (is_number) call report%error(card%place_of(parameter), 'the name of a set must not '// &
+         'be a number')
       call draft%numbers%sets%add(name)
       draft%sets = draft%sets + 1
       set = draft%sets
@@ -123,8 +119,7 @@ contains
    end subroutine open_set
 
    !> Reads one *NSET or *ELSET card.
-   subroutine build_set(cards, card, context, mesh, report, draft)
-      type(cards_type), intent(in) :: cards
+   subroutine build_set(card, context, mesh, report, draft)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
@@ -144,15 +139,15 @@ contains
          call find_nodes(card, context, mesh, report, nodes)
          call draft%members(set)%add(nodes)
       end if
-      do j = card%first_data, card%last_data
-         if (has_parameter(card, 'GENERATE')) then
-            call generate(cards%data(j), report, draft, set)
+      do j = 1, size(card%data)
+         if (card%has('GENERATE')) then
+            call generate(card%data(j), report, draft, set)
             cycle
          end if
-         do i = 1, size(cards%data(j)%fields)
+         do i = 1, size(card%data(j)%fields)
             valid = .true.
-            call read_target(cards%data(j), i, draft%numbers, draft%items(:known), report, &
-               other, valid)
+            call read_target(card%data(j), i, draft%numbers, draft%items(:known), report, other, &
+               valid)
             if (other%item > 0) call draft%members(set)%add([other%item])
             ! Each member once, lest sets that hold a set twice double.
             if (other%set > 0) call draft%members(set)%add(unique_sorted( &
@@ -179,8 +174,7 @@ contains
          call found%add([context%line_nodes(:, context%line_sets(set)%members)])
       end if
       call take_named(card, 'SURFACE', 'surface', context%surfaces, report, surface)
-      call need_faces(mesh, parameter_place(card, 'SURFACE'), 'name its reference node', report, &
-         surface)
+      call need_faces(mesh, card%place_of('SURFACE'), 'name its reference node', report, surface)
       if (surface > 0) then
          associate (faces => mesh%surfaces(surface)%faces)
             do i = 1, size(faces, 2)
@@ -211,7 +205,7 @@ contains
       call check_extra(data, 3, 'first number, last number, increment', report)
       if (.not. valid .or. draft%numbers%is_empty()) return
       if (step < 1 .or. last < first) then
-         call report%error(field_place(data, 1), 'the numbers must ascend from first to last')
+         call report%error(data%place(1), 'the numbers must ascend from first to last')
          return
       end if
       count = (last - first)/step + 1
@@ -227,11 +221,10 @@ contains
       range = 'from '//to_text(first)//' to '//to_text(last)
       associate (noun => draft%numbers%noun)
          if (found == 0 .and. draft%members(set)%count == 0) then
-            call report%missing(field_place(data, 1), 'there is no '//noun//' '//range, &
-               noun)
+            call report%missing(data%place(1), 'there is no '//noun//' '//range, noun)
          else if (found < count .and. .not. report%has_lost(noun)) then
             if (step > 1) range = range//' in steps of '//to_text(step)
-            call report%warning(field_place(data, 1), 'missing '//noun//'s are left out: '// &
+            call report%warning(data%place(1), 'missing '//noun//'s are left out: '// &
                to_text(count - found)//' of '//to_text(count)//' '//range//', the first is '// &
                to_text(first + first_missing*step))
          end if
@@ -252,14 +245,13 @@ contains
       do n = 1, size(places)
          call take_name(cards, places(n), 'surface', context%surfaces, mesh%surfaces(n)%name, &
             report)
-         call build_surface(cards, cards%keywords(places(n)), context, mesh, report, &
-            mesh%surfaces(n), context%face_places(n))
+         call build_surface(cards%keywords(places(n)), context, mesh, report, mesh%surfaces(n), &
+            context%face_places(n))
       end do
    end subroutine build_surfaces
 
    !> Builds one surface; a face that is named twice counts once, in the order of elements.
-   subroutine build_surface(cards, card, context, mesh, report, surface, places)
-      type(cards_type), intent(in) :: cards
+   subroutine build_surface(card, context, mesh, report, surface, places)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(mesh_type), intent(in) :: mesh
@@ -281,10 +273,10 @@ contains
       ! The data of another type have other fields; node sets are made of surfaces, too.
       if (report%error_count() > errors .or. kind == 'NODE') return
       if (kind == 'SEGMENTS') then
-         call build_drawing(cards, card, report, surface)
-      else if (card%last_data >= card%first_data) then
-         if (is_rigid_side(cards%data(card%first_data), context)) then
-            call build_line_surface(cards, card, context, mesh, report, surface)
+         call build_drawing(card, report, surface)
+      else if (size(card%data) > 0) then
+         if (is_rigid_side(card%data(1), context)) then
+            call build_line_surface(card, context, mesh, report, surface)
             kind = 'RIGID'
          end if
       end if
@@ -292,23 +284,22 @@ contains
          if (.not. allocated(surface%drawing)) call report%lose('surface')
          return
       end if
-      do j = card%first_data, card%last_data
+      do j = 1, size(card%data)
          ! An element set that has lines, without a face.
-         if (.not. has_field(cards%data(j), 2) .and. has_lines(cards%data(j), context)) then
-            call add_line_faces(cards%data(j), context, mesh, report, found)
+         if (.not. card%data(j)%has(2) .and. has_lines(card%data(j), context)) then
+            call add_line_faces(card%data(j), context, mesh, report, found)
             call named%add(spread(j, 1, found%count - named%count))
             cycle
          end if
          valid = .true.
-         call read_target(cards%data(j), 1, context%element_index, mesh%element_sets, report, &
+         call read_target(card%data(j), 1, context%element_index, mesh%element_sets, report, &
             target, valid)
          ! An unknown set may be one of lines, which has no face.
-         if (valid .or. has_field(cards%data(j), 2)) call read_face(cards%data(j), report, face, &
-            valid)
-         call check_extra(cards%data(j), 2, 'element or set, face', report)
+         if (valid .or. card%data(j)%has(2)) call read_face(card%data(j), report, face, valid)
+         call check_extra(card%data(j), 2, 'element or set, face', report)
          if (.not. valid) cycle
          elements = target%members(mesh%element_sets)
-         call check_face(cards%data(j), mesh, elements, face, report, valid)
+         call check_face(card%data(j), mesh, elements, face, report, valid)
          if (.not. valid) cycle
          call found%add(4*elements + face - 1)
          call named%add(spread(j, 1, size(elements)))
@@ -318,7 +309,7 @@ contains
       order = pack(order, [(i == 1 .or. keys(order(i)) /= keys(order(max(i - 1, 1))), &
          i=1, size(order))])
       cards_of_faces = named%numbers()
-      places%items = [(field_place(cards%data(cards_of_faces(order(i))), 1), i=1, size(order))]
+      places%items = [(card%data(cards_of_faces(order(i)))%place(1), i=1, size(order))]
       surface%faces = reshape([keys(order)/4, mod(keys(order), 4) + 1], [2, size(order)], &
          order=[2, 1])
    end subroutine build_surface
@@ -329,7 +320,7 @@ contains
       type(deck_context_type), intent(in) :: context
       integer :: set
 
-      set = context%element_index%sets%find(field_text(data, 1))
+      set = context%element_index%sets%find(data%text(1))
       has_lines = set > 0
       if (has_lines) has_lines = size(context%line_sets(set)%members) > 0
    end function has_lines
@@ -347,7 +338,7 @@ contains
       integer :: i, bad
 
       call check_extra(data, 1, 'element set of lines', report)
-      members = context%line_sets(context%element_index%sets%find(field_text(data, 1)))%members
+      members = context%line_sets(context%element_index%sets%find(data%text(1)))%members
       allocate(faces(2, size(members)), uses(size(members)))
       call find_line_faces(mesh, context%element_valid, context%line_nodes(:, members), faces, uses)
       call found%add(pack(4*faces(1, :) + faces(2, :) - 1, uses == 1))
@@ -364,10 +355,9 @@ contains
             fault = fault//', nor do its nodes: its curve is the side of no surface in the '// &
                'drawing, such as a second one at the place of one that is; take that one'
          end if
-         call report%error(field_place(data, 1), 'line '// &
-            to_text(context%line_number(members(bad)))//' from node '// &
-            to_text(mesh%node_number(nodes(1)))//' to '//to_text(mesh%node_number(nodes(i)))// &
-            ' '//fault)
+         call report%error(data%place(1), 'line '//to_text(context%line_number(members(bad)))// &
+            ' from node '//to_text(mesh%node_number(nodes(1)))//' to '// &
+            to_text(mesh%node_number(nodes(i)))//' '//fault)
       end associate
    end subroutine add_line_faces
 
@@ -382,9 +372,8 @@ contains
 
       do i = 1, size(elements)
          if (face <= element_corner_count(mesh%element_kind(elements(i)))) cycle
-         call report%error(field_place(data, 2), 'element '// &
-            to_text(mesh%element_number(elements(i)))//' is a triangle and has no face S'// &
-            to_text(face))
+         call report%error(data%place(2), 'element '//to_text(mesh%element_number(elements(i)))// &
+            ' is a triangle and has no face S'//to_text(face))
          valid = .false.
          return
       end do
@@ -406,8 +395,7 @@ contains
          if (label(1:1) == 'S') face = index('1234', label(2:2))
       end if
       if (face > 0) return
-      call report%error(field_place(data, 2), ''''//field_text(data, 2)// &
-         ''' is no face; faces are S1 to S4')
+      call report%error(data%place(2), ''''//data%text(2)//''' is no face; faces are S1 to S4')
       valid = .false.
    end subroutine read_face
 

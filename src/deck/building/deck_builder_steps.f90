@@ -1,9 +1,8 @@
 !> *STEP to *END STEP -> steps with their increments; loads become requests.
 module deck_builder_steps
-   use card_parameters, only: choose, has_parameter, is_on, lacks_parameter, parameter_place, &
-      take_from, take_parameter
+   use card_parameters, only: choose, is_on, take_from, take_parameter
    use card_values, only: check_extra, decimal_comma, report_decimal_comma, take_field
-   use cards, only: cards_type, data_card_type, field_place, has_field, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
    use deck_builder_contact, only: build_contact_change
    use deck_builder_controls, only: build_continuation, build_fixed_point, build_print, &
@@ -64,15 +63,15 @@ contains
             select case (card%name)
             case ('STEP')
                n = n + 1
-               counts = card_counts_type(says_course=has_parameter(card, 'AMPLITUDE'))
+               counts = card_counts_type(says_course=card%has('AMPLITUDE'))
                context%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, context, report, model%steps(n))
-               if (has_parameter(card, 'PERTURBATION')) call check_perturbation(card, n > 1, &
+               if (card%has('PERTURBATION')) call check_perturbation(card, n > 1, &
                   size(model%contacts) > 0, context, report)
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
-               call begin_analysis(cards, card, n, counts, context, report, model%steps)
+               call begin_analysis(card, n, counts, context, report, model%steps)
             case ('END STEP')
                if (counts%analyses > 0) cycle
                context%analyses_sound = .false.
@@ -80,12 +79,12 @@ contains
                   'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT', 'RESTART', 'START', 'THERMAL SCHEME')
                has_scheme = has_scheme .or. card%name == 'THERMAL SCHEME'
-               call build_control(cards, card, context, model, report, controls)
+               call build_control(card, context, model, report, controls)
             case ('CONTINUATION')
                if (n > 0) call build_continuation(card, report, model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
                'SFILM', 'TEMPERATURE')
-               call build_load_card(cards, card, n, model, context, report)
+               call build_load_card(card, n, model, context, report)
             case ('CHANGE FRICTION', 'FRICTION', 'MODEL CHANGE', 'CONTACT INTERFERENCE')
                call build_contact_change(cards, k, n, model, context, report)
             case default
@@ -94,8 +93,7 @@ contains
                   counts%analyses = counts%analyses + 1
                   context%analyses_sound = .false.
                else if (n > 0) then
-                  call build_output(cards, card, context, model%mesh, counts, report, &
-                     model%steps(n))
+                  call build_output(card, context, model%mesh, counts, report, model%steps(n))
                end if
             end select
          end associate
@@ -105,8 +103,7 @@ contains
    end subroutine build_steps
 
    !> Reads a card that controls this step and later ones.
-   subroutine build_control(cards, card, context, model, report, controls)
-      type(cards_type), intent(in) :: cards
+   subroutine build_control(card, context, model, report, controls)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(in) :: context
       type(model_type), intent(in) :: model
@@ -119,9 +116,9 @@ contains
       case ('RESTART')
          call build_restart(card, report, controls)
       case ('START')
-         call build_start(cards, card, context, model, report, controls%start)
+         call build_start(card, context, model, report, controls%start)
       case default
-         call build_thermal_scheme(cards, card, report, controls%scheme)
+         call build_thermal_scheme(card, report, controls%scheme)
       end select
    end subroutine build_control
 
@@ -147,13 +144,12 @@ contains
 
       steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
       places = pack(cards_of(cards, 'STEP'), steps%nlgeom)
-      if (size(places) > 0) call report%warning(parameter_place(cards%keywords(places(1)), &
-         'NLGEOM'), 'NLGEOM is not modelled: displacements and strains stay small')
+      if (size(places) > 0) call report%warning(cards%keywords(places(1))%place_of('NLGEOM'), &
+         'NLGEOM is not modelled: displacements and strains stay small')
    end subroutine warn_of_nlgeom
 
    !> Reads a card of a step that asks for output; others are ignored.
-   subroutine build_output(cards, card, context, mesh, counts, report, step)
-      type(cards_type), intent(in) :: cards
+   subroutine build_output(card, context, mesh, counts, report, step)
       type(keyword_card_type), intent(in) :: card
       type(deck_context_type), intent(inout) :: context
       type(mesh_type), intent(in) :: mesh
@@ -167,11 +163,10 @@ contains
          call build_file_output(card, counts%files, context, report, step)
       case ('NODE PRINT')
          counts%node_prints = counts%node_prints + 1
-         call build_print(cards, card, counts%node_prints == 1, context, mesh, report, &
-            step%node_prints)
+         call build_print(card, counts%node_prints == 1, context, mesh, report, step%node_prints)
       case ('EL PRINT')
          counts%element_prints = counts%element_prints + 1
-         call build_print(cards, card, counts%element_prints == 1, context, mesh, report, &
+         call build_print(card, counts%element_prints == 1, context, mesh, report, &
             step%element_prints)
       case ('STABILITY')
          if (step%analysis /= analysis_coupled .or. counts%analyses == 0) then
@@ -200,9 +195,9 @@ contains
 
       call take_parameter(card, 'INC', report, step%max_increments)
       if (step%max_increments < 1) then
-         call report%error(parameter_place(card, 'INC'), 'INC= must be at least 1')
+         call report%error(card%place_of('INC'), 'INC= must be at least 1')
       end if
-      if (.not. has_parameter(card, 'INC')) then
+      if (.not. card%has('INC')) then
          call context%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
       end if
       history = 'RAMP'
@@ -225,17 +220,16 @@ contains
       type(deck_report_type), intent(inout) :: report
 
       if (is_later .or. has_contact) then
-         call report%error(parameter_place(card, 'PERTURBATION'), 'PERTURBATION is refused on '// &
-            '*STEP: '//trim(merge('steps go on from the one before', &
-            'contact changes with the load  ', is_later))//'; leave it out')
+         call report%error(card%place_of('PERTURBATION'), 'PERTURBATION is refused on *STEP: '// &
+            trim(merge('steps go on from the one before', 'contact changes with the load  ', &
+            is_later))//'; leave it out')
       else
          call context%note('*STEP: PERTURBATION is ignored: the step begins with the initial state')
       end if
    end subroutine check_perturbation
 
    !> Reads the analysis of step n, the only one that it may have.
-   subroutine begin_analysis(cards, card, n, counts, context, report, steps)
-      type(cards_type), intent(in) :: cards
+   subroutine begin_analysis(card, n, counts, context, report, steps)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n   !! number of the step, 0 before the first
       type(card_counts_type), intent(inout) :: counts
@@ -248,7 +242,7 @@ contains
       counts%is_uncoupled = card%name(1:2) == 'UN'
       if (n == 0) return
       context%analysis_place(n) = card%place
-      call build_analysis(cards, card, n, context, report, steps(n))
+      call build_analysis(card, n, context, report, steps(n))
       if (steps(n)%is_transient .and. .not. counts%says_course) then
          steps(n)%ramped = .false.
          call context%note('*'//card%name//' without STEADY STATE: loads without an amplitude '// &
@@ -257,8 +251,7 @@ contains
    end subroutine begin_analysis
 
    !> Reads *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
-   subroutine build_analysis(cards, card, n, context, report, step)
-      type(cards_type), intent(in) :: cards
+   subroutine build_analysis(card, n, context, report, step)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n   ! number of the step
       type(deck_context_type), intent(inout) :: context
@@ -271,33 +264,32 @@ contains
       step%analysis = analysis_coupled
       if (card%name == 'STATIC') step%analysis = analysis_static
       if (card%name == 'HEAT TRANSFER') step%analysis = analysis_heat
-      step%is_transient = solves_heat(step%analysis) .and. lacks_parameter(card, 'STEADY STATE')
+      step%is_transient = solves_heat(step%analysis) .and. card%lacks('STEADY STATE')
       creep = 'NONE'
       call choose(card, 'CREEP', 'NONE', report, creep)
       step%direct = is_on(card, 'DIRECT', report)
-      if (card%last_data >= card%first_data) then
-         call build_increments(cards%data(card%first_data), context, report, step)
-         if (card%name == 'HEAT TRANSFER') call check_rate(cards%data(card%first_data), report)
+      if (size(card%data) > 0) then
+         call build_increments(card%data(1), context, report, step)
+         if (card%name == 'HEAT TRANSFER') call check_rate(card%data(1), report)
       else
          call context%note('*'//card%name//' without data: one increment, period 1')
       end if
-      if (adapts_increments(step) .and. .not. has_largest(cards, card)) step%largest_increment = &
+      if (adapts_increments(step) .and. .not. has_largest(card)) step%largest_increment = &
          step%period
       call build_storage(card, context, report, step)
       if (card%flawed .or. report%error_count() > errors) then
          context%analyses_sound = .false.
       else if (.not. adapts_increments(step)) then
-         call fit_increments(cards, card, n, context, report, step)
+         call fit_increments(card, n, context, report, step)
       end if
    end subroutine build_analysis
 
    !> Whether an analysis gives its largest increment.
-   pure logical function has_largest(cards, card)
-      type(cards_type), intent(in) :: cards
+   pure logical function has_largest(card)
       type(keyword_card_type), intent(in) :: card
 
-      has_largest = card%last_data >= card%first_data
-      if (has_largest) has_largest = has_field(cards%data(card%first_data), 4)
+      has_largest = size(card%data) > 0
+      if (has_largest) has_largest = card%data(1)%has(4)
    end function has_largest
 
    !> What a step that stores heat allows its increments, and whether strains take up heat.
@@ -308,30 +300,28 @@ contains
       type(step_type), intent(inout) :: step
 
       if (.not. step%is_transient) then
-         if (has_parameter(card, 'DELTMX') .or. has_parameter(card, 'LOCAL ERROR') .or. &
-            has_parameter(card, 'DILATATION')) call context%note('*'//card%name// &
-            ', STEADY STATE: DELTMX=, LOCAL ERROR= and DILATATION= are ignored, no heat is stored')
+         if (card%has('DELTMX') .or. card%has('LOCAL ERROR') .or. &
+            card%has('DILATATION')) call context%note('*'//card%name//', STEADY STATE: '// &
+            'DELTMX=, LOCAL ERROR= and DILATATION= are ignored, no heat is stored')
          return
       end if
       call take_parameter(card, 'DELTMX', report, step%largest_change)
-      if (step%largest_change <= 0.0_dp) call report%error(parameter_place(card, 'DELTMX'), &
-         'DELTMX= must be positive: the largest change of a temperature in an increment')
+      if (step%largest_change <= 0.0_dp) call report%error(card%place_of('DELTMX'), 'DELTMX= '// &
+         'must be positive: the largest change of a temperature in an increment')
       call take_parameter(card, 'LOCAL ERROR', report, step%local_error)
-      if (step%local_error <= 0.0_dp) call report%error(parameter_place(card, 'LOCAL ERROR'), &
-         'LOCAL ERROR= must be positive: 1E-3 is 0.1 % of the range of temperatures')
+      if (step%local_error <= 0.0_dp) call report%error(card%place_of('LOCAL ERROR'), 'LOCAL '// &
+         'ERROR= must be positive: 1E-3 is 0.1 % of the range of temperatures')
       step%dilates = is_on(card, 'DILATATION', report)
-      if (step%direct .and. (has_parameter(card, 'DELTMX') .or. has_parameter(card, &
-         'LOCAL ERROR'))) call context%note('*'//card%name//', DIRECT: DELTMX= and LOCAL '// &
-         'ERROR= are ignored, increments are fixed')
-      if (adapts_increments(step) .and. .not. has_parameter(card, 'LOCAL ERROR')) call &
-         context%note('*'//card%name//' without LOCAL ERROR=: increments err by at most '// &
+      if (step%direct .and. (card%has('DELTMX') .or. card%has('LOCAL ERROR'))) call context%note( &
+         '*'//card%name//', DIRECT: DELTMX= and LOCAL ERROR= are ignored, increments are fixed')
+      if (adapts_increments(step) .and. .not. card%has('LOCAL ERROR')) call context%note('*'// &
+         card%name//' without LOCAL ERROR=: increments err by at most '// &
          percent(step%local_error)//' of the range of temperatures')
    end subroutine build_storage
 
    !> Increments are all as long as the first, unless INC= does not hold for these: then they grow
    !> as in CalculiX, up to the largest.
-   subroutine fit_increments(cards, card, n, context, report, step)
-      type(cards_type), intent(in) :: cards
+   subroutine fit_increments(card, n, context, report, step)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n                ! of the step
       type(deck_context_type), intent(inout) :: context
@@ -343,7 +333,7 @@ contains
       if (too_many(step)) then
          number = to_text(ceiling(min(planned_increments(step) - increment_rounding, most_counted)))
          step%grows = .not. step%direct
-         if (.not. has_largest(cards, card)) step%largest_increment = step%period
+         if (.not. has_largest(card)) step%largest_increment = step%period
          if (too_many(step)) then
             call report%error(context%step_place(n), 'the step takes '//number// &
                ' increments of '//to_text(step%first_increment)//', more than the '// &
@@ -356,7 +346,7 @@ contains
                'up to '// &
                to_text(step%largest_increment))
          end if
-      else if (has_largest(cards, card) .and. .not. step%direct) then
+      else if (has_largest(card) .and. .not. step%direct) then
          call context%note('largest increment ignored: no increment is longer than the first')
       end if
    end subroutine fit_increments
@@ -408,12 +398,12 @@ contains
       step%largest_increment = step%first_increment
       call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
       call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
-      if (.not. has_field(data, 1)) call context%note('first increment not given: 1')
-      if (.not. has_field(data, 2)) call context%note('period not given: 1')
-      if (step%direct .and. (has_field(data, 3) .or. has_field(data, 4))) call context%note( &
-         'smallest and largest increment ignored: with DIRECT increments are fixed')
-      if (.not. (step%direct .or. has_field(data, 3))) call context%note('smallest increment '// &
-         'not given: '//to_text(step%smallest_increment))
+      if (.not. data%has(1)) call context%note('first increment not given: 1')
+      if (.not. data%has(2)) call context%note('period not given: 1')
+      if (step%direct .and. (data%has(3) .or. data%has(4))) call context%note('smallest and '// &
+         'largest increment ignored: with DIRECT increments are fixed')
+      if (.not. (step%direct .or. data%has(3))) call context%note('smallest increment not '// &
+         'given: '//to_text(step%smallest_increment))
       comma = decimal_comma(data)
       most = merge(5, 4, step%analysis == analysis_heat)
       if (comma > 0 .and. (size(data%fields) > most .or. .not. times_fit(data, step))) then
@@ -430,8 +420,8 @@ contains
       else if (step%largest_increment < step%first_increment) then
          step%first_increment = step%largest_increment
          step%smallest_increment = min(step%smallest_increment, step%first_increment)
-         call report%warning(field_place(data, 4), 'the first increment is longer than the '// &
-            'largest, and is shortened to it')
+         call report%warning(data%place(4), 'the first increment is longer than the largest, '// &
+            'and is shortened to it')
       else if (step%smallest_increment < least_increment*step%period) then
          step%smallest_increment = least_increment*step%period
          call context%note('smallest increment raised to '//to_text(step%smallest_increment)// &
@@ -444,8 +434,8 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_report_type), intent(inout) :: report
 
-      if (has_field(data, 5)) call report%warning(field_place(data, 5), 'the fifth field, the '// &
-         'rate of temperature at which END=SS ends a step, is ignored: the step lasts its period')
+      if (data%has(5)) call report%warning(data%place(5), 'the fifth field, the rate of '// &
+         'temperature at which END=SS ends a step, is ignored: the step lasts its period')
    end subroutine check_rate
 
    !> Whether the times of a step are positive, and the first increment lies between the smallest
@@ -466,7 +456,7 @@ contains
       integer :: i
 
       not_positive = [step%first_increment, step%period, step%smallest_increment, &
-         step%largest_increment] <= 0.0_dp .and. [(has_field(data, i), i=1, 4)]
+         step%largest_increment] <= 0.0_dp .and. [(data%has(i), i=1, 4)]
    end function not_positive
 
    subroutine check_times(data, step, report, valid)
@@ -480,16 +470,15 @@ contains
       valid = times_fit(data, step)
       wrong = not_positive(data, step)
       do i = 1, 4
-         if (wrong(i)) call report%error(field_place(data, i), &
-            'increments and periods must be positive')
+         if (wrong(i)) call report%error(data%place(i), 'increments and periods must be positive')
       end do
       if (valid .or. any(wrong)) return
       if (step%first_increment > step%period) then
-         call report%error(field_place(data, 1), 'the first increment is longer than the '// &
-            'period; give a shorter one')
+         call report%error(data%place(1), 'the first increment is longer than the period; give '// &
+            'a shorter one')
       else
-         call report%error(field_place(data, 3), 'the smallest increment is longer than the '// &
-            'first; give a shorter one')
+         call report%error(data%place(3), 'the smallest increment is longer than the first; '// &
+            'give a shorter one')
       end if
    end subroutine check_times
 

@@ -1,16 +1,15 @@
 !> *VERIFY -> checks of the results, *ACCURACY -> targets of the errors.
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
-   use card_parameters, only: need_choice, parameter_text, take_from
+   use card_parameters, only: need_choice, take_from
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, data_card_type, field_place, field_text, has_field, &
-      keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_context_type, read_target, report_unknown
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: cards_of, data_cards_of
+   use deck_structure, only: cards_of, data_count
    use kinds, only: dp
    use load_requests, only: target_type
    use model, only: model_type, verify_type
@@ -39,18 +38,18 @@ contains
       integer, allocatable :: places(:)
       integer :: k, j, n
 
-      allocate(model%verifications(size(data_cards_of(cards, 'VERIFY'))))
+      allocate(model%verifications(data_count(cards, cards_of(cards, 'VERIFY'))))
       n = 0
       places = cards_of(cards, 'VERIFY')
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
             call need_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', report, &
                kind)
-            do j = card%first_data, card%last_data
+            do j = 1, size(card%data)
                n = n + 1
                model%verifications(n)%kind = kind
-               model%verifications(n)%source = parameter_text(card, 'SOURCE')
-               call build_check(cards%data(j), context, model, report, model%verifications(n))
+               model%verifications(n)%source = card%text('SOURCE')
+               call build_check(card%data(j), context, model, report, model%verifications(n))
             end do
          end associate
       end do
@@ -96,8 +95,8 @@ contains
       check%line = data%end%image
       check%address = report%source%address_of(data%end)
       check%quantity = ''
-      check%where = field_text(data, 2)
-      places = [field_place(data, 1), field_place(data, 2)]
+      check%where = data%text(2)
+      places = [data%place(1), data%place(2)]
       check%columns = places%column
       call read_quantity(data, context%verifiable, '', report, quantity)
       if (quantity > 0) then
@@ -109,17 +108,16 @@ contains
       call need_field(data, 5, 'tolerance', report, check%tolerance, valid)
       call check_extra(data, 6, 'quantity, where, when, value, tolerance, REL or ABS', report)
       if (check%tolerance < 0.0_dp) then
-         call report%error(field_place(data, 5), 'the tolerance must not be negative')
+         call report%error(data%place(5), 'the tolerance must not be negative')
       end if
-      select case (to_upper(field_text(data, 6)))
+      select case (to_upper(data%text(6)))
       case ('ABS')
          check%relative = .false.
       case ('', 'REL')
-         if (valid .and. .not. abs(check%value) > 0.0_dp) call report%warning( &
-            field_place(data, 4), 'relative to 0 only 0 itself passes; give ABS')
+         if (valid .and. .not. abs(check%value) > 0.0_dp) call report%warning(data%place(4), &
+            'relative to 0 only 0 itself passes; give ABS')
       case default
-         call report%error(field_place(data, 6), ''''//field_text(data, 6)// &
-            ''' is neither REL nor ABS')
+         call report%error(data%place(6), ''''//data%text(6)//''' is neither REL nor ABS')
       end select
    end subroutine build_check
 
@@ -145,12 +143,12 @@ contains
          names(i)%value = trim(known(i)%name)
       end do
       if (len(refusal) > 0) then
-         call report%error(field_place(data, 1), refusal//known_choices(name, names))
+         call report%error(data%place(1), refusal//known_choices(name, names))
          return
       end if
       hint = nearest_known(name, names)
       if (len(hint) == 0) hint = '; docs/deck.md lists those that are known'
-      call report%error(field_place(data, 1), 'unknown quantity '//name//hint)
+      call report%error(data%place(1), 'unknown quantity '//name//hint)
    end subroutine read_quantity
 
    !> Checks where a quantity is judged; the only interface of a deck need not be named.
@@ -163,19 +161,19 @@ contains
       type(verify_type), intent(inout) :: check
 
       if (kind == of_history) then
-         if (has_field(data, 2)) call report%error(field_place(data, 2), &
-            check%quantity//' has no location: leave this field empty')
+         if (data%has(2)) call report%error(data%place(2), check%quantity//' has no location: '// &
+            'leave this field empty')
          return
       end if
       if ((kind == of_interface .or. kind == of_contact_points) .and. size(model%contacts) == &
          0) then
-         call report%missing(field_place(data, 1), 'the deck has no *CONTACT PAIR: there is no '// &
+         call report%missing(data%place(1), 'the deck has no *CONTACT PAIR: there is no '// &
             check%quantity)
          return
       end if
       if (kind == of_sections .and. .not. any(model%couplings%is_section())) then
-         call report%missing(field_place(data, 1), &
-            'the deck has no *PRE-TENSION SECTION: there is no '//check%quantity, 'equation')
+         call report%missing(data%place(1), 'the deck has no *PRE-TENSION SECTION: there is no '// &
+            check%quantity, 'equation')
          return
       end if
       if (any(to_upper(check%where) == ['MIN', 'MAX'])) return
@@ -214,16 +212,16 @@ contains
       nodes = target%members(model%mesh%node_sets)
       nodes = pack(nodes, used(nodes))
       if (size(nodes) == 0 .and. kind == of_sections) then
-         call report%error(field_place(data, 2), field_text(data, 2)//' is not the reference '// &
-            'node of a *PRE-TENSION SECTION')
+         call report%error(data%place(2), data%text(2)//' is not the reference node of a '// &
+            '*PRE-TENSION SECTION')
       else if (size(nodes) == 0 .and. .not. all(context%element_valid)) then
          return
       else if (size(nodes) == 0) then
-         call report%missing(field_place(data, 2), &
-            'no element has a node of '//field_text(data, 2)//': it has no values', 'element')
+         call report%missing(data%place(2), 'no element has a node of '//data%text(2)//': it '// &
+            'has no values', 'element')
       else if (all(context%dropped(nodes))) then
-         call report%error(field_place(data, 2), 'ORDER=1 leaves no node of '// &
-            field_text(data, 2)//', because none is a corner: it has no values')
+         call report%error(data%place(2), 'ORDER=1 leaves no node of '//data%text(2)// &
+            ', because none is a corner: it has no values')
       end if
    end subroutine check_nodes
 
@@ -246,14 +244,13 @@ contains
          call read_real(trim(adjustl(name(at + 1:))), s, valid)
          if (valid) valid = s >= 0.0_dp
          if (kind /= of_contact_points .or. .not. valid) then
-            call report%error(field_place(data, 2), &
-               ''''//name//''' is not a location of this quantity')
+            call report%error(data%place(2), ''''//name//''' is not a location of this quantity')
             return
          end if
          name = trim(name(:at - 1))
       end if
       if (context%contacts%find(name) == 0) call report_unknown('contact pair', name, &
-         context%contacts%known(), field_place(data, 2), report)
+         context%contacts%known(), data%place(2), report)
    end subroutine check_interface
 
    !> A total time that an increment meets, or LAST.
@@ -266,7 +263,7 @@ contains
       integer :: s
       logical :: valid
 
-      check%at_last = to_upper(field_text(data, 3)) == 'LAST'
+      check%at_last = to_upper(data%text(3)) == 'LAST'
       if (check%at_last) return
       valid = .true.
       call need_field(data, 3, 'time or LAST', report, check%when, valid)
@@ -280,15 +277,14 @@ contains
          end associate
       end do
       if (check%when <= 0.0_dp .or. s > size(model%steps)) then
-         call report%error(field_place(data, 3), &
-            'no increment ends at this time; the steps end at '// &
+         call report%error(data%place(3), 'no increment ends at this time; the steps end at '// &
             to_text(sum(model%steps%period)))
       else if (model%steps(s)%direct) then
          associate (n => (check%when - start)/model%steps(s)%first_increment)
             if (abs(n - anint(n)) > increment_rounding .and. &
                rest > increment_rounding*model%steps(s)%first_increment) then
-               call report%error(field_place(data, 3), &
-                  'no increment of this DIRECT step ends at this time')
+               call report%error(data%place(3), 'no increment of this DIRECT step ends at this '// &
+                  'time')
             end if
          end associate
       end if
@@ -311,8 +307,8 @@ contains
                call check_deck(card, model, report)
             end if
             call take_from(1, card, 'ROUNDS', report, model%accuracy%rounds)
-            do j = card%first_data, card%last_data
-               call build_target(cards%data(j), estimated, context, model, report)
+            do j = 1, size(card%data)
+               call build_target(card%data(j), estimated, context, model, report)
             end do
          end associate
       end do
@@ -348,36 +344,34 @@ contains
       logical :: valid
 
       errors = report%error_count()
-      call read_quantity(data, estimated, 'no error of '//field_text(data, 1)//' is estimated', &
-         report, i)
+      call read_quantity(data, estimated, 'no error of '//data%text(1)//' is estimated', report, i)
       target%quantity = ''
       if (i > 0) target%quantity = trim(estimated(i)%name)
       valid = .true.
       call need_field(data, 2, 'target', report, target%bound, valid)
-      if (valid .and. target%bound <= 0.0_dp) call report%error(field_place(data, 2), &
-         'the target must be above 0')
-      select case (to_upper(field_text(data, 3)))
+      if (valid .and. target%bound <= 0.0_dp) call report%error(data%place(2), 'the target '// &
+         'must be above 0')
+      select case (to_upper(data%text(3)))
       case ('ABS')
          target%is_relative = .false.
       case ('', 'REL')
          target%is_relative = .true.
-         if (target%bound >= 1.0_dp) call report%error(field_place(data, 2), &
-            'a target relative to the value must be below 1; 0.01 is 1 %')
+         if (target%bound >= 1.0_dp) call report%error(data%place(2), 'a target relative to '// &
+            'the value must be below 1; 0.01 is 1 %')
       case default
-         call report%error(field_place(data, 3), ''''//field_text(data, 3)// &
-            ''' is neither REL nor ABS')
+         call report%error(data%place(3), ''''//data%text(3)//''' is neither REL nor ABS')
       end select
       target%interface = 0
-      if (has_field(data, 4) .and. size(model%contacts) > 0) then
-         target%interface = context%contacts%find(field_text(data, 4))
-         if (target%interface == 0) call report_unknown('contact pair', field_text(data, 4), &
-            context%contacts%known(), field_place(data, 4), report)
+      if (data%has(4) .and. size(model%contacts) > 0) then
+         target%interface = context%contacts%find(data%text(4))
+         if (target%interface == 0) call report_unknown('contact pair', data%text(4), &
+            context%contacts%known(), data%place(4), report)
       end if
       do i = 1, size(model%accuracy%targets)
          associate (other => model%accuracy%targets(i))
             if (other%quantity == target%quantity .and. any(target%interface == [0, &
-               other%interface] .or. other%interface == 0)) call report%error(field_place(data, &
-               1), 'an earlier card has a target of '//target%quantity//' already')
+               other%interface] .or. other%interface == 0)) call report%error(data%place(1), &
+               'an earlier card has a target of '//target%quantity//' already')
          end associate
       end do
       call check_extra(data, 4, 'quantity, target, REL or ABS, contact pair', report)

@@ -2,8 +2,7 @@
 !> whether the deck uses all that it defines, for whole steps; what it does not may be a slip.
 module deck_checks
    use amplitudes, only: amplitude_type, amplitude_value
-   use card_parameters, only: parameter_text
-   use cards, only: cards_type, field_text, keyword_card_type
+   use cards, only: cards_type, keyword_card_type
    use deck_context, only: deck_context_type
    use deck_report, only: deck_report_type
    use elasticity, only: equivalent_poisson
@@ -184,7 +183,7 @@ contains
       logical :: from_library
 
       do k = 1, size(cards%keywords)
-         call add_references(cards, cards%keywords(k), keyword, used)
+         call add_references(cards%keywords(k), keyword, used)
       end do
       from_library = keyword /= 'SURFACE'
       names = ''
@@ -192,7 +191,7 @@ contains
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= keyword) cycle
          if (from_library .and. report%source%file(cards%keywords(k)%place%image) > 1) cycle
-         name = to_upper(parameter_text(cards%keywords(k), 'NAME'))
+         name = to_upper(cards%keywords(k)%text('NAME'))
          if (used%find(name) > 0) cycle
          count = count + 1
          if (count == 1) first = k
@@ -205,8 +204,7 @@ contains
    end subroutine check_names
 
    !> Adds the names that a card refers to, of those that a keyword defines.
-   pure subroutine add_references(cards, card, keyword, names)
-      type(cards_type), intent(in) :: cards
+   pure subroutine add_references(card, keyword, names)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: keyword
       type(name_index_type), intent(inout) :: names
@@ -215,13 +213,13 @@ contains
       fields = 0
       select case (keyword)
       case ('MATERIAL')
-         call add_once(names, parameter_text(card, 'MATERIAL'))
+         call add_once(names, card%text('MATERIAL'))
       case ('SURFACE INTERACTION')
-         call add_once(names, parameter_text(card, 'INTERACTION'))
+         call add_once(names, card%text('INTERACTION'))
       case ('AMPLITUDE')
          if (card%name == 'STEP') return
-         call add_once(names, parameter_text(card, 'AMPLITUDE'))
-         call add_once(names, parameter_text(card, 'FILM AMPLITUDE'))
+         call add_once(names, card%text('AMPLITUDE'))
+         call add_once(names, card%text('FILM AMPLITUDE'))
       case default
          select case (card%name)
          case ('CONTACT PAIR', 'TIE')
@@ -229,12 +227,12 @@ contains
          case ('DLOAD', 'DSLOAD', 'DFLUX', 'DSFLUX', 'FILM', 'SFILM')
             fields = 1
          case default
-            call add_once(names, parameter_text(card, 'SURFACE'))
+            call add_once(names, card%text('SURFACE'))
          end select
       end select
-      do j = card%first_data, card%last_data
+      do j = 1, size(card%data)
          do i = 1, fields
-            call add_once(names, field_text(cards%data(j), i))
+            call add_once(names, card%data(j)%text(i))
          end do
       end do
    end subroutine add_references

@@ -1,6 +1,5 @@
 !> Constants in other units than *OPTIONS, UNITS= says.
 module unit_checks
-   use card_parameters, only: has_parameter, parameter_place
    use cards, only: cards_type, keyword_card_type
    use deck_report, only: deck_report_type
    use heat_checks, only: temperature_range
@@ -127,7 +126,7 @@ contains
       type(unit_type) :: scale
       real(dp) :: least(2)
 
-      if (.not. has_parameter(card, 'ABSOLUTE ZERO')) return
+      if (.not. card%has('ABSOLUTE ZERO')) return
       scale = unit_of(scale_label(model%units%temperature), temperatures)
       least = temperature_range(model)
       associate (given => model%constants%absolute_zero, label => model%units%temperature)
@@ -145,7 +144,7 @@ contains
             return
          end if
       end associate
-      call report%warning(parameter_place(card, 'ABSOLUTE ZERO'), message)
+      call report%warning(card%place_of('ABSOLUTE ZERO'), message)
    end subroutine check_zero
 
    subroutine check_boltzmann(card, unit, model, report)
@@ -155,14 +154,14 @@ contains
       type(deck_report_type), intent(inout) :: report
       real(dp) :: constant
 
-      if (.not. has_parameter(card, 'STEFAN BOLTZMANN') .or. unit <= 0.0_dp) return
+      if (.not. card%has('STEFAN BOLTZMANN') .or. unit <= 0.0_dp) return
       constant = stefan_boltzmann/unit
       associate (given => model%constants%stefan_boltzmann, units => model%units)
          if (abs(given - constant) <= other_digits*constant) return
-         call report%warning(parameter_place(card, 'STEFAN BOLTZMANN'), 'the constant of '// &
-            'Stefan and Boltzmann is '//to_text(given)//', but '//to_text(constant)//' in the '// &
-            'units of *OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '// &
-            units%temperature//'^4); give that, or correct UNITS=')
+         call report%warning(card%place_of('STEFAN BOLTZMANN'), 'the constant of Stefan and '// &
+            'Boltzmann is '//to_text(given)//', but '//to_text(constant)//' in the units of '// &
+            '*OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '//units%temperature// &
+            '^4); give that, or correct UNITS=')
       end associate
    end subroutine check_boltzmann
 

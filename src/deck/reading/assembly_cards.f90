@@ -4,10 +4,10 @@
 !> become INSTANCE.NAME. Nodes and elements of the first instance keep their numbers; those of the
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
-   use card_parameters, only: chosen, has_parameter, parameter_place, parameter_text, surface_kinds
+   use card_parameters, only: chosen, surface_kinds
    use card_values, only: check_extra, take_field
-   use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_place, &
-      field_text, field_type, keyword_card_type, replace_cards
+   use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
+      keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
    use given_cards, only: exact_text
    use kinds, only: dp, long
@@ -59,7 +59,7 @@ contains
       integer :: k, n
 
       if (.not. any([(level_of(cards%keywords(k)%name) /= at_model .or. &
-         has_parameter(cards%keywords(k), 'INSTANCE'), k=1, size(cards%keywords))])) return
+         cards%keywords(k)%has('INSTANCE'), k=1, size(cards%keywords))])) return
       allocate (open%parts(0), open%first(0), open%last(0), open%instances(0))
       open%assembly%name = ''
       open%prefix = '.'
@@ -98,8 +98,9 @@ contains
       do k = 1, size(cards%keywords)
          select case (cards%keywords(k)%name)
          case ('NODE', 'ELEMENT', 'NGEN', 'ELGEN')
-            do j = cards%keywords(k)%first_data, cards%keywords(k)%last_data
-               largest = max(largest, largest_number(cards%keywords(k)%name, cards%data(j)))
+            do j = 1, size(cards%keywords(k)%data)
+               largest = &
+                  max(largest, largest_number(cards%keywords(k)%name, cards%keywords(k)%data(j)))
             end do
          case default
             cycle
@@ -125,7 +126,7 @@ contains
 
       values = [0, 1, 1, 1, 1, 1, 1]
       do i = 1, 7
-         call read_integer(field_text(data, i), number, valid)
+         call read_integer(data%text(i), number, valid)
          if (valid) values(i) = abs(number)
       end do
       largest_number = values(1)
@@ -150,9 +151,9 @@ contains
             case (at_part)
                open%last(size(open%last)) = k
             case (at_instance)
-               call copy_card(cards, card, open%instances(size(open%instances)), all)
+               call copy_card(card, open%instances(size(open%instances)), all)
             case default
-               call take_flat(cards, card, open, all, report)
+               call take_flat(card, open, all, report)
             end select
          else if (index(card%name, 'END ') == 1) then
             if (open%level == level) then
@@ -175,7 +176,7 @@ contains
             else if (level == at_instance) then
                call open_instance(cards, card, open, all, report)
             else
-               open%prefix = to_upper(parameter_text(card, 'NAME'))//'.'
+               open%prefix = to_upper(card%text('NAME'))//'.'
             end if
          end if
       end associate
@@ -186,7 +187,7 @@ contains
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name
 
-      name = parameter_text(card, 'NAME')
+      name = card%text('NAME')
       if (len(name) == 0 .and. .not. card%flawed) call report%error(card%place, '*'//card%name// &
          ' needs NAME=')
    end function name_of
@@ -205,15 +206,15 @@ contains
       instance%name = to_upper(name_of(card, report))
       instance%offset = size(open%instances)*open%step
       do i = 1, size(open%instances)
-         if (open%instances(i)%name == instance%name) call report%error( &
-            parameter_place(card, 'NAME'), 'instance '//instance%name//' is defined twice')
+         if (open%instances(i)%name == instance%name) call report%error(card%place_of('NAME'), &
+            'instance '//instance%name//' is defined twice')
       end do
-      call read_motion(cards, card, report, instance)
+      call read_motion(card, report, instance)
       open%instances = [open%instances, instance]
       if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name// &
          ': numbers of its nodes and elements are those of the part plus '// &
          to_text(instance%offset))
-      part = to_upper(parameter_text(card, 'PART'))
+      part = to_upper(card%text('PART'))
       if (len(part) == 0) then
          if (.not. card%flawed) call report%error(card%place, '*INSTANCE needs PART=')
          return
@@ -221,18 +222,17 @@ contains
       do i = 1, size(open%parts)
          if (open%parts(i)%value /= part) cycle
          do k = open%first(i), open%last(i)
-            call copy_card(cards, cards%keywords(k), instance, all)
+            call copy_card(cards%keywords(k), instance, all)
          end do
          return
       end do
-      call report%missing(parameter_place(card, 'PART'), 'unknown part '//part// &
+      call report%missing(card%place_of('PART'), 'unknown part '//part// &
          nearest_known(part, open%parts), 'part', part)
    end subroutine open_instance
 
    !> Takes a card of the assembly or of the model as it is, but for INSTANCE= of its members,
    !> INSTANCE.number, and the numbers of the assembly's own nodes and elements.
-   subroutine take_flat(cards, card, open, all, report)
-      type(cards_type), intent(in) :: cards
+   subroutine take_flat(card, open, all, report)
       type(keyword_card_type), intent(in) :: card
       type(reading_type), intent(in) :: open
       type(cards_type), intent(inout) :: all
@@ -243,8 +243,8 @@ contains
       first = all%keyword_count + 1
       owner%name = ''
       if (open%level == at_assembly) owner = open%assembly
-      if (has_parameter(card, 'INSTANCE')) call find_owner(card, open, report, owner)
-      call copy_card(cards, card, owner, all)
+      if (card%has('INSTANCE')) call find_owner(card, open, report, owner)
+      call copy_card(card, owner, all)
       associate (copy => all%keywords(first))
          do k = 1, size(copy%parameters)
             ! The set of the assembly, whose members are those of an instance.
@@ -253,11 +253,13 @@ contains
             call members_of_instance(open, copy%parameters(k)%text)
          end do
       end associate
-      do k = all%keywords(first)%first_data, all%data_count
-         do i = 1, size(all%data(k)%fields)
-            call members_of_instance(open, all%data(k)%fields(i)%text)
+      associate (copy => all%keywords(first))
+         do k = 1, copy%data_count
+            do i = 1, size(copy%data(k)%fields)
+               call members_of_instance(open, copy%data(k)%fields(i)%text)
+            end do
          end do
-      end do
+      end associate
    end subroutine take_flat
 
    !> The instance that INSTANCE= of a set names.
@@ -269,7 +271,7 @@ contains
       type(string_type), allocatable :: names(:)
       integer :: i
 
-      owner%name = to_upper(parameter_text(card, 'INSTANCE'))
+      owner%name = to_upper(card%text('INSTANCE'))
       allocate (names(0))
       do i = 1, size(open%instances)
          call append(names, open%instances(i)%name)
@@ -277,13 +279,12 @@ contains
          owner = open%instances(i)
          return
       end do
-      call report%missing(parameter_place(card, 'INSTANCE'), 'unknown instance '//owner%name// &
+      call report%missing(card%place_of('INSTANCE'), 'unknown instance '//owner%name// &
          nearest_known(owner%name, names), 'instance', owner%name)
    end subroutine find_owner
 
    !> Translation; axis and angle of a rotation that follows it. Both stay in the plane.
-   subroutine read_motion(cards, card, report, instance)
-      type(cards_type), intent(in) :: cards
+   subroutine read_motion(card, report, instance)
       type(keyword_card_type), intent(in) :: card           !! *INSTANCE
       type(deck_report_type), intent(inout) :: report       !! receives errors
       type(instance_type), intent(inout) :: instance        !! receives its motion
@@ -295,14 +296,14 @@ contains
 
       x = 0.0_dp
       valid = .true.
-      n = card%last_data - card%first_data + 1
+      n = size(card%data)
       if (n > 2) then
-         call report%error(field_place(cards%data(card%first_data + 2), 1), &
-            '*INSTANCE has a translation and a rotation, two data cards')
+         call report%error(card%data(3)%place(1), '*INSTANCE has a translation and a rotation, '// &
+            'two data cards')
          return
       end if
       do j = 1, n
-         associate (data => cards%data(card%first_data + j - 1))
+         associate (data => card%data(j))
             do i = 1, merge(3, 7, j == 1)
                call take_field(data, i, trim(layouts(j)), report, x(i, j), valid)
             end do
@@ -313,13 +314,12 @@ contains
       if (.not. valid .or. n == 0) return
       instance%shift = x(:2, 1)
       if (abs(x(3, 1)) > negligible*maxval(abs(x(:3, 1)))) call report%error( &
-         field_place(cards%data(card%first_data), 3), 'an instance stays in the plane: its '// &
-         'translation along z must be 0')
+         card%data(1)%place(3), 'an instance stays in the plane: its translation along z must be 0')
       if (n == 1) return
-      associate (axis => x(4:6, 2) - x(1:3, 2), data => cards%data(card%first_data + 1))
+      associate (axis => x(4:6, 2) - x(1:3, 2), data => card%data(2))
          if (norm2(axis(:2)) > negligible*norm2(axis) .or. norm2(axis) <= 0.0_dp) then
-            call report%error(field_place(data, 1), 'an instance stays in the plane: it turns '// &
-               'round an axis along z, such as 0., 0., 0., 0., 0., 1., 90.')
+            call report%error(data%place(1), 'an instance stays in the plane: it turns round '// &
+               'an axis along z, such as 0., 0., 0., 0., 0., 1., 90.')
             return
          end if
          associate (c => cos(x(7, 2)*degree), s => sign(1.0_dp, axis(3))*sin(x(7, 2)*degree))
@@ -331,8 +331,7 @@ contains
 
    !> Adds a card of a part for an instance. Errors that the copy has are reported where the card
    !> of the part is.
-   subroutine copy_card(cards, card, instance, all)
-      type(cards_type), intent(in) :: cards
+   subroutine copy_card(card, instance, all)
       type(keyword_card_type), intent(in) :: card           !! one of its keyword cards
       type(instance_type), intent(in) :: instance
       type(cards_type), intent(inout) :: all                !! receives the copy
@@ -346,10 +345,10 @@ contains
          call prefix(instance, copy%parameters(i)%text)
       end do
       call add_keyword(all, copy)
-      do j = card%first_data, card%last_data
-         fields = cards%data(j)%fields
-         call convert(card, cards%data(j), j - card%first_data + 1, instance, fields)
-         call add_data(all, fields, cards%data(j)%end)
+      do j = 1, size(card%data)
+         fields = card%data(j)%fields
+         call convert(card, card%data(j), j, instance, fields)
+         call add_data(all, fields, card%data(j)%end)
       end do
    end subroutine copy_card
 
@@ -402,7 +401,7 @@ contains
       case ('ELEMENT')
          call prefix_fields(1, n, 1)
       case ('NSET', 'ELSET')
-         if (has_parameter(card, 'GENERATE')) n = min(2, n)
+         if (card%has('GENERATE')) n = min(2, n)
          call prefix_fields(1, n, 1)
       case ('NGEN')
          call prefix_fields(1, min(2, n), 1)
@@ -421,7 +420,7 @@ contains
          ! Points from the origin, or on the axis of a cylindrical system.
          if (.not. instance%moves .or. position > 1) return
          motion = instance
-         if (.not. has_parameter(card, 'SYSTEM')) motion%shift = 0.0_dp
+         if (.not. card%has('SYSTEM')) motion%shift = 0.0_dp
          call move_point(data, 1, motion, fields)
          call move_point(data, 4, motion, fields)
       case default
@@ -450,8 +449,8 @@ contains
 
       do i = 1, 2
          x(i) = 0.0_dp
-         if (len(field_text(data, at + i - 1)) == 0) cycle
-         call read_real(field_text(data, at + i - 1), x(i), valid)
+         if (len(data%text(at + i - 1)) == 0) cycle
+         call read_real(data%text(at + i - 1), x(i), valid)
          if (.not. valid) return
       end do
       x = matmul(instance%turn, x) + instance%shift

@@ -2,7 +2,6 @@
 module card_lines
    use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
-   use card_parameters, only: parameter_text
    use card_typos, only: check_commas, lacks_star
    use cards, only: add_data, add_keyword, add_note, cards_type, extend_data, field_type, &
       keyword_card_type
@@ -203,8 +202,7 @@ contains
          return
       end if
       if (card%name == 'OPTIONS') call take_width(self, card, report)
-      if (card%name == 'ELEMENT') self%element_fields = &
-         element_type_fields(parameter_text(card, 'TYPE'))
+      if (card%name == 'ELEMENT') self%element_fields = element_type_fields(card%text('TYPE'))
       self%keyword = card%name
       if (allocated(self%refusal_of_data)) deallocate(self%refusal_of_data)
       if (allocated(card%refusal_of_data)) self%refusal_of_data = card%refusal_of_data
@@ -305,8 +303,8 @@ contains
 
       completes_element = .false.
       associate (card => cards%keywords(cards%keyword_count))
-         if (card%last_data < card%first_data) return
-         before = size(cards%data(card%last_data)%fields)
+         if (card%data_count == 0) return
+         before = size(card%data(card%data_count)%fields)
       end associate
       completes_element = before < self%element_fields .and. &
          before + filled(fields) == self%element_fields

@@ -3,14 +3,13 @@
 module card_parameters
    use cards, only: keyword_card_type
    use deck_report, only: deck_report_type
-   use deck_source, only: place_type
    use kinds, only: dp
    use spelling, only: known_choices
    use text, only: integer_fault, read_integer, read_real, real_fault, split_words, string_type, &
       to_text, to_upper, without_blanks
    implicit none
    private
-   public :: surface_kinds, has_parameter, lacks_parameter, parameter_text, parameter_place
+   public :: surface_kinds
    public :: need_parameter, take_parameter, choose, chosen, need_choice, is_on, take_positive, &
       take_from
 
@@ -25,51 +24,6 @@ module card_parameters
 
 contains
 
-   pure integer function position(card, name)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name
-
-      do position = size(card%parameters), 1, -1
-         if (card%parameters(position)%name == name) return
-      end do
-   end function position
-
-   !> Whether a card has a parameter.
-   pure logical function has_parameter(card, name)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name              !! name as in the table of keywords
-
-      has_parameter = position(card, name) > 0
-   end function has_parameter
-
-   !> Whether a card is without a parameter, and not because of an error that is reported already.
-   pure logical function lacks_parameter(card, name)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name              !! name as in the table of keywords
-
-      lacks_parameter = .not. (has_parameter(card, name) .or. card%flawed)
-   end function lacks_parameter
-
-   !> Value of a parameter as written; empty where the card does not have it.
-   pure function parameter_text(card, name) result(value)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name              !! name as in the table of keywords
-      character(:), allocatable :: value            !! value without quotes
-
-      value = ''
-      if (has_parameter(card, name)) value = card%parameters(position(card, name))%text
-   end function parameter_text
-
-   !> Place of the value of a parameter; that of the card where it does not have it.
-   pure function parameter_place(card, name) result(place)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name              !! name as in the table of keywords
-      type(place_type) :: place                     !! where the value is
-
-      place = card%place
-      if (has_parameter(card, name)) place = card%parameters(position(card, name))%value_place
-   end function parameter_place
-
    !> Value of a parameter that the card must have.
    subroutine need_parameter(card, name, report, value)
       type(keyword_card_type), intent(in) :: card
@@ -77,8 +31,8 @@ contains
       type(deck_report_type), intent(inout) :: report         !! receives the error
       character(:), allocatable, intent(out) :: value   !! value in upper case; empty after an error
 
-      value = to_upper(parameter_text(card, name))
-      if (lacks_parameter(card, name)) then
+      value = to_upper(card%text(name))
+      if (card%lacks(name)) then
          call report%error(card%place, '*'//card%name//' needs '//name//'=')
       end if
    end subroutine need_parameter
@@ -91,13 +45,13 @@ contains
       integer :: number
       logical :: valid
 
-      if (.not. has_parameter(card, name)) return
-      call read_integer(parameter_text(card, name), number, valid)
+      if (.not. card%has(name)) return
+      call read_integer(card%text(name), number, valid)
       if (valid) then
          value = number
       else
-         call report%error(parameter_place(card, name), ''''//parameter_text(card, name)//''' '// &
-            integer_fault(parameter_text(card, name))//'; expected: value of '//name//'=')
+         call report%error(card%place_of(name), ''''//card%text(name)//''' '// &
+            integer_fault(card%text(name))//'; expected: value of '//name//'=')
       end if
    end subroutine take_integer_parameter
 
@@ -109,13 +63,13 @@ contains
       real(dp) :: number
       logical :: valid
 
-      if (.not. has_parameter(card, name)) return
-      call read_real(parameter_text(card, name), number, valid)
+      if (.not. card%has(name)) return
+      call read_real(card%text(name), number, valid)
       if (valid) then
          value = number
       else
-         call report%error(parameter_place(card, name), ''''//parameter_text(card, name)//''' '// &
-            real_fault(parameter_text(card, name))//'; expected: value of '//name//'=')
+         call report%error(card%place_of(name), ''''//card%text(name)//''' '// &
+            real_fault(card%text(name))//'; expected: value of '//name//'=')
       end if
    end subroutine take_real_parameter
 
@@ -132,7 +86,7 @@ contains
       if (given > 0.0_dp) then
          value = given
       else
-         call report%error(parameter_place(card, name), name//'= must be positive')
+         call report%error(card%place_of(name), name//'= must be positive')
       end if
    end subroutine take_positive
 
@@ -151,10 +105,9 @@ contains
       if (given >= least) then
          value = given
       else if (least == 0) then
-         call report%error(parameter_place(card, name), name//'= must not be negative')
+         call report%error(card%place_of(name), name//'= must not be negative')
       else
-         call report%error(parameter_place(card, name), name//'= must be at least '// &
-            to_text(least))
+         call report%error(card%place_of(name), name//'= must be at least '//to_text(least))
       end if
    end subroutine take_from
 
@@ -170,7 +123,7 @@ contains
       integer :: i
 
       word = ''
-      short = to_upper(without_blanks(parameter_text(card, name)))
+      short = to_upper(without_blanks(card%text(name)))
       if (len(short) == 0) return
       words = split_words(choices)
       do i = 1, size(words)
@@ -198,15 +151,15 @@ contains
       character(:), allocatable, intent(inout) :: choice   !! the word as in choices; else as it was
       character(:), allocatable :: wanted, word
 
-      if (.not. has_parameter(card, name)) return
+      if (.not. card%has(name)) return
       word = chosen(card, name, choices)
       if (len(word) > 0) then
          choice = word
          return
       end if
-      wanted = to_upper(without_blanks(parameter_text(card, name)))
-      call report%error(parameter_place(card, name), 'unknown '//name//'='//wanted//' of *'// &
-         card%name//known_choices(wanted, split_words(choices)))
+      wanted = to_upper(without_blanks(card%text(name)))
+      call report%error(card%place_of(name), 'unknown '//name//'='//wanted//' of *'//card%name// &
+         known_choices(wanted, split_words(choices)))
    end subroutine choose
 
    !> Takes one of several words of a parameter that the card must have; empty after an error.
@@ -230,8 +183,8 @@ contains
       character(:), allocatable :: choice
 
       choice = 'NO'
-      if (has_parameter(card, name)) choice = 'YES'
-      if (len(parameter_text(card, name)) > 0) call choose(card, name, 'YES/NO', report, choice)
+      if (card%has(name)) choice = 'YES'
+      if (len(card%text(name)) > 0) call choose(card, name, 'YES/NO', report, choice)
       is_on = choice == 'YES'
    end function is_on
 

@@ -1,7 +1,7 @@
 !> Values of the fields of a data card, with an error at their place where they are not what they
 !> should be, such as numbers with a decimal comma, which the dialect reads as two fields.
 module card_values
-   use cards, only: data_card_type, field_place, field_text, has_field, is_undefined
+   use cards, only: data_card_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use text, only: integer_fault, is_whole, read_integer, read_real, real_fault
@@ -41,10 +41,10 @@ contains
       if (size(data%fields) <= most) return
       comma = surplus_comma(data, most)
       if (comma == 0) then
-         call report%error(field_place(data, most + 1), 'extra field; the card is '//layout)
+         call report%error(data%place(most + 1), 'extra field; the card is '//layout)
       else
-         call report%explain(field_place(data, comma), 'extra field; the card is '//layout// &
-            '; or a '//decimal_comma_words(data%fields(comma)%text, data%fields(comma + 1)%text))
+         call report%explain(data%place(comma), 'extra field; the card is '//layout//'; or a '// &
+            decimal_comma_words(data%fields(comma)%text, data%fields(comma + 1)%text))
       end if
    end subroutine check_extra
 
@@ -56,7 +56,7 @@ contains
       character(:), allocatable, intent(inout) :: value
       logical, intent(inout) :: valid
 
-      value = field_text(data, i)
+      value = data%text(i)
       if (len(value) == 0) call report_missing(data, i, what, report, valid)
    end subroutine need_text_field
 
@@ -69,7 +69,7 @@ contains
       logical, intent(inout) :: valid
 
       call take_field(data, i, what, report, value, valid)
-      if (.not. has_field(data, i)) call report_missing(data, i, what, report, valid)
+      if (.not. data%has(i)) call report_missing(data, i, what, report, valid)
    end subroutine need_integer_field
 
    subroutine need_real_field(data, i, what, report, value, valid)
@@ -81,7 +81,7 @@ contains
       logical, intent(inout) :: valid
 
       call take_field(data, i, what, report, value, valid)
-      if (.not. has_field(data, i)) call report_missing(data, i, what, report, valid)
+      if (.not. data%has(i)) call report_missing(data, i, what, report, valid)
    end subroutine need_real_field
 
    subroutine report_missing(data, i, what, report, valid)
@@ -92,8 +92,7 @@ contains
       logical, intent(inout) :: valid
 
       valid = .false.
-      if (.not. is_undefined(data, i)) call report%error(field_place(data, i), &
-         'missing field: '//what)
+      if (.not. data%is_undefined(i)) call report%error(data%place(i), 'missing field: '//what)
    end subroutine report_missing
 
    subroutine take_integer_field(data, i, what, report, value, valid)
@@ -106,13 +105,13 @@ contains
       integer :: number
       logical :: is_number
 
-      if (is_undefined(data, i)) valid = .false.
-      if (is_undefined(data, i) .or. .not. has_field(data, i)) return
+      if (data%is_undefined(i)) valid = .false.
+      if (data%is_undefined(i) .or. .not. data%has(i)) return
       call read_integer(data%fields(i)%text, number, is_number)
       if (is_number) then
          value = number
       else
-         call report%error(field_place(data, i), ''''//data%fields(i)%text//''' '// &
+         call report%error(data%place(i), ''''//data%fields(i)%text//''' '// &
             integer_fault(data%fields(i)%text)//'; expected: '//what)
          valid = .false.
       end if
@@ -128,13 +127,13 @@ contains
       real(dp) :: number
       logical :: is_number
 
-      if (is_undefined(data, i)) valid = .false.
-      if (is_undefined(data, i) .or. .not. has_field(data, i)) return
+      if (data%is_undefined(i)) valid = .false.
+      if (data%is_undefined(i) .or. .not. data%has(i)) return
       call read_real(data%fields(i)%text, number, is_number)
       if (is_number) then
          value = number
       else
-         call report%error(field_place(data, i), ''''//data%fields(i)%text//''' '// &
+         call report%error(data%place(i), ''''//data%fields(i)%text//''' '// &
             real_fault(data%fields(i)%text)//'; expected: '//what)
          valid = .false.
       end if
@@ -177,11 +176,10 @@ contains
       if (valid) call take_field(data, first + 3, 'direction z', report, direction(3), valid)
       if (.not. valid) return
       if (abs(direction(3)) > 0.0_dp) then
-         call report%error(field_place(data, first + 3), &
-            'the direction lies in the plane: z must be 0')
+         call report%error(data%place(first + 3), 'the direction lies in the plane: z must be 0')
          valid = .false.
       else if (norm2(direction) <= 0.0_dp) then
-         call report%error(field_place(data, first + 1), 'the direction is zero')
+         call report%error(data%place(first + 1), 'the direction is zero')
          valid = .false.
       else
          vector = magnitude*direction(:2)/norm2(direction)
@@ -242,8 +240,8 @@ contains
       integer, intent(in) :: i                            !! what decimal_comma found
       type(deck_report_type), intent(inout) :: report     !! receives the error
 
-      call report%explain(field_place(data, i), 'a '//decimal_comma_words( &
-         data%fields(i)%text, data%fields(i + 1)%text))
+      call report%explain(data%place(i), 'a '// &
+         decimal_comma_words(data%fields(i)%text, data%fields(i + 1)%text))
    end subroutine report_decimal_comma
 
    !> Message on a decimal comma.
@@ -267,8 +265,8 @@ contains
 
       may_be_decimals = .false.
       if (i < 2) return
-      decimals = field_text(data, i)
-      if (.not. is_whole(field_text(data, i - 1)) .or. verify(decimals, '0') == 0) return
+      decimals = data%text(i)
+      if (.not. is_whole(data%text(i - 1)) .or. verify(decimals, '0') == 0) return
       if (scan(decimals(1:1), '0123456789') == 0 .or. index(decimals, '.') > 0) return
       call read_real(decimals, number, may_be_decimals)
    end function may_be_decimals
@@ -290,9 +288,9 @@ contains
             '. if that is meant'
       end associate
       if (present(group)) then
-         call report%warning(field_place(data, i - 1), message, group)
+         call report%warning(data%place(i - 1), message, group)
       else
-         call report%suspect(field_place(data, i - 1), message)
+         call report%suspect(data%place(i - 1), message)
       end if
    end subroutine check_unneeded
 
@@ -306,7 +304,7 @@ contains
       logical :: is_number
 
       if (.not. may_be_decimals(data, i)) return
-      call read_real(field_text(data, i), temperature, is_number)
+      call read_real(data%text(i), temperature, is_number)
       associate (before => data%fields(i - 1), field => data%fields(i))
          if (temperature >= least_plausible .and. (verify(before%text, '+-0') > 0 .or. &
             field%place%column > before%place%column + len(before%text) + 1)) return

@@ -6,7 +6,6 @@ module cards
    private
    public :: cards_type, keyword_card_type, data_card_type, parameter_type, field_type
    public :: add_keyword, add_data, extend_data, add_note, trim_cards, replace_cards
-   public :: has_field, is_undefined, field_text, field_place
 
    !> One field of a card.
    type :: field_type
@@ -23,25 +22,39 @@ module cards
       type(place_type) :: value_place     !! where its value begins
    end type parameter_type
 
-   !> One keyword card.
-   type :: keyword_card_type
+   !> One data card, continuations included.
+   type :: data_card_type
+      type(field_type), allocatable :: fields(:)   !! its fields, empty ones at its end left out
+      type(place_type) :: end                      !! where a missing field would be
+   contains
+      procedure :: has => has_field
+      procedure :: is_undefined
+      procedure :: text => field_text
+      procedure :: place => field_place
+   end type data_card_type
+
+   !> A keyword card without its data cards.
+   type :: keyword_line_type
       character(:), allocatable :: name                    !! as in the table; empty when unknown
       character(:), allocatable :: meant   !! keyword that a misspelt or refused one stands for
       integer :: known = 0                                 !! index into known_keywords, or 0
       character(:), allocatable :: refusal_of_data         !! the error if data cards follow
       type(place_type) :: place                            !! where it begins
       type(parameter_type), allocatable :: parameters(:)   !! those that are known
-      integer :: first_data = 1                            !! its data cards: index into cards%data
-      integer :: last_data = 0                             !! the last of them
       logical :: data_lost = .false.   !! whether data cards were left out after an error in them
       logical :: flawed = .false.      !! whether a parameter was left out after an error in it
-   end type keyword_card_type
+   contains
+      procedure :: has => has_parameter
+      procedure :: lacks => lacks_parameter
+      procedure :: text => parameter_text
+      procedure :: place_of => parameter_place
+   end type keyword_line_type
 
-   !> One data card, continuations included.
-   type :: data_card_type
-      type(field_type), allocatable :: fields(:)   !! its fields, empty ones at its end left out
-      type(place_type) :: end                      !! where a missing field would be
-   end type data_card_type
+   !> One keyword card with its data cards.
+   type, extends(keyword_line_type) :: keyword_card_type
+      integer :: data_count = 0                            !! data cards, while reading
+      type(data_card_type), allocatable :: data(:)         !! data cards
+   end type keyword_card_type
 
    !> All cards of a deck.
    type :: cards_type
@@ -49,18 +62,16 @@ module cards
       type(string_type), allocatable :: files(:)             !! it and what it includes, as found
       type(string_type), allocatable :: images(:)            !! lines, those of included files too
       type(keyword_card_type), allocatable :: keywords(:)    !! keyword cards
-      type(data_card_type), allocatable :: data(:)           !! data cards
       type(place_type) :: last                               !! last line of the deck
       type(string_type), allocatable :: notes(:)             !! parameters that are not needed
       integer :: keyword_count = 0                           !! keyword cards, while reading
-      integer :: data_count = 0                              !! data cards, while reading
    end type cards_type
 
 contains
 
    !> Whether a data card has a field that is not empty.
    pure logical function has_field(data, i)
-      type(data_card_type), intent(in) :: data
+      class(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
 
       has_field = i <= size(data%fields)
@@ -69,7 +80,7 @@ contains
 
    !> A field as written; empty where the card does not have it.
    pure function field_text(data, i) result(string)
-      type(data_card_type), intent(in) :: data
+      class(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
       character(:), allocatable :: string        !! the field
 
@@ -79,7 +90,7 @@ contains
 
    !> Whether the text of a field is not known, which is reported already.
    pure logical function is_undefined(data, i)
-      type(data_card_type), intent(in) :: data
+      class(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
 
       is_undefined = i <= size(data%fields)
@@ -88,7 +99,7 @@ contains
 
    !> Place of a field; the end of the card where it does not have it.
    pure function field_place(data, i) result(place)
-      type(data_card_type), intent(in) :: data
+      class(data_card_type), intent(in) :: data
       integer, intent(in) :: i                   !! position, from 1
       type(place_type) :: place                  !! where it is
 
@@ -96,19 +107,63 @@ contains
       if (i <= size(data%fields)) place = data%fields(i)%place
    end function field_place
 
-   !> Adds a keyword card.
+   pure integer function position(card, name)
+      class(keyword_line_type), intent(in) :: card
+      character(*), intent(in) :: name
+
+      do position = size(card%parameters), 1, -1
+         if (card%parameters(position)%name == name) return
+      end do
+   end function position
+
+   !> Whether a card has a parameter.
+   pure logical function has_parameter(card, name)
+      class(keyword_line_type), intent(in) :: card
+      character(*), intent(in) :: name              !! name as in the table of keywords
+
+      has_parameter = position(card, name) > 0
+   end function has_parameter
+
+   !> Whether a card is without a parameter, and not because of an error that is reported already.
+   pure logical function lacks_parameter(card, name)
+      class(keyword_line_type), intent(in) :: card
+      character(*), intent(in) :: name              !! name as in the table of keywords
+
+      lacks_parameter = .not. (card%has(name) .or. card%flawed)
+   end function lacks_parameter
+
+   !> Value of a parameter as written; empty where the card does not have it.
+   pure function parameter_text(card, name) result(value)
+      class(keyword_line_type), intent(in) :: card
+      character(*), intent(in) :: name              !! name as in the table of keywords
+      character(:), allocatable :: value            !! value without quotes
+
+      value = ''
+      if (card%has(name)) value = card%parameters(position(card, name))%text
+   end function parameter_text
+
+   !> Place of the value of a parameter; that of the card where it does not have it.
+   pure function parameter_place(card, name) result(place)
+      class(keyword_line_type), intent(in) :: card
+      character(*), intent(in) :: name              !! name as in the table of keywords
+      type(place_type) :: place                     !! where the value is
+
+      place = card%place
+      if (card%has(name)) place = card%parameters(position(card, name))%value_place
+   end function parameter_place
+
+   !> Adds a keyword card, whose data cards are still to come.
    subroutine add_keyword(cards, card)
       type(cards_type), intent(inout) :: cards
-      type(keyword_card_type), intent(in) :: card    !! what is added
+      class(keyword_line_type), intent(in) :: card   !! what is added
 
       if (.not. allocated(cards%keywords)) allocate(cards%keywords(64))
       if (cards%keyword_count == size(cards%keywords)) then
          call resize_keywords(cards%keywords, cards%keyword_count, 2*cards%keyword_count)
       end if
       cards%keyword_count = cards%keyword_count + 1
-      cards%keywords(cards%keyword_count) = card
-      cards%keywords(cards%keyword_count)%first_data = cards%data_count + 1
-      cards%keywords(cards%keyword_count)%last_data = cards%data_count
+      cards%keywords(cards%keyword_count)%keyword_line_type = card
+      allocate (cards%keywords(cards%keyword_count)%data(0))
    end subroutine add_keyword
 
    !> Adds a data card to the last keyword card.
@@ -117,14 +172,14 @@ contains
       type(field_type), allocatable, intent(inout) :: fields(:)   !! fields, handed over
       type(place_type), intent(in) :: end                         !! where a missing field would be
 
-      if (.not. allocated(cards%data)) allocate(cards%data(1024))
-      if (cards%data_count == size(cards%data)) then
-         call resize_data(cards%data, cards%data_count, 2*cards%data_count)
-      end if
-      cards%data_count = cards%data_count + 1
-      call move_alloc(fields, cards%data(cards%data_count)%fields)
-      cards%data(cards%data_count)%end = end
-      cards%keywords(cards%keyword_count)%last_data = cards%data_count
+      associate (card => cards%keywords(cards%keyword_count))
+         if (card%data_count == size(card%data)) then
+            call resize_data(card%data, card%data_count, 2*card%data_count + 4)
+         end if
+         card%data_count = card%data_count + 1
+         call move_alloc(fields, card%data(card%data_count)%fields)
+         card%data(card%data_count)%end = end
+      end associate
    end subroutine add_data
 
    !> Adds fields to the last data card.
@@ -134,18 +189,20 @@ contains
       type(field_type), allocatable :: all(:)
       integer :: i, n
 
-      associate (card => cards%data(cards%data_count))
-         n = size(card%fields)
-         allocate(all(n + count([(len(fields(i)%text) > 0, i=1, size(fields))])))
-         do i = 1, n
-            all(i) = card%fields(i)
-         end do
-         do i = 1, size(fields)
-            if (len(fields(i)%text) == 0) cycle
-            n = n + 1
-            all(n) = fields(i)
-         end do
-         call move_alloc(all, card%fields)
+      associate (keyword => cards%keywords(cards%keyword_count))
+         associate (card => keyword%data(keyword%data_count))
+            n = size(card%fields)
+            allocate(all(n + count([(len(fields(i)%text) > 0, i=1, size(fields))])))
+            do i = 1, n
+               all(i) = card%fields(i)
+            end do
+            do i = 1, size(fields)
+               if (len(fields(i)%text) == 0) cycle
+               n = n + 1
+               all(n) = fields(i)
+            end do
+            call move_alloc(all, card%fields)
+         end associate
       end associate
    end subroutine extend_data
 
@@ -166,22 +223,24 @@ contains
    !> Cuts the lists to what they hold, once reading has ended.
    subroutine trim_cards(cards)
       type(cards_type), intent(inout) :: cards
+      integer :: k
 
       if (.not. allocated(cards%keywords)) allocate(cards%keywords(0))
-      if (.not. allocated(cards%data)) allocate(cards%data(0))
       call resize_keywords(cards%keywords, cards%keyword_count, cards%keyword_count)
-      call resize_data(cards%data, cards%data_count, cards%data_count)
+      do k = 1, cards%keyword_count
+         associate (card => cards%keywords(k))
+            call resize_data(card%data, card%data_count, card%data_count)
+         end associate
+      end do
    end subroutine trim_cards
 
-   !> Puts the keyword and data cards of another list in place of those read; the notes stay.
+   !> Puts the cards of another list in place of those read; the notes stay.
    subroutine replace_cards(cards, others)
       type(cards_type), intent(inout) :: cards
       type(cards_type), intent(inout) :: others       !! its cards move, and are not trimmed yet
 
       call move_alloc(others%keywords, cards%keywords)
-      call move_alloc(others%data, cards%data)
       cards%keyword_count = others%keyword_count
-      cards%data_count = others%data_count
       call trim_cards(cards)
    end subroutine replace_cards
 
@@ -189,9 +248,14 @@ contains
       type(keyword_card_type), allocatable, intent(inout) :: list(:)
       integer, intent(in) :: kept, length
       type(keyword_card_type), allocatable :: other(:)
+      integer :: i
 
       allocate(other(length))
-      other(:kept) = list(:kept)
+      do i = 1, kept
+         other(i)%keyword_line_type = list(i)%keyword_line_type
+         other(i)%data_count = list(i)%data_count
+         call move_alloc(list(i)%data, other(i)%data)
+      end do
       call move_alloc(other, list)
    end subroutine resize_keywords
 

@@ -1,10 +1,9 @@
 !> *NFILL, *NCOPY and *ELCOPY of Abaqus -> the *NODE and *ELEMENT cards that they stand for: nodes
 !> between two sets, and copies of sets.
 module copied_cards
-   use card_parameters, only: choose, has_parameter, lacks_parameter, need_parameter, &
-      parameter_place, parameter_text, take_from, take_parameter, take_positive
+   use card_parameters, only: choose, need_parameter, take_from, take_parameter, take_positive
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: cards_type, data_card_type, field_place, field_text, keyword_card_type
+   use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
       given_type, keep_last, members_of, node_place, position_of, rotation
@@ -23,8 +22,7 @@ contains
 
    !> *NFILL: nodes between those of two sets, in the order of their numbers, at equal distances or,
    !> with BIAS=, at distances of which each is the one behind it times the bias.
-   subroutine fill_nodes(cards, card, nodes, report, all)
-      type(cards_type), intent(in) :: cards
+   subroutine fill_nodes(card, nodes, report, all)
       type(keyword_card_type), intent(in) :: card
       type(given_type), intent(inout) :: nodes          !! nodes so far; receives the new ones
       type(deck_report_type), intent(inout) :: report   !! receives errors
@@ -34,8 +32,8 @@ contains
 
       bias = 1.0_dp
       call take_positive(card, 'BIAS', report, bias)
-      do j = card%first_data, card%last_data
-         call fill_line(card, cards%data(j), bias, nodes, report, all)
+      do j = 1, size(card%data)
+         call fill_line(card, card%data(j), bias, nodes, report, all)
       end do
    end subroutine fill_nodes
 
@@ -62,12 +60,12 @@ contains
       call take_field(data, 4, 'increment', report, step, valid)
       call check_extra(data, 4, 'two sets or nodes, number of intervals, increment', report)
       if (valid .and. (intervals < 1 .or. intervals > most_intervals .or. step < 1)) then
-         call report%error(field_place(data, 3), 'the number of intervals is from 1 to '// &
+         call report%error(data%place(3), 'the number of intervals is from 1 to '// &
             to_text(most_intervals)//', the increment from 1')
          valid = .false.
       else if (valid .and. size(from) /= size(to)) then
-         call report%error(field_place(data, 2), 'the two ends have '//to_text(size(from))// &
-            ' and '//to_text(size(to))//' nodes; give sets of as many nodes')
+         call report%error(data%place(2), 'the two ends have '//to_text(size(from))//' and '// &
+            to_text(size(to))//' nodes; give sets of as many nodes')
          valid = .false.
       end if
       if (.not. valid) then
@@ -102,20 +100,19 @@ contains
       integer :: k, number
       logical :: is_number
 
-      call read_integer(field_text(data, i), number, is_number)
+      call read_integer(data%text(i), number, is_number)
       numbers = [number]
-      if (.not. is_number) numbers = members_of(all, 'NSET', field_text(data, i))
+      if (.not. is_number) numbers = members_of(all, 'NSET', data%text(i))
       numbers = pack(numbers, [(position_of(numbers(k), nodes) > 0, k=1, size(numbers))])
       if (size(numbers) > 0) return
-      call report%error(field_place(data, i), 'no *NODE before this card has node or set '// &
-         to_upper(field_text(data, i)))
+      call report%error(data%place(i), 'no *NODE before this card has node or set '// &
+         to_upper(data%text(i)))
       valid = .false.
    end subroutine end_of_fill
 
    !> *NCOPY: copies of the nodes of a set, shifted and then turned about an axis along z, MULTIPLE=
    !> times, or reflected at a line. A copy that is there already, as on a seam, is that node.
-   subroutine copy_nodes(cards, card, nodes, report, all)
-      type(cards_type), intent(in) :: cards
+   subroutine copy_nodes(card, nodes, report, all)
       type(keyword_card_type), intent(in) :: card
       type(given_type), intent(inout) :: nodes          !! nodes so far; receives the new ones
       type(deck_report_type), intent(inout) :: report   !! receives errors
@@ -129,12 +126,11 @@ contains
 
       valid = .true.
       change = 0
-      if (card%last_data > card%first_data + 1) call report%error(field_place( &
-         cards%data(card%first_data + 2), 1), 'extra data card; *NCOPY has at most 2')
+      if (size(card%data) > 2) call report%error(card%data(3)%place(1), 'extra data card; '// &
+         '*NCOPY has at most 2')
       call take_old_set(card, 'NSET', nodes, all, report, numbers, valid)
       call need_shift(card, 'CHANGE NUMBER', report, change, valid)
-      call read_motion(card, cards%data(card%first_data:card%last_data), report, center, shift, &
-         turn, valid)
+      call read_motion(card, card%data, report, center, shift, turn, valid)
       if (.not. valid) then
          call report%lose('node')
          return
@@ -150,13 +146,13 @@ contains
          if (at > 0) is_there(i) = norm2(node_place(all, nodes, at) - x(:, i)) <= &
             same_place*maxval(abs(x))
       end do
-      associate (data => cards%data(card%first_data))
+      associate (data => card%data(1))
          call add_copies_card(card, 'NODE', 'NSET', '', all)
          do i = 1, size(numbers)
             if (.not. is_there(i)) call add_node_card(data, numbers(i) + change, x(:, i), all, &
                nodes)
          end do
-         if (.not. (any(is_there) .and. has_parameter(card, 'NEW SET'))) return
+         if (.not. (any(is_there) .and. card%has('NEW SET'))) return
          call add_copies_card(card, 'NSET', 'NSET', '', all)
          call add_numbers(data, pack(numbers + change, is_there), all)
       end associate
@@ -175,7 +171,7 @@ contains
 
       kind = ''
       call choose(card, 'REFLECT', 'LINE', report, kind)
-      valid = valid .and. (kind == 'LINE' .or. .not. has_parameter(card, 'REFLECT'))
+      valid = valid .and. (kind == 'LINE' .or. .not. card%has('REFLECT'))
       if (.not. valid) return
       shift = 0.0_dp
       angle = 0.0_dp
@@ -184,14 +180,14 @@ contains
          call read_points(rows(1), report, points, valid)
          associate (along => points(:2, 2) - points(:2, 1))
             if (valid .and. norm2(along) <= 0.0_dp) then
-               call report%error(field_place(rows(1), 1), 'the two points of the line coincide')
+               call report%error(rows(1)%place(1), 'the two points of the line coincide')
                valid = .false.
             end if
             angle = 2.0_dp*atan2(along(2), along(1))
          end associate
          turn = reshape([cos(angle), sin(angle), sin(angle), -cos(angle)], [2, 2])
       else
-         if (lacks_parameter(card, 'SHIFT')) then
+         if (card%lacks('SHIFT')) then
             call report%error(card%place, '*NCOPY needs SHIFT or REFLECT=LINE')
             valid = .false.
          end if
@@ -203,7 +199,7 @@ contains
             call take_field(rows(2), 7, 'angle', report, angle, valid)
             call check_extra(rows(2), 7, 'two points of the axis, angle', report)
             if (valid .and. norm2(points(:2, 2) - points(:2, 1)) > 0.0_dp) call report%error( &
-               field_place(rows(2), 4), 'the axis of the turn must be parallel to z')
+               rows(2)%place(4), 'the axis of the turn must be parallel to z')
             times = 1
             call take_from(1, card, 'MULTIPLE', report, times)
             angle = sign(1.0_dp, points(3, 2) - points(3, 1))*angle*times*degree
@@ -245,7 +241,7 @@ contains
       valid = .true.
       shift = 0
       node_shift = 0
-      if (card%last_data >= card%first_data) call report%error(card%place, '*ELCOPY has no data')
+      if (size(card%data) > 0) call report%error(card%place, '*ELCOPY has no data')
       call take_old_set(card, 'ELSET', elements, all, report, numbers, valid)
       call need_shift(card, 'ELEMENT SHIFT', report, shift, valid)
       call need_shift(card, 'SHIFT NODES', report, node_shift, valid)
@@ -256,12 +252,12 @@ contains
       last_kind = ''
       do i = 1, size(numbers)
          at = position_of(numbers(i), elements)
-         kind = parameter_text(all%keywords(elements%keyword(at)), 'TYPE')
+         kind = all%keywords(elements%keyword(at))%text('TYPE')
          if (kind /= last_kind) call add_copies_card(card, 'ELEMENT', 'ELSET', kind, all)
          last_kind = kind
-         data = all%data(elements%card(at))
+         data = all%keywords(elements%keyword(at))%data(elements%card(at))
          corners = corners_of(data)
-         if (has_parameter(card, 'REFLECT')) corners = reflected(corners)
+         if (card%has('REFLECT')) corners = reflected(corners)
          data%fields = data%fields(:1)
          data%fields(1)%place = card%place
          call add_numbers(data, [numbers(i) + shift, corners + node_shift], all)
@@ -300,8 +296,8 @@ contains
       numbers = members_of(all, keyword, name)
       numbers = pack(numbers, [(position_of(numbers(i), given) > 0, i=1, size(numbers))])
       if (size(numbers) > 0) return
-      call report%error(parameter_place(card, 'OLD SET'), 'no card before this one gives set '// &
-         name//' a node or element')
+      call report%error(card%place_of('OLD SET'), 'no card before this one gives set '//name// &
+         ' a node or element')
       valid = .false.
    end subroutine take_old_set
 
@@ -317,9 +313,8 @@ contains
       errors = report%error_count()
       call take_parameter(card, name, report, shift)
       valid = valid .and. report%error_count() == errors
-      if (lacks_parameter(card, name)) call report%error(card%place, '*'//card%name//' needs '// &
-         name//'=')
-      valid = valid .and. has_parameter(card, name)
+      if (card%lacks(name)) call report%error(card%place, '*'//card%name//' needs '//name//'=')
+      valid = valid .and. card%has(name)
    end subroutine need_shift
 
    !> Adds the keyword card of copies, which are in the set NEW SET=.

@@ -1,9 +1,9 @@
 !> State of the builder beyond the model itself: numbers -> indexes, places for
 !> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
 module deck_context
-   use card_parameters, only: has_parameter, need_parameter, parameter_place, parameter_text
+   use card_parameters, only: need_parameter
    use card_values, only: need_field
-   use cards, only: add_note, cards_type, data_card_type, field_place, keyword_card_type
+   use cards, only: add_note, cards_type, data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: report_twice
@@ -52,6 +52,7 @@ module deck_context
       type(item_index_type) :: member_index
       integer, allocatable :: line_number(:)              !! (lines) numbers of the lines
       integer, allocatable :: line_nodes(:, :)            !! (3, lines) indexes, 0 behind the last
+      type(place_type), allocatable :: line_place(:)      !! (lines) where the line is
       integer, allocatable :: line_kind(:)                !! (lines) drawn_line, ...
       type(set_type), allocatable :: line_sets(:)         !! (element sets) their lines
       type(place_type), allocatable :: element_place(:)   !! (elements) where the element is
@@ -129,8 +130,7 @@ contains
 
       index = 0
       call need_parameter(card, parameter, report, name)
-      if (len(name) > 0) call look_up(noun, name, names, parameter_place(card, parameter), report, &
-         index)
+      if (len(name) > 0) call look_up(noun, name, names, card%place_of(parameter), report, index)
    end subroutine need_named
 
    !> Index of the item that a parameter names, where the card has it; else it stays as it is.
@@ -142,9 +142,8 @@ contains
       type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(inout) :: index                   !! 0 after an error
 
-      if (has_parameter(card, parameter)) call look_up(noun, &
-         to_upper(parameter_text(card, parameter)), names, parameter_place(card, parameter), &
-         report, index)
+      if (card%has(parameter)) call look_up(noun, to_upper(card%text(parameter)), names, &
+         card%place_of(parameter), report, index)
    end subroutine take_named
 
    !> Index of the surface that a field of a data card names; 0 after an error.
@@ -161,8 +160,8 @@ contains
       surface = 0
       valid = .true.
       call need_field(data, position, what, report, name, valid)
-      if (valid) call look_up('surface', to_upper(name), surfaces, field_place(data, position), &
-         report, surface)
+      if (valid) call look_up('surface', to_upper(name), surfaces, data%place(position), report, &
+         surface)
    end subroutine read_surface
 
    !> Index of the item that has a name; 0 after an error.
@@ -234,7 +233,7 @@ contains
       call need_named(card, 'ELSET', 'element set', names, report, set)
       if (set == 0) return
       if (.not. sets(set)%of_lines) return
-      call report_lines(sets(set)%name, parameter_place(card, 'ELSET'), report, valid)
+      call report_lines(sets(set)%name, card%place_of('ELSET'), report, valid)
       set = 0
    end subroutine need_element_set
 
@@ -275,20 +274,19 @@ contains
       end if
       if (target%set > 0) then
          if (sets(target%set)%of_lines) call report_lines(sets(target%set)%name, &
-            field_place(data, position), report, valid)
+            data%place(position), report, valid)
       end if
       if (target%item > 0 .or. target%set > 0) return
       valid = .false.
       if (is_number .or. verify(name, '0123456789') == 0) then
-         call report%missing(field_place(data, position), 'there is no '//numbers%noun//' '// &
-            name, numbers%noun, name)
+         call report%missing(data%place(position), 'there is no '//numbers%noun//' '//name, &
+            numbers%noun, name)
       else if (is_other_kind(numbers%sets, name)) then
-         call report_other_kind(numbers%noun//' set', to_upper(name), &
-            field_place(data, position), report)
+         call report_other_kind(numbers%noun//' set', to_upper(name), data%place(position), report)
       else
          known = numbers%sets%known()
          call report_unknown(numbers%noun//' set', to_upper(name), known(:size(sets)), &
-            field_place(data, position), report)
+            data%place(position), report)
       end if
    end subroutine read_target
 

@@ -1,16 +1,16 @@
 !> Whether the cards of a deck are where they may be, and whether those that every deck needs
 !> are there.
 module deck_structure
-   use card_parameters, only: chosen, has_parameter, parameter_place, parameter_text
-   use cards, only: cards_type, field_place, keyword_card_type
+   use card_parameters, only: chosen
+   use cards, only: cards_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use keywords, only: built, in_model, in_step, keyword_type, known_keywords, not_needed
    use text, only: to_text, to_upper
    implicit none
    private
-   public :: check_structure, cards_of, card_count, data_cards_of, has_stand_in, is_keyword
-   public :: data_cards_behind, report_twice
+   public :: check_structure, cards_of, card_count, data_count, has_stand_in, is_keyword
+   public :: report_twice
 
 contains
 
@@ -33,25 +33,14 @@ contains
       card_count = size(cards_of(cards, name))
    end function card_count
 
-   !> The data cards of all keyword cards of a name, as indexes into the data cards.
-   pure function data_cards_of(cards, name) result(places)
-      type(cards_type), intent(in) :: cards
-      character(*), intent(in) :: name        !! name as in the table of keywords
-      integer, allocatable :: places(:)
-
-      places = data_cards_behind(cards, cards_of(cards, name))
-   end function data_cards_of
-
-   !> The data cards of some keyword cards, as indexes into the data cards.
-   pure function data_cards_behind(cards, keywords) result(places)
+   !> Number of data cards of some keyword cards.
+   pure integer function data_count(cards, keywords)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: keywords(:)      !! indexes into the keyword cards
-      integer, allocatable :: places(:)
-      integer :: i, j
+      integer :: i
 
-      places = [((j, j=cards%keywords(keywords(i))%first_data, &
-         cards%keywords(keywords(i))%last_data), i=1, size(keywords))]
-   end function data_cards_behind
+      data_count = sum([(size(cards%keywords(keywords(i))%data), i=1, size(keywords))])
+   end function data_count
 
    !> Whether there is a keyword card k, and it has this name.
    pure logical function is_keyword(cards, k, name)
@@ -74,10 +63,9 @@ contains
       associate (card => cards%keywords(k))
          do first = 1, k - 1
             if (cards%keywords(first)%name == card%name .and. &
-               to_upper(parameter_text(cards%keywords(first), 'NAME')) == &
-               to_upper(parameter_text(card, 'NAME'))) exit
+               to_upper(cards%keywords(first)%text('NAME')) == to_upper(card%text('NAME'))) exit
          end do
-         call report%twice(parameter_place(card, 'NAME'), what, cards%keywords(first)%place)
+         call report%twice(card%place_of('NAME'), what, cards%keywords(first)%place)
       end associate
    end subroutine report_twice
 
@@ -123,7 +111,7 @@ contains
                told = .false.
                call check_section(card, step_open, after_step, report)
             end if
-            call check_data_count(cards, card, report)
+            call check_data_count(card, report)
          end associate
       end do
       if (step_open) call report%error(cards%keywords(step)%place, 'this step has no *END STEP')
@@ -145,24 +133,24 @@ contains
       select case (card%name)
       case ('NODE', 'NSET')
          if (card%data_lost) call report%lose('node')
-         call report%lose('node set', parameter_text(card, 'NSET'))
+         call report%lose('node set', card%text('NSET'))
       case ('ELEMENT', 'ELSET')
          if (card%data_lost) call report%lose('element')
-         call report%lose('element set', parameter_text(card, 'ELSET'))
+         call report%lose('element set', card%text('ELSET'))
       case ('SURFACE')
-         call report%lose('surface', parameter_text(card, 'NAME'))
+         call report%lose('surface', card%text('NAME'))
       case ('MATERIAL')
-         call report%lose('material', parameter_text(card, 'NAME'))
+         call report%lose('material', card%text('NAME'))
       case ('ELASTIC', 'CONDUCTIVITY', 'DENSITY')
          call report%lose('*'//card%name)
       case ('ORIENTATION')
-         call report%lose('orientation', parameter_text(card, 'NAME'))
+         call report%lose('orientation', card%text('NAME'))
       case ('AMPLITUDE')
-         call report%lose('amplitude', parameter_text(card, 'NAME'))
+         call report%lose('amplitude', card%text('NAME'))
       case ('SURFACE INTERACTION')
-         call report%lose('surface interaction', parameter_text(card, 'NAME'))
+         call report%lose('surface interaction', card%text('NAME'))
       case ('CONTACT PAIR')
-         call report%lose('contact pair', parameter_text(card, 'NAME'))
+         call report%lose('contact pair', card%text('NAME'))
       case ('EQUATION', 'COUPLING', 'KINEMATIC', 'RIGID BODY', 'PRE-TENSION SECTION')
          call report%lose('equation')
       case default
@@ -233,8 +221,7 @@ contains
       end select
    end subroutine check_section
 
-   subroutine check_data_count(cards, card, report)
-      type(cards_type), intent(in) :: cards
+   subroutine check_data_count(card, report)
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
       type(keyword_type) :: known
@@ -242,15 +229,15 @@ contains
       integer :: n
 
       known = known_keywords(card%known)
-      n = card%last_data - card%first_data + 1
+      n = size(card%data)
       if (known%status == built .and. n < known%least_data .and. .not. &
          (says_all(card) .or. card%data_lost)) then
          call report%error(card%place, '*'//card%name//' needs a data card')
       else if (n > known%most_data) then
          most = 'none'
          if (known%most_data > 0) most = 'at most '//to_text(known%most_data)
-         call report%error(field_place(cards%data(card%first_data + known%most_data), 1), &
-            'extra data card; *'//card%name//' has '//most)
+         call report%error(card%data(known%most_data + 1)%place(1), 'extra data '// &
+            'card; *'//card%name//' has '//most)
       end if
    end subroutine check_data_count
 
@@ -259,9 +246,8 @@ contains
    pure logical function says_all(card)
       type(keyword_card_type), intent(in) :: card
 
-      says_all = chosen(card, 'OP', 'MOD/NEW') == 'NEW' .or. (card%name == 'NSET' .and. &
-         (has_parameter(card, 'ELSET') .or. has_parameter(card, 'SURFACE'))) .or. &
-         (card%name == 'FRICTION' .and. has_parameter(card, 'ROUGH'))
+      says_all = chosen(card, 'OP', 'MOD/NEW') == 'NEW' .or. (card%name == 'NSET' .and. (card%has( &
+         'ELSET') .or. card%has('SURFACE'))) .or. (card%name == 'FRICTION' .and. card%has('ROUGH'))
    end function says_all
 
    !> Reports a deck without *STEP at the first card that belongs in one.

@@ -3,7 +3,6 @@
 module fixed_columns
    use card_fields, only: last_text
    use cards, only: field_type, keyword_card_type
-   use card_parameters, only: has_parameter, parameter_place, parameter_text
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use text, only: to_text, to_upper, without_blanks
@@ -32,8 +31,8 @@ contains
       integer :: i, part(4), status
 
       valid = .true.
-      if (.not. has_parameter(card, 'FORMAT')) return
-      words = to_upper(without_blanks(parameter_text(card, 'FORMAT')))
+      if (.not. card%has('FORMAT')) return
+      words = to_upper(without_blanks(card%text('FORMAT')))
       numbers = words
       do i = 1, len(words)
          if (index(digits, words(i:i)) == 0) numbers(i:i) = ' '
@@ -55,10 +54,9 @@ contains
          if (card%name == 'NODE') columns%last = [part(1), columns%last]
          columns%decimals = part(4)
       else
-         call report%error(parameter_place(card, 'FORMAT'), trim(merge( &
-            'a format of *NODE is (Iw,2Fw.d) or (Iw,3Fw.d), as in FORMAT="(I5,2F10.0)"', &
-            'a format of *ELEMENT is (nIw), as in FORMAT="(5I5)"                      ', &
-            card%name == 'NODE')))
+         call report%error(card%place_of('FORMAT'), trim(merge('a format of *NODE is '// &
+            '(Iw,2Fw.d) or (Iw,3Fw.d), as in FORMAT="(I5,2F10.0)"', 'a format of *ELEMENT is '// &
+            '(nIw), as in FORMAT="(5I5)"                      ', card%name == 'NODE')))
       end if
    end subroutine take_format
 

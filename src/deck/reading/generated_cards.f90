@@ -1,9 +1,9 @@
 !> *NGEN, *NFILL, *NCOPY, *ELGEN and *ELCOPY -> the *NODE and *ELEMENT cards that they stand for.
 module generated_cards
-   use card_parameters, only: choose, has_parameter, parameter_text
+   use card_parameters, only: choose
    use card_values, only: check_extra, need_field, take_field
-   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, &
-      has_field, keyword_card_type, replace_cards
+   use cards, only: add_data, add_keyword, cards_type, data_card_type, keyword_card_type, &
+      replace_cards
    use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
    use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
@@ -48,8 +48,8 @@ contains
          associate (card => cards%keywords(k))
             if (.not. generates(card)) then
                call add_keyword(all, card)
-               do j = card%first_data, card%last_data
-                  call add_data(all, cards%data(j)%fields, cards%data(j)%end)
+               do j = 1, size(card%data)
+                  call add_data(all, card%data(j)%fields, card%data(j)%end)
                   if (card%name == 'NODE') call keep_last(all, nodes)
                   if (card%name == 'ELEMENT') call keep_last(all, elements)
                end do
@@ -57,16 +57,16 @@ contains
             end if
             select case (card%name)
             case ('NFILL')
-               call fill_nodes(cards, card, nodes, report, all)
+               call fill_nodes(card, nodes, report, all)
             case ('NCOPY')
-               call copy_nodes(cards, card, nodes, report, all)
+               call copy_nodes(card, nodes, report, all)
             case ('ELCOPY')
                call copy_elements(card, elements, report, all)
             case default
-               do j = card%first_data, card%last_data
-                  if (card%name == 'NGEN') call generate_nodes(card, cards%data(j), nodes, &
-                     report, all)
-                  if (card%name == 'ELGEN') call generate_elements(card, cards%data(j), elements, &
+               do j = 1, size(card%data)
+                  if (card%name == 'NGEN') call generate_nodes(card, card%data(j), nodes, report, &
+                     all)
+                  if (card%name == 'ELGEN') call generate_elements(card, card%data(j), elements, &
                      report, all)
                end do
             end select
@@ -79,7 +79,7 @@ contains
    pure logical function generates(card)
       type(keyword_card_type), intent(in) :: card
 
-      generates = card%name == 'ELCOPY' .or. card%last_data >= card%first_data .and. &
+      generates = card%name == 'ELCOPY' .or. size(card%data) > 0 .and. &
          any(card%name == [character(5) :: 'NGEN', 'ELGEN', 'NFILL', 'NCOPY'])
    end function generates
 
@@ -104,7 +104,7 @@ contains
       end do
       valid = ends(1)%valid .and. ends(2)%valid
       call take_field(data, 3, 'increment', report, step, valid)
-      if (has_parameter(card, 'LINE')) then
+      if (card%has('LINE')) then
          call read_circle(card, data, ends, nodes, all, report, circle)
          valid = valid .and. circle%valid
       else
@@ -119,7 +119,7 @@ contains
       n = (ends(2)%number - ends(1)%number)/step
       if (n > 1) call add_generated(card, 'NODE', '', all)
       do i = 1, n - 1
-         if (has_parameter(card, 'LINE')) then
+         if (card%has('LINE')) then
             from = matmul(rotation(circle%angle*i/n), ends(1)%x - circle%x)
             from = circle%x + from*(1 + (norm2(ends(2)%x - circle%x)/norm2(from) - 1)*i/n)
          else
@@ -148,7 +148,7 @@ contains
       if (node%valid) then
          node%x = node_place(all, nodes, at)
       else
-         call report%error(field_place(data, i), 'no *NODE before this card has node '// &
+         call report%error(data%place(i), 'no *NODE before this card has node '// &
             to_text(node%number))
       end if
    end subroutine need_given_node
@@ -172,7 +172,7 @@ contains
       call choose(card, 'LINE', 'C', report, kind)
       circle%valid = kind == 'C' .and. ends(1)%valid .and. ends(2)%valid
       if (.not. circle%valid) return
-      if (has_field(data, 4)) then
+      if (data%has(4)) then
          call need_given_node(data, 4, 'center', nodes, all, report, circle%given_point_type)
       else
          call take_field(data, 5, 'x of the center', report, circle%x(1), circle%valid)
@@ -190,7 +190,7 @@ contains
          if (normal < 0.0_dp) angle = -modulo(-angle, whole)
       end associate
       if (.not. circle%valid .or. minval(norm2(radii, dim=1)) > 0.0_dp) return
-      call report%error(field_place(data, 4), 'the center of the circle is one of its nodes')
+      call report%error(data%place(4), 'the center of the circle is one of its nodes')
       circle%valid = .false.
    end subroutine read_circle
 
@@ -204,10 +204,10 @@ contains
       valid = step > 0 .and. ends(2) > ends(1)
       if (valid) valid = mod(ends(2) - ends(1), step) == 0
       if (.not. valid) then
-         call report%error(field_place(data, 3), 'increments of '//to_text(step)// &
-            ' do not lead from '//to_text(ends(1))//' to '//to_text(ends(2)))
+         call report%error(data%place(3), 'increments of '//to_text(step)//' do not lead from '// &
+            to_text(ends(1))//' to '//to_text(ends(2)))
       else if ((ends(2) - ends(1))/step > most_generated) then
-         call report%error(field_place(data, 2), too_many)
+         call report%error(data%place(2), too_many)
          valid = .false.
       end if
    end subroutine check_range
@@ -229,16 +229,16 @@ contains
       call read_rows(data, counts, steps, report, valid)
       at = 0
       if (valid) at = position_of(master, elements)
-      if (valid .and. at == 0) call report%error(field_place(data, 1), &
-         'no *ELEMENT before this card has element '//to_text(master))
+      if (valid .and. at == 0) call report%error(data%place(1), 'no *ELEMENT before this card '// &
+         'has element '//to_text(master))
       if (at == 0) then
          call report%lose('element')
          return
       end if
-      corners = corners_of(all%data(elements%card(at)))
+      corners = corners_of(all%keywords(elements%keyword(at))%data(elements%card(at)))
       call add_set(card, 'ELSET', data, [master], all)
       if (product(counts) > 1) call add_generated(card, 'ELEMENT', &
-         parameter_text(all%keywords(elements%keyword(at)), 'TYPE'), all)
+         all%keywords(elements%keyword(at))%text('TYPE'), all)
       do j = 0, counts(2) - 1
          do i = 0, counts(1) - 1
             if (i + j == 0) cycle
@@ -265,14 +265,14 @@ contains
          call take_field(data, 3*i, 'increment of nodes', report, steps(1, i), valid)
          call take_field(data, 3*i + 1, 'increment of elements', report, steps(2, i), valid)
          if (.not. valid .or. counts(i) > 0) cycle
-         call report%error(field_place(data, 3*i - 1), 'the number of '//trim(nouns(i))// &
-            ' must be positive')
+         call report%error(data%place(3*i - 1), 'the number of '//trim(nouns(i))//' must be '// &
+            'positive')
          valid = .false.
       end do
       call check_extra(data, 7, 'master element, elements of a row, increments of nodes and '// &
          'elements, rows, increments of nodes and elements', report)
       if (.not. valid .or. real(counts(1), dp)*counts(2) <= most_generated) return
-      call report%error(field_place(data, 2), too_many)
+      call report%error(data%place(2), too_many)
       valid = .false.
    end subroutine read_rows
 

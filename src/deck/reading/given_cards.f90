@@ -1,9 +1,8 @@
 !> Nodes and elements of the cards so far, and the cards that are added to them where a card stands
 !> for others.
 module given_cards
-   use card_parameters, only: has_parameter, parameter_text
-   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_place, field_text, &
-      field_type, keyword_card_type, parameter_type
+   use cards, only: add_data, add_keyword, cards_type, data_card_type, field_type, &
+      keyword_card_type, parameter_type
    use keywords, only: find_keyword
    use kinds, only: dp
    use name_index, only: name_index_type
@@ -33,7 +32,7 @@ contains
       integer, intent(in) :: numbers(:)             !! of nodes or elements
       type(cards_type), intent(inout) :: all        !! receives the cards
 
-      if (.not. has_parameter(card, keyword)) return
+      if (.not. card%has(keyword)) return
       call add_generated(card, keyword, '', all)
       call add_numbers(data, numbers, all)
    end subroutine add_set
@@ -83,7 +82,7 @@ contains
       allocate(fields(size(words)))
       do i = 1, size(words)
          fields(i)%text = words(i)%value
-         fields(i)%place = field_place(data, 1)
+         fields(i)%place = data%place(1)
       end do
       call add_data(all, fields, data%end)
    end subroutine add_fields
@@ -115,7 +114,7 @@ contains
 
       x = 0.0_dp
       do i = 1, 2
-         call read_real(field_text(all%data(nodes%card(at)), i + 1), x(i), is_number)
+         call read_real(all%keywords(nodes%keyword(at))%data(nodes%card(at))%text(i + 1), x(i), is_number)
       end do
    end function node_place
 
@@ -127,7 +126,9 @@ contains
       integer :: number
       logical :: valid
 
-      call read_integer(field_text(all%data(all%data_count), 1), number, valid)
+      associate (last => all%keywords(all%keyword_count))
+         call read_integer(last%data(last%data_count)%text(1), number, valid)
+      end associate
       if (.not. valid) return
       if (.not. allocated(given%number)) allocate(given%number(0), given%keyword(0), given%card(0))
       if (given%count == size(given%number)) then
@@ -138,7 +139,7 @@ contains
       given%count = given%count + 1
       given%number(given%count) = number
       given%keyword(given%count) = all%keyword_count
-      given%card(given%count) = all%data_count
+      given%card(given%count) = all%keywords(all%keyword_count)%data_count
    end subroutine keep_last
 
    !> Numbers of a set of the cards so far, each once and ascending. What is no number and no set so
@@ -158,16 +159,15 @@ contains
       do while (n < size(names))
          n = n + 1
          do k = 1, all%keyword_count
-            if (to_upper(parameter_text(all%keywords(k), keyword)) /= names(n)%value) cycle
-            call add_members(all, all%keywords(k), keyword, found, known, names)
+            if (to_upper(all%keywords(k)%text(keyword)) /= names(n)%value) cycle
+            call add_members(all%keywords(k), keyword, found, known, names)
          end do
       end do
       numbers = unique_sorted(found%numbers())
    end function members_of
 
    !> Adds the members that one card gives a set: numbers, and names of other sets.
-   subroutine add_members(all, card, keyword, found, known, names)
-      type(cards_type), intent(in) :: all
+   subroutine add_members(card, keyword, found, known, names)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: keyword
       type(number_list_type), intent(inout) :: found
@@ -176,22 +176,22 @@ contains
       integer :: i, j, number, range(3)
       logical :: valid
 
-      do j = card%first_data, card%last_data
-         associate (data => all%data(j))
-            if (card%name == keyword .and. has_parameter(card, 'GENERATE')) then
+      do j = 1, card%data_count
+         associate (data => card%data(j))
+            if (card%name == keyword .and. card%has('GENERATE')) then
                range(3) = 1
                do i = 1, min(size(data%fields), 3)
-                  call read_integer(field_text(data, i), range(i), valid)
+                  call read_integer(data%text(i), range(i), valid)
                end do
                if (range(3) > 0) call found%add([(i, i=range(1), range(2), range(3))])
             else if (card%name == keyword) then
                do i = 1, size(data%fields)
-                  call read_integer(field_text(data, i), number, valid)
+                  call read_integer(data%text(i), number, valid)
                   if (valid) call found%add([number])
-                  if (.not. valid) call add_name(field_text(data, i), known, names)
+                  if (.not. valid) call add_name(data%text(i), known, names)
                end do
             else if (any(card%name == ['NODE   ', 'ELEMENT'])) then
-               call read_integer(field_text(data, 1), number, valid)
+               call read_integer(data%text(1), number, valid)
                if (valid) call found%add([number])
             end if
          end associate
