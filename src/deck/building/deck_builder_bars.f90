@@ -3,8 +3,7 @@ module deck_builder_bars
    use bars, only: bar_type
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, keyword_card_type
-   use deck_context, only: deck_context_type, need_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_types, only: axial_spring, drawn_line, ground_spring, truss
    use equations, only: fill_equation
@@ -21,88 +20,86 @@ module deck_builder_bars
 contains
 
    !> Builds all springs and trusses; sections are known.
-   subroutine build_bars(cards, context, model, report)
+   subroutine build_bars(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context       !! the lines of the deck
+      type(deck_type), intent(inout) :: deck   !! the lines of the deck; receives errors
       type(model_type), intent(inout) :: model             !! receives the bars
-      type(deck_report_type), intent(inout) :: report      !! receives errors
-      type(bar_type) :: of_line(size(context%line_number))
+      type(bar_type) :: of_line(size(deck%line_number))
       integer :: i
       integer, allocatable :: card(:)
 
       card = cards_of(cards, 'SPRING')
       do i = 1, size(card)
-         call read_spring(cards%keywords(card(i)), context, model, report, of_line)
+         call read_spring(cards%keywords(card(i)), deck, model, of_line)
       end do
       card = cards_of(cards, 'SOLID SECTION')
       do i = 1, size(card)
-         call take_section(cards%keywords(card(i)), i, context, model, report, of_line)
+         call take_section(cards%keywords(card(i)), i, deck, model, of_line)
       end do
       do i = 1, size(of_line)
-         if (context%line_kind(i) <= drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle
-         if (.not. report%has_errors()) call report%error(context%line_place(i), &
-            'element '//to_text(context%line_number(i))//' has no '// &
-            trim(merge('*SOLID SECTION', '*SPRING       ', context%line_kind(i) == truss)))
+         if (deck%line_kind(i) <= drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle
+         if (.not. deck%has_errors()) call deck%error(deck%line_place(i), 'element '// &
+            to_text(deck%line_number(i))//' has no '// &
+            trim(merge('*SOLID SECTION', '*SPRING       ', deck%line_kind(i) == truss)))
       end do
       model%bars = pack(of_line, [(allocated(of_line(i)%elongation%node), i=1, size(of_line))])
    end subroutine build_bars
 
    !> Reads one *SPRING: degrees of freedom where its elements have some, then the constant.
-   subroutine read_spring(card, context, model, report, of_line)
+   subroutine read_spring(card, deck, model, of_line)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
       integer :: dof(2), i, k
       real(dp) :: stiffness
       logical :: has_dofs, valid
 
-      call take_lines(card, context, report, members)
+      call take_lines(card, deck, members)
       if (.not. allocated(members)) return
-      valid = size(members) > 0 .and. all(context%line_kind(members) > truss)
-      if (.not. valid) call report%error(card%place_of('ELSET'), 'this set has elements that '// &
-         'are no springs')
-      has_dofs = any(context%line_kind(members) >= ground_spring)
+      valid = size(members) > 0 .and. all(deck%line_kind(members) > truss)
+      if (.not. valid) call deck%error(card%place_of('ELSET'), 'this set has elements that are '// &
+         'no springs')
+      has_dofs = any(deck%line_kind(members) >= ground_spring)
       dof = 0
       if (has_dofs .and. valid) then
          associate (data => card%data(1))
-            do k = 1, maxval(context%line_kind(members)) - ground_spring + 1
-               call need_field(data, k, 'degree of freedom', report, dof(k), valid)
-               associate (ends => context%line_nodes(k, members))
+            do k = 1, maxval(deck%line_kind(members)) - ground_spring + 1
+               call need_field(data, k, 'degree of freedom', deck, dof(k), valid)
+               associate (ends => deck%line_nodes(k, members))
                   if (valid) dof(k) = axis_in_plane(model%transforms, model%mesh%node_sets, &
                      pack(ends, ends > 0), dof(k))
                end associate
                if (valid .and. (dof(k) < 1 .or. dof(k) > 2)) then
-                  call report%error(data%place(k), 'springs act along 1 or 2')
+                  call deck%error(data%place(k), 'springs act along 1 or 2')
                   valid = .false.
                end if
             end do
          end associate
       end if
       if (size(card%data) /= merge(2, 1, has_dofs) .and. valid) then
-         call report%error(card%place, '*SPRING has one constant, behind a card of degrees of '// &
+         call deck%error(card%place, '*SPRING has one constant, behind a card of degrees of '// &
             'freedom for SPRING1 and SPRING2')
          return
       end if
       associate (data => card%data(size(card%data)))
-         call need_field(data, 1, 'spring constant', report, stiffness, valid)
-         call check_extra(data, 1, 'spring constant', report)
+         call need_field(data, 1, 'spring constant', deck, stiffness, valid)
+         call check_extra(data, 1, 'spring constant', deck)
          if (.not. valid) return
          if (stiffness <= 0.0_dp) then
-            call report%error(data%place(1), 'the constant of a spring must be positive')
+            call deck%error(data%place(1), 'the constant of a spring must be positive')
             return
          end if
       end associate
       do i = 1, size(members)
-         associate (bar => of_line(members(i)), nodes => context%line_nodes(:2, members(i)))
-            if (any(nodes(:merge(1, 2, context%line_kind(members(i)) == ground_spring)) == 0)) cycle
+         associate (bar => of_line(members(i)), nodes => deck%line_nodes(:2, members(i)))
+            if (any(nodes(:merge(1, 2, deck%line_kind(members(i)) == ground_spring)) == 0)) cycle
             bar%stiffness = stiffness
             bar%follows_axes = has_dofs
-            select case (context%line_kind(members(i)))
+            select case (deck%line_kind(members(i)))
             case (axial_spring)
-               call set_axial(model, nodes, card, report, bar)
+               call set_axial(model, nodes, card, deck, bar)
             case (ground_spring)
                call fill_equation(nodes(:1), dof(:1), [1.0_dp], bar%elongation)
             case default
@@ -113,31 +110,30 @@ contains
    end subroutine read_spring
 
    !> Gives the trusses of a *SOLID SECTION their stiffness; its thickness is their area.
-   subroutine take_section(card, n, context, model, report, of_line)
+   subroutine take_section(card, n, deck, model, of_line)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n                         ! index of the section
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
       integer :: i
 
-      if (report%has_errors()) return
-      call take_lines(card, context, report, members)
-      members = pack(members, context%line_kind(members) == truss)
+      if (deck%has_errors()) return
+      call take_lines(card, deck, members)
+      members = pack(members, deck%line_kind(members) == truss)
       if (size(members) == 0) return
       associate (material => model%materials(model%sections(n)%material), &
          area => model%sections(n)%thickness)
          if (.not. is_plain(material)) then
-            call report%error(card%place_of('MATERIAL'), 'trusses need *ELASTIC, isotropic, '// &
-               'and properties that are constant')
+            call deck%error(card%place_of('MATERIAL'), 'trusses need *ELASTIC, isotropic, and '// &
+               'properties that are constant')
             return
          end if
          do i = 1, size(members)
-            associate (bar => of_line(members(i)), nodes => context%line_nodes(:2, members(i)))
-               call set_axial(model, nodes, card, report, bar)
-               if (report%has_errors()) return
+            associate (bar => of_line(members(i)), nodes => deck%line_nodes(:2, members(i)))
+               call set_axial(model, nodes, card, deck, bar)
+               if (deck%has_errors()) return
                bar%stiffness = youngs_modulus(material%elasticity)*area/norm2( &
                   model%mesh%coordinates(:, nodes(2)) - model%mesh%coordinates(:, nodes(1)))
                if (.not. material%has_expansion) cycle
@@ -150,29 +146,28 @@ contains
    end subroutine take_section
 
    !> The lines of the set that ELSET= names; unallocated where there is no such set.
-   subroutine take_lines(card, context, report, members)
+   subroutine take_lines(card, deck, members)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, allocatable, intent(out) :: members(:)
       integer :: set
 
-      call need_named(card, 'ELSET', 'element set', context%element_index%sets, report, set)
-      if (set > 0) members = context%line_sets(set)%members
+      call deck%need_named(card, 'ELSET', 'element set', set)
+      if (set > 0) members = deck%line_sets(set)%members
    end subroutine take_lines
 
    !> Makes the distance of two nodes an elongation.
-   subroutine set_axial(model, nodes, card, report, bar)
+   subroutine set_axial(model, nodes, card, deck, bar)
       type(model_type), intent(in) :: model
       integer, intent(in) :: nodes(2)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(bar_type), intent(inout) :: bar
       real(dp) :: along(2)
 
       along = model%mesh%coordinates(:, nodes(2)) - model%mesh%coordinates(:, nodes(1))
       if (all(abs(along) <= 0.0_dp)) then
-         call report%error(card%place, 'nodes '//to_text(model%mesh%node_number(nodes(1)))// &
+         call deck%error(card%place, 'nodes '//to_text(model%mesh%node_number(nodes(1)))// &
             ' and '//to_text(model%mesh%node_number(nodes(2)))//' of an element of this set '// &
             'stand at one place: it has no direction; take SPRING2')
          return

@@ -9,8 +9,7 @@ module deck_builder_contact
       tie_definition_type
    use deck_builder_interactions, only: build_friction
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_context_type, need_named, read_surface, take_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count, is_keyword
    use kinds, only: dp
@@ -24,11 +23,10 @@ module deck_builder_contact
 contains
 
    !> Builds all interfaces, one for each data card, and their clearances.
-   subroutine build_contacts(cards, context, model, report)
+   subroutine build_contacts(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_type), intent(inout) :: deck   !! receives notes and errors
       type(model_type), intent(inout) :: model             !! receives the interfaces
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       type(contact_definition_type) :: common
       integer :: i, k, n
@@ -38,87 +36,81 @@ contains
       n = 0
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
-            call read_parameters(card, context, report, common)
+            call read_parameters(card, deck, common)
             do i = 1, size(card%data)
                n = n + 1
                model%contacts(n) = common
-               call read_faces(card, card%data(i), context, model%mesh, report, model%contacts(n))
-               call check_name(card, model%mesh, context, model%contacts(:n), report)
+               call read_faces(card, card%data(i), deck, model%mesh, model%contacts(n))
+               call check_name(card, model%mesh, deck, model%contacts(:n))
             end do
          end associate
       end do
       places = cards_of(cards, 'CLEARANCE')
       do n = 1, size(places)
-         call build_clearance(cards%keywords(places(n)), context, model%mesh, report, &
-            model%contacts)
+         call build_clearance(cards%keywords(places(n)), deck, model%mesh, model%contacts)
       end do
    end subroutine build_contacts
 
    !> Reads a clearance, for the interface of the two surfaces that it names.
-   subroutine build_clearance(card, context, mesh, report, contacts)
+   subroutine build_clearance(card, deck, mesh, contacts)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       type(contact_definition_type), intent(inout) :: contacts(:)
       character(:), allocatable :: text
       real(dp) :: value
       integer :: i, master, slave
 
-      call need_named(card, 'MASTER', 'surface', context%surfaces, report, master)
-      call need_named(card, 'SLAVE', 'surface', context%surfaces, report, slave)
-      call need_parameter(card, 'VALUE', report, text)
+      call deck%need_named(card, 'MASTER', 'surface', master)
+      call deck%need_named(card, 'SLAVE', 'surface', slave)
+      call need_parameter(card, 'VALUE', deck, text)
       value = 0.0_dp
-      call take_parameter(card, 'VALUE', report, value)
-      call find_contact(slave, master, contacts, mesh, card%place, report, i)
+      call take_parameter(card, 'VALUE', deck, value)
+      call find_contact(slave, master, contacts, mesh, card%place, deck, i)
       if (i == 0) return
-      if (contacts(i)%has_clearance) call report%error(card%place, &
-         'the clearance of contact pair '//contacts(i)%name//' is given twice')
+      if (contacts(i)%has_clearance) call deck%error(card%place, 'the clearance of contact '// &
+         'pair '//contacts(i)%name//' is given twice')
       if (contacts(i)%has_clearance) return
       contacts(i)%has_clearance = .true.
       contacts(i)%clearance = value
    end subroutine build_clearance
 
    !> The interface of two surfaces; 0 after an error, and where a surface is 0.
-   subroutine find_contact(slave, master, contacts, mesh, place, report, contact)
+   subroutine find_contact(slave, master, contacts, mesh, place, deck, contact)
       integer, intent(in) :: slave, master                   !! surfaces
       type(contact_definition_type), intent(in) :: contacts(:)
       type(mesh_type), intent(in) :: mesh
       type(place_type), intent(in) :: place                  !! where they are named
-      type(deck_report_type), intent(inout) :: report        !! receives the error
+      type(deck_type), intent(inout) :: deck   !! receives the error
       integer, intent(out) :: contact
 
       contact = 0
       if (slave == 0 .or. master == 0) return
       contact = findloc(contacts%slave == slave .and. contacts%master == master, .true., dim=1)
-      if (contact == 0) call report%missing(place, 'no *CONTACT PAIR has the slave surface '// &
+      if (contact == 0) call deck%missing(place, 'no *CONTACT PAIR has the slave surface '// &
          mesh%surfaces(slave)%name//' and the master surface '//mesh%surfaces(master)%name, &
          'surface')
    end subroutine find_contact
 
    !> Reads what all data cards of a card have in common.
-   subroutine read_parameters(card, context, report, contact)
+   subroutine read_parameters(card, deck, contact)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(contact_definition_type), intent(out) :: contact
       character(:), allocatable :: pairing
       logical :: is_number
 
-      call need_named(card, 'INTERACTION', 'surface interaction', context%interactions, report, &
-         contact%interaction)
-      call choose(card, 'PAIRING', 'NODES/SURFACES', report, pairing)
+      call deck%need_named(card, 'INTERACTION', 'surface interaction', contact%interaction)
+      call choose(card, 'PAIRING', 'NODES/SURFACES', deck, pairing)
       if (allocated(pairing)) contact%pairing = merge(pairing_nodes, pairing_surfaces, &
          pairing == 'NODES')
       contact%adjusts = card%has('ADJUST')
       if (contact%adjusts) then   ! a distance, or a node set
          call read_real(card%text('ADJUST'), contact%adjusted, is_number)
          if (.not. is_number) then
-            call need_named(card, 'ADJUST', 'node set', context%node_index%sets, report, &
-               contact%adjusted_set)
+            call deck%need_named(card, 'ADJUST', 'node set', contact%adjusted_set)
          else if (contact%adjusted < 0.0_dp) then
-            call report%error(card%place_of('ADJUST'), 'the distance of ADJUST= must not be '// &
-               'negative')
+            call deck%error(card%place_of('ADJUST'), 'the distance of ADJUST= must not be negative')
          end if
       end if
       contact%card = card%place%image
@@ -126,40 +118,38 @@ contains
    end subroutine read_parameters
 
    !> Reads the two surfaces; the slave's name is that of a card without NAME=.
-   subroutine read_faces(card, data, context, mesh, report, faces)
+   subroutine read_faces(card, data, deck, mesh, faces)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       type(contact_definition_type), intent(inout) :: faces
       character(*), parameter :: held = 'let it be the master, and the face of the body the slave'
       character(*), parameter :: tied = 'nodes that it holds are TIE NSET= of *RIGID BODY        '
 
-      call read_surface(data, 1, 'slave surface', context%surfaces, report, faces%slave)
-      call read_surface(data, 2, 'master surface', context%surfaces, report, faces%master)
-      call check_extra(data, 2, 'slave surface, master surface', report)
-      if (faces%slave > 0 .and. faces%slave == faces%master) call report%error(data%place(2), &
+      call deck%need_surface(data, 1, 'slave surface', faces%slave)
+      call deck%need_surface(data, 2, 'master surface', faces%master)
+      call check_extra(data, 2, 'slave surface, master surface', deck)
+      if (faces%slave > 0 .and. faces%slave == faces%master) call deck%error(data%place(2), &
          'a surface cannot be '// &
          trim(merge('tied to itself           ', 'in contact with itself   ', faces%is_tied)))
-      call need_faces(mesh, data%place(1), trim(merge(tied, held, faces%is_tied)), report, &
+      call need_faces(mesh, data%place(1), trim(merge(tied, held, faces%is_tied)), deck, &
          faces%slave)
-      if (faces%is_tied) call need_faces(mesh, data%place(2), trim(tied), report, faces%master)
+      if (faces%is_tied) call need_faces(mesh, data%place(2), trim(tied), deck, faces%master)
       if (card%has('NAME')) return
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
-      if (faces%is_tied) call context%note('*'//card%name//' without NAME=: '//faces%name// &
-         ', the slave surface')
+      if (faces%is_tied) call deck%note('*'//card%name//' without NAME=: '//faces%name//', the '// &
+         'slave surface')
    end subroutine read_faces
 
    !> A name stands for a group of the result file: it is used once, and is one that HDF5
    !> allows for a group. The last pair has the name of its slave surface only if no other has it;
    !> it follows the name of a card with several pairs.
-   subroutine check_name(card, mesh, context, contacts, report)
+   subroutine check_name(card, mesh, deck, contacts)
       type(keyword_card_type), intent(in) :: card
       type(mesh_type), intent(in) :: mesh
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(contact_definition_type), intent(inout) :: contacts(:)
-      type(deck_report_type), intent(inout) :: report
       integer :: n
       logical :: is_taken, several
 
@@ -168,30 +158,29 @@ contains
       if (several .and. contacts(n)%slave > 0) contacts(n)%name = contacts(n)%name//'-'// &
          mesh%surfaces(contacts(n)%slave)%name
       if ((several .or. .not. card%has('NAME')) .and. contacts(n)%master > 0) then
-         is_taken = context%contacts%find(contacts(n)%name) > 0
+         is_taken = deck%contacts%find(contacts(n)%name) > 0
          if (is_taken) contacts(n)%name = contacts(n)%name//'-'// &
             mesh%surfaces(contacts(n)%master)%name
-         call context%note('*CONTACT PAIR '//trim(merge('of several pairs:', &
-            'without NAME=:   ', several))//' '//contacts(n)%name//', '//trim(merge( &
-            'its surfaces     ', 'the slave surface', is_taken)))
+         call deck%note('*CONTACT PAIR '// &
+            trim(merge('of several pairs:', 'without NAME=:   ', several))//' '// &
+            contacts(n)%name//', '//trim(merge('its surfaces     ', 'the slave surface', is_taken)))
       end if
       associate (place => card%place_of('NAME'), name => contacts(n)%name)
-         if (context%contacts%find(name) > 0) call report%error(place, &
-            'contact pair '//name//' is defined twice')
-         call context%contacts%add(name)
-         if (scan(name, '/@') > 0) call report%error(place, &
-            'the name of a contact pair must not contain / or @')
-         if (name == '.' .or. name == '..') call report%error(place, 'a contact pair must not '// &
-            'be named . or ..: its name is a group of the result file')
+         if (deck%contacts%find(name) > 0) call deck%error(place, 'contact pair '//name//' is '// &
+            'defined twice')
+         call deck%contacts%add(name)
+         if (scan(name, '/@') > 0) call deck%error(place, 'the name of a contact pair must not '// &
+            'contain / or @')
+         if (name == '.' .or. name == '..') call deck%error(place, 'a contact pair must not be '// &
+            'named . or ..: its name is a group of the result file')
       end associate
    end subroutine check_name
 
    !> Builds all ties, one for each data card.
-   subroutine build_ties(cards, context, model, report)
+   subroutine build_ties(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_type), intent(inout) :: deck   !! receives notes and errors
       type(model_type), intent(inout) :: model             !! receives the ties
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: i, k, n
 
@@ -200,7 +189,7 @@ contains
       n = 0
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
-            call check_tie_card(card, model%ties(:n), context, report)
+            call check_tie_card(card, model%ties(:n), deck)
             do i = 1, size(card%data)
                n = n + 1
                associate (tie => model%ties(n))
@@ -209,10 +198,10 @@ contains
                   tie%faces%name = card%text('NAME')
                   tie%has_tolerance = card%has('POSITION TOLERANCE')
                   tie%faces%either_side = tie%has_tolerance
-                  call take_parameter(card, 'POSITION TOLERANCE', report, tie%tolerance)
-                  if (tie%tolerance < 0.0_dp) call report%error(card%place_of('POSITION '// &
-                     'TOLERANCE'), 'POSITION TOLERANCE is a distance, 0 or more')
-                  call read_faces(card, card%data(i), context, model%mesh, report, tie%faces)
+                  call take_parameter(card, 'POSITION TOLERANCE', deck, tie%tolerance)
+                  if (tie%tolerance < 0.0_dp) call deck%error(card%place_of('POSITION TOLERANCE'), &
+                     'POSITION TOLERANCE is a distance, 0 or more')
+                  call read_faces(card, card%data(i), deck, model%mesh, tie%faces)
                end associate
             end do
          end associate
@@ -220,34 +209,32 @@ contains
    end subroutine build_ties
 
    !> Checks that a card has a name of its own; no node is moved.
-   subroutine check_tie_card(card, ties, context, report)
+   subroutine check_tie_card(card, ties, deck)
       type(keyword_card_type), intent(in) :: card
       type(tie_definition_type), intent(in) :: ties(:)     ! those of the cards before
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: adjust
       integer :: i
 
       adjust = 'NO'
-      call choose(card, 'ADJUST', 'YES/NO', report, adjust)
-      if (adjust == 'YES') call context%note('*TIE, ADJUST=YES: nodes are not moved, an '// &
-         'initial gap is not closed')
+      call choose(card, 'ADJUST', 'YES/NO', deck, adjust)
+      if (adjust == 'YES') call deck%note('*TIE, ADJUST=YES: nodes are not moved, an initial '// &
+         'gap is not closed')
       if (.not. card%has('NAME')) return
       do i = 1, size(ties)
          if (to_upper(ties(i)%faces%name) /= to_upper(card%text('NAME'))) cycle
-         call report%error(card%place_of('NAME'), ties(i)%faces%title()//' is defined twice')
+         call deck%error(card%place_of('NAME'), ties(i)%faces%title()//' is defined twice')
          return
       end do
    end subroutine check_tie_card
 
    !> Reads one card of a step.
-   subroutine build_contact_change(cards, k, step, model, context, report)
+   subroutine build_contact_change(cards, k, step, model, deck)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k                             !! the keyword card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
       type(model_type), intent(inout) :: model             !! receives the change
-      type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives notes and errors
       type(contact_changes_type) :: changes
       type(friction_change_type) :: change
 
@@ -256,114 +243,111 @@ contains
       select case (cards%keywords(k)%name)
       case ('CHANGE FRICTION')
          if (is_keyword(cards, k + 1, 'FRICTION')) return
-         call report%error(cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION after it')
+         call deck%error(cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION after it')
       case ('FRICTION')
          if (is_keyword(cards, k - 1, 'CHANGE FRICTION')) then
-            call build_friction(cards%keywords(k), context, report, change%friction)
-            call need_named(cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
-               context%interactions, report, change%interaction)
+            call build_friction(cards%keywords(k), deck, change%friction)
+            call deck%need_named(cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
+               change%interaction)
             if (change%interaction == 0) return
             if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
             changes%frictions = [changes%frictions, change]
          else
-            call report%error(cards%keywords(k)%place, &
-               '*FRICTION in a step needs *CHANGE FRICTION, INTERACTION= before it')
+            call deck%error(cards%keywords(k)%place, '*FRICTION in a step needs *CHANGE '// &
+               'FRICTION, INTERACTION= before it')
          end if
       case ('MODEL CHANGE')
-         call change_pairs(cards%keywords(k), context, model, report, changes)
+         call change_pairs(cards%keywords(k), deck, model, changes)
       case default
-         call change_interferences(cards%keywords(k), step, model, context, report, changes)
+         call change_interferences(cards%keywords(k), step, model, deck, changes)
       end select
       model%steps(step)%changes = changes
    end subroutine build_contact_change
 
    !> The interfaces that *MODEL CHANGE removes or adds.
-   subroutine change_pairs(card, context, model, report, changes)
+   subroutine change_pairs(card, deck, model, changes)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(contact_changes_type), intent(inout) :: changes
       type(pair_change_type) :: change
       character(:), allocatable :: kind
       integer :: j
 
-      call need_parameter(card, 'TYPE', report, kind)
+      call need_parameter(card, 'TYPE', deck, kind)
       if (kind == 'ELEMENT') then
-         call report%error(card%place_of('TYPE'), 'TYPE=ELEMENT is refused: elements are the '// &
+         call deck%error(card%place_of('TYPE'), 'TYPE=ELEMENT is refused: elements are the '// &
             'same in all steps')
          return
       end if
-      call choose(card, 'TYPE', 'CONTACT PAIR', report, kind)
+      call choose(card, 'TYPE', 'CONTACT PAIR', deck, kind)
       change%removes = card%has('REMOVE')
       if ((change%removes .eqv. card%has('ADD')) .and. .not. card%flawed) then
-         call report%error(card%place, '*MODEL CHANGE needs either ADD or REMOVE')
+         call deck%error(card%place, '*MODEL CHANGE needs either ADD or REMOVE')
       end if
       if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
       do j = 1, size(card%data)
-         call read_contact(card%data(j), 2, 'slave surface, master surface', context, model, &
-            report, change%contact)
+         call read_contact(card%data(j), 2, 'slave surface, master surface', deck, model, &
+            change%contact)
          if (change%contact > 0) changes%pairs = [changes%pairs, change]
       end do
    end subroutine change_pairs
 
    !> The interferences of some interfaces.
-   subroutine change_interferences(card, step, model, context, report, changes)
+   subroutine change_interferences(card, step, model, deck, changes)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step
       type(model_type), intent(in) :: model
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(contact_changes_type), intent(inout) :: changes
       type(interference_type) :: given
       character(:), allocatable :: kind, operation
       integer :: j
       logical :: valid
 
-      call choose(card, 'TYPE', 'CONTACT PAIR', report, kind)
+      call choose(card, 'TYPE', 'CONTACT PAIR', deck, kind)
       operation = 'MOD'
-      call choose(card, 'OP', 'MOD/NEW', report, operation)
+      call choose(card, 'OP', 'MOD/NEW', deck, operation)
       if (operation == 'NEW') changes%ends_interferences = .true.
       given%shrinks = card%has('SHRINK')
-      if (given%shrinks .and. step > 1) call report%error(card%place_of('SHRINK'), 'SHRINK is '// &
+      if (given%shrinks .and. step > 1) call deck%error(card%place_of('SHRINK'), 'SHRINK is '// &
          'allowed in the first step only: it removes the initial overlaps')
       if (given%shrinks .and. card%has('AMPLITUDE')) then
-         call context%note('*CONTACT INTERFERENCE, SHRINK: AMPLITUDE= is ignored')
+         call deck%note('*CONTACT INTERFERENCE, SHRINK: AMPLITUDE= is ignored')
       else
-         call take_named(card, 'AMPLITUDE', 'amplitude', context%amplitudes, report, &
-            given%amplitude)
+         call deck%take_named(card, 'AMPLITUDE', 'amplitude', given%amplitude)
       end if
       if (.not. allocated(changes%interferences)) allocate (changes%interferences(0))
       do j = 1, size(card%data)
          valid = .true.
          given%value = 1.0_dp
          if (given%shrinks) then
-            call read_contact(card%data(j), 2, 'slave surface, master surface', context, model, &
-               report, given%contact)
+            call read_contact(card%data(j), 2, 'slave surface, master surface', deck, model, &
+               given%contact)
          else
             call read_contact(card%data(j), 3, 'slave surface, master surface, interference', &
-               context, model, report, given%contact)
-            call need_field(card%data(j), 3, 'interference', report, given%value, valid)
+               deck, model, given%contact)
+            call need_field(card%data(j), 3, 'interference', deck, given%value, valid)
          end if
          if (given%contact == 0 .or. .not. valid) cycle
          changes%interferences = [changes%interferences, given]
          if (.not. given%shrinks) call check_clearance(card%data(j), &
-            model%contacts(given%contact), given%value, report)
+            model%contacts(given%contact), given%value, deck)
       end do
    end subroutine change_interferences
 
    !> Warns of an interference against a clearance, but not where it allows a part of an overlap;
    !> and of one that is given twice.
-   subroutine check_clearance(data, contact, interference, report)
+   subroutine check_clearance(data, contact, interference, deck)
       type(data_card_type), intent(in) :: data
       type(contact_definition_type), intent(in) :: contact
       real(dp), intent(in) :: interference
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: meaning
 
       associate (gap => contact%clearance + interference)
          if (abs(contact%clearance - interference) <= 0.0_dp .and. &
-            abs(gap) > 0.0_dp) call report%warning(data%place(3), contact%title()//': the '// &
+            abs(gap) > 0.0_dp) call deck%warning(data%place(3), contact%title()//': the '// &
             'interference and the *CLEARANCE are both '//to_text(interference)//', and the '// &
             'faces begin with the sum, '//to_text(gap)//'; give a gap that stays by *CLEARANCE '// &
             'alone, one that the step takes away by *CONTACT INTERFERENCE alone')
@@ -372,7 +356,7 @@ contains
          meaning = 'the faces touch'
          if (gap < 0.0_dp) meaning = 'the faces overlap by '//to_text(-gap)
          if (gap > 0.0_dp) meaning = 'the faces are '//to_text(gap)//' apart'
-         call report%warning(data%place(3), contact%title()//': the interference '// &
+         call deck%warning(data%place(3), contact%title()//': the interference '// &
             to_text(interference)//' and the *CLEARANCE '//to_text(contact%clearance)//' work '// &
             'against each other: with the sum, '//to_text(gap)//', '//meaning//'; give the gap '// &
             'that is meant by one of them')
@@ -380,20 +364,19 @@ contains
    end subroutine check_clearance
 
    !> The interface of the two surfaces that a data card names; 0 after an error.
-   subroutine read_contact(data, most, layout, context, model, report, contact)
+   subroutine read_contact(data, most, layout, deck, model, contact)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: most                 ! most fields
       character(*), intent(in) :: layout
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: contact
       integer :: master, slave
 
-      call read_surface(data, 1, 'slave surface', context%surfaces, report, slave)
-      call read_surface(data, 2, 'master surface', context%surfaces, report, master)
-      call check_extra(data, most, layout, report)
-      call find_contact(slave, master, model%contacts, model%mesh, data%place(1), report, contact)
+      call deck%need_surface(data, 1, 'slave surface', slave)
+      call deck%need_surface(data, 2, 'master surface', master)
+      call check_extra(data, most, layout, deck)
+      call find_contact(slave, master, model%contacts, model%mesh, data%place(1), deck, contact)
    end subroutine read_contact
 
 end module deck_builder_contact

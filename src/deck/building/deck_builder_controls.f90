@@ -8,8 +8,7 @@ module deck_builder_controls
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
       start_both, start_closed, start_given, start_open, start_previous, start_type, &
       thermal_scheme_type
-   use deck_context, only: deck_context_type, report_unknown, take_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
@@ -56,39 +55,39 @@ module deck_builder_controls
 contains
 
    !> Reads one *FIXED POINT; what it does not say stays as it was.
-   subroutine build_fixed_point(card, report, fixed_point)
+   subroutine build_fixed_point(card, deck, fixed_point)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report         !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       type(fixed_point_type), intent(inout) :: fixed_point    !! receives the controls
       type(fixed_point_type) :: before
       character(:), allocatable :: method
 
       before = fixed_point
       method = ''
-      call choose(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', report, method)
+      call choose(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', deck, method)
       if (method /= '') fixed_point%method = findloc(method_names == method, .true., dim=1)
-      call take_positive(card, 'TOL', report, fixed_point%tolerance)
-      call take_from(1, card, 'MAXITER', report, fixed_point%max_iterations)
-      call take_parameter(card, 'G', report, fixed_point%g)
+      call take_positive(card, 'TOL', deck, fixed_point%tolerance)
+      call take_from(1, card, 'MAXITER', deck, fixed_point%max_iterations)
+      call take_parameter(card, 'G', deck, fixed_point%g)
       if (fixed_point%g <= 0.0_dp .or. fixed_point%g > 1.0_dp) then
-         call report%error(card%place_of('G'), 'G= must be above 0 and at most 1')
+         call deck%error(card%place_of('G'), 'G= must be above 0 and at most 1')
          fixed_point%g = before%g
       end if
-      call take_from(0, card, 'CONSTANT', report, fixed_point%constant)
+      call take_from(0, card, 'CONSTANT', deck, fixed_point%constant)
    end subroutine build_fixed_point
 
    !> Reads what one *RESTART says of writing; where to go on from is read before the steps are.
-   subroutine build_restart(card, report, controls)
+   subroutine build_restart(card, deck, controls)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report         !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       type(step_controls_type), intent(inout) :: controls     !! receives when they are written
       integer :: place
 
       place = 1
       if (card%has('READ')) then
-         call take_from(1, card, 'STEP', report, place)
-         call take_from(1, card, 'INC', report, place)
-         if (card%has('INC') .and. .not. card%has('STEP')) call report%error(card%place_of('INC'), &
+         call take_from(1, card, 'STEP', deck, place)
+         call take_from(1, card, 'INC', deck, place)
+         if (card%has('INC') .and. .not. card%has('STEP')) call deck%error(card%place_of('INC'), &
             'INC= needs STEP=')
       else
          call report_alone('STEP', 'READ')
@@ -97,40 +96,40 @@ contains
       if (.not. card%has('WRITE')) then
          call report_alone('FREQUENCY', 'WRITE')
          call report_alone('OVERLAY', 'WRITE')
-         if (size(card%parameters) == 0 .and. .not. card%flawed) call report%error(card%place, &
+         if (size(card%parameters) == 0 .and. .not. card%flawed) call deck%error(card%place, &
             '*RESTART needs WRITE, to keep states of the run, or READ, to go on from one')
          return
       end if
       controls%restart_frequency = 1
-      call take_from(0, card, 'FREQUENCY', report, controls%restart_frequency)
+      call take_from(0, card, 'FREQUENCY', deck, controls%restart_frequency)
       controls%overlays_restarts = card%has('OVERLAY')
    contains
       subroutine report_alone(parameter, other)
          character(*), intent(in) :: parameter, other
 
-         if (card%has(parameter)) call report%error(card%place_of(parameter), parameter// &
-            ' needs '//other)
+         if (card%has(parameter)) call deck%error(card%place_of(parameter), parameter//' needs '// &
+            other)
       end subroutine report_alone
    end subroutine build_restart
 
    !> Reads one *THERMAL SCHEME; after an error the scheme stays as it was.
-   subroutine build_thermal_scheme(card, report, scheme)
+   subroutine build_thermal_scheme(card, deck, scheme)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report         !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
       character(:), allocatable :: kind
 
       call need_choice(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', &
-         report, kind)
+         deck, kind)
       if (kind == 'FREE') then
          if (size(card%data) == 0) then
-            call report%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
+            call deck%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
          else
-            call build_free_scheme(card%data(1), report, scheme)
+            call build_free_scheme(card%data(1), deck, scheme)
          end if
       else if (size(card%data) > 0 .and. kind /= '') then
-         call report%error(card%data(1)%place(1), 'extra data card; *THERMAL SCHEME has one '// &
-            'with TYPE=FREE only')
+         call deck%error(card%data(1)%place(1), 'extra data card; *THERMAL SCHEME has one with '// &
+            'TYPE=FREE only')
       end if
       if (kind == 'IMPLICIT') scheme = implicit_scheme
       if (kind == 'L-STABLE') scheme = l_stable_scheme
@@ -140,9 +139,9 @@ contains
    end subroutine build_thermal_scheme
 
    !> Coefficients of eq. (3.4) as the card gives them; multiples of them are the same scheme.
-   subroutine build_free_scheme(data, report, scheme)
+   subroutine build_free_scheme(data, deck, scheme)
       type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(thermal_scheme_type), intent(inout) :: scheme
       real(dp) :: given(8), sums(3)
       integer :: i
@@ -151,24 +150,24 @@ contains
       valid = .true.
       given = 0.0_dp
       do i = 1, 8
-         call need_field(data, i, coefficient_names(i), report, given(i), valid)
+         call need_field(data, i, coefficient_names(i), deck, given(i), valid)
       end do
-      call check_extra(data, 8, 'a1, a2, a3, b1, b2, b3, c1, c2', report)
+      call check_extra(data, 8, 'a1, a2, a3, b1, b2, b3, c1, c2', deck)
       if (.not. valid) return
       do i = 1, 3
          if (given(i) > 0.0_dp .or. (i > 1 .and. given(i) >= 0.0_dp)) cycle
-         call report%error(data%place(i), coefficient_names(i)// &
+         call deck%error(data%place(i), coefficient_names(i)// &
             trim(merge(' must be positive    ', ' must not be negative', i == 1)))
          valid = .false.
       end do
       if (.not. valid) return
       sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
       if (given(2) + given(3) <= 0.0_dp) then
-         call report%error(data%place(2), 'a2 + a3 must be positive')
+         call deck%error(data%place(2), 'a2 + a3 must be positive')
       else if (sums(1) <= 0.0_dp) then
-         call report%error(data%place(4), 'a1 + b1 must be positive')
+         call deck%error(data%place(4), 'a1 + b1 must be positive')
       else if (any(abs(sums - sums(1)) > consistent*sums(1))) then
-         call report%error(data%place(1), 'a steady state would not stay: a1 + b1 = '// &
+         call deck%error(data%place(1), 'a steady state would not stay: a1 + b1 = '// &
             to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
             to_text(sums(3))//' must be equal')
       else
@@ -177,39 +176,38 @@ contains
    end subroutine build_free_scheme
 
    !> Reads one *CONTINUATION.
-   subroutine build_continuation(card, report, continuation)
+   subroutine build_continuation(card, deck, continuation)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report              !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       type(continuation_type), intent(out) :: continuation
       character(:), allocatable :: direction
 
       continuation%is_on = .true.
-      call take_from(2, card, 'POINTS', report, continuation%most_points)
-      call take_parameter(card, 'LOWEST', report, continuation%range(1))
-      call take_parameter(card, 'HIGHEST', report, continuation%range(2))
-      call take_positive(card, 'ARC', report, continuation%longest_step)
+      call take_from(2, card, 'POINTS', deck, continuation%most_points)
+      call take_parameter(card, 'LOWEST', deck, continuation%range(1))
+      call take_parameter(card, 'HIGHEST', deck, continuation%range(2))
+      call take_positive(card, 'ARC', deck, continuation%longest_step)
       direction = 'UP'
-      call choose(card, 'DIRECTION', 'UP/DOWN', report, direction)
+      call choose(card, 'DIRECTION', 'UP/DOWN', deck, direction)
       continuation%rises = direction == 'UP'
       if (continuation%range(1) < continuation%range(2)) return
-      call report%error(card%place_of('HIGHEST'), 'LOWEST='//to_text(continuation%range(1))// &
+      call deck%error(card%place_of('HIGHEST'), 'LOWEST='//to_text(continuation%range(1))// &
          ' must be below HIGHEST='//to_text(continuation%range(2))//': the range of load factors')
    end subroutine build_continuation
 
    !> Reads one *START; after an error the start stays as it was.
-   subroutine build_start(card, context, model, report, start)
+   subroutine build_start(card, deck, model, start)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context     !! names of the interfaces
+      type(deck_type), intent(inout) :: deck   !! names of the interfaces; receives errors
       type(model_type), intent(in) :: model              !! its interfaces
-      type(deck_report_type), intent(inout) :: report    !! receives errors
       type(start_type), intent(inout) :: start           !! receives the start
       character(:), allocatable :: from
 
-      call need_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', report, from)
+      call need_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', deck, from)
       if (from == 'GIVEN') then
-         call build_given(card, context, model, report, start)
+         call build_given(card, deck, model, start)
       else if (size(card%data) > 0 .and. from /= '') then
-         call report%error(card%data(1)%place(1), 'extra data card; *START has them with '// &
+         call deck%error(card%data(1)%place(1), 'extra data card; *START has them with '// &
             'FROM=GIVEN only')
       end if
       if (from == 'PREVIOUS') start%kind = start_previous
@@ -219,11 +217,10 @@ contains
    end subroutine build_start
 
    !> Interface and conductance, a card each.
-   subroutine build_given(card, context, model, report, start)
+   subroutine build_given(card, deck, model, start)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(start_type), intent(inout) :: start
       real(dp) :: given(size(model%contacts)), value
       character(:), allocatable :: name
@@ -236,16 +233,15 @@ contains
          associate (data => card%data(k))
             valid = .true.
             name = ''
-            call need_field(data, 1, 'contact pair', report, name, valid)
-            i = context%contacts%find(name)
-            if (valid .and. i == 0) call report_unknown('contact pair', name, &
-               context%contacts%known(), data%place(1), report)
+            call need_field(data, 1, 'contact pair', deck, name, valid)
+            i = 0
+            if (valid) call deck%look_up('contact pair', name, data%place(1), i)
             valid = valid .and. i > 0
             value = 0.0_dp
-            call need_field(data, 2, 'conductance', report, value, valid)
-            call check_extra(data, 2, 'contact pair, conductance', report)
+            call need_field(data, 2, 'conductance', deck, value, valid)
+            call check_extra(data, 2, 'contact pair, conductance', deck)
             if (valid .and. value <= 0.0_dp) then
-               call report%error(data%place(2), 'the conductance must be positive')
+               call deck%error(data%place(2), 'the conductance must be positive')
                valid = .false.
             end if
             if (valid) given(i) = value
@@ -255,7 +251,7 @@ contains
       if (.not. sound) return
       do i = 1, size(given)
          if (given(i) > 0.0_dp) cycle
-         call report%error(card%place, '*START, FROM=GIVEN gives no conductance to '// &
+         call deck%error(card%place, '*START, FROM=GIVEN gives no conductance to '// &
             model%contacts(i)%name)
          return
       end do
@@ -264,12 +260,11 @@ contains
 
    !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
    !> former steps.
-   subroutine build_print(card, is_first, context, mesh, report, requests)
+   subroutine build_print(card, is_first, deck, mesh, requests)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: is_first                     !! first of its keyword in its step
-      type(deck_context_type), intent(inout) :: context   !! whether the sets are sound; notes
+      type(deck_type), intent(inout) :: deck   !! whether the sets are sound; notes; receives errors
       type(mesh_type), intent(in) :: mesh                 !! has the sets
-      type(deck_report_type), intent(inout) :: report     !! receives errors
       type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
       type(print_request_type) :: request
       character(:), allocatable :: choice
@@ -282,77 +277,76 @@ contains
       keys = element_keys
       if (card%name == 'NODE PRINT') then
          keys = node_keys
-         if (names_set(card, 'NSET', context%node_index%sets, context)) call take_named(card, &
-            'NSET', 'node set', context%node_index%sets, report, request%set)
+         if (names_set(card, 'NSET', deck%node_index%sets, deck)) call deck%take_named(card, &
+            'NSET', 'node set', request%set)
          is_known = request%set > 0 .or. card%lacks('NSET')
-         if (is_dropped(card, context, mesh, report, request%set)) is_known = .false.
-         call choose(card, 'TOTALS', 'YES/NO/ONLY', report, choice)
+         if (is_dropped(card, deck, mesh, request%set)) is_known = .false.
+         call choose(card, 'TOTALS', 'YES/NO/ONLY', deck, choice)
          request%each_node = choice /= 'ONLY'
          request%totals = choice /= 'NO'
          choice = 'NO'
       else
-         if (names_set(card, 'ELSET', context%element_index%sets, context)) call take_named( &
-            card, 'ELSET', 'element set', context%element_index%sets, report, request%set)
+         if (names_set(card, 'ELSET', deck%element_index%sets, deck)) call deck%take_named(card, &
+            'ELSET', 'element set', request%set)
          is_known = request%set > 0 .or. card%lacks('ELSET')
          if (request%set > 0) then
             if (mesh%element_sets(request%set)%of_lines) then
-               call report%warning(card%place_of('ELSET'), 'element set '//mesh%element_sets( &
+               call deck%warning(card%place_of('ELSET'), 'element set '//mesh%element_sets( &
                   request%set)%name//' has only lines, springs or trusses: nothing is printed')
                is_known = .false.
             end if
          end if
       end if
-      call choose(card, 'GLOBAL', 'YES/NO', report, choice)
+      call choose(card, 'GLOBAL', 'YES/NO', deck, choice)
       request%local_axes = choice == 'NO'
-      call read_frequency(card, context, report, request%frequency, request%points)
+      call read_frequency(card, deck, request%frequency, request%points)
       allocate(request%quantities(0))
       do j = 1, size(card%data)
          do i = 1, size(card%data(j)%fields)
-            if (card%data(j)%has(i)) call take_quantity(card, card%data(j), i, keys, report, &
+            if (card%data(j)%has(i)) call take_quantity(card, card%data(j), i, keys, deck, &
                request%quantities)
          end do
       end do
-      if (size(card%data) == 0) call context%note('*'//card%name//' without data prints nothing')
+      if (size(card%data) == 0) call deck%note('*'//card%name//' without data prints nothing')
       if (.not. is_known .or. size(request%quantities) == 0) return
       if (.not. allocated(requests)) allocate (requests(0))
       requests = [requests, request]
    end subroutine build_print
 
    !> Whether a set is known, or must be: not where the cards of sets have errors.
-   pure logical function names_set(card, parameter, sets, context)
+   pure logical function names_set(card, parameter, sets, deck)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter
       class(name_index_type), intent(in) :: sets
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(in) :: deck
 
-      names_set = context%sets_sound .or. sets%find(card%text(parameter)) > 0
+      names_set = deck%sets_sound .or. sets%find(card%text(parameter)) > 0
    end function names_set
 
    !> Whether ORDER=1 leaves no node of a set, which is warned of: there is nothing to print.
-   logical function is_dropped(card, context, mesh, report, set)
+   logical function is_dropped(card, deck, mesh, set)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       integer, intent(in) :: set      ! 0 for all nodes
 
       is_dropped = .false.
       if (set == 0) return
       associate (members => mesh%node_sets(set)%members)
          is_dropped = size(members) > 0
-         if (is_dropped) is_dropped = all(context%dropped(members))
+         if (is_dropped) is_dropped = all(deck%dropped(members))
       end associate
-      if (is_dropped) call report%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
+      if (is_dropped) call deck%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
          mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
    end function is_dropped
 
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.
-   subroutine take_quantity(card, data, position, keys, report, quantities)
+   subroutine take_quantity(card, data, position, keys, deck, quantities)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position
       type(print_key_type), intent(in) :: keys(:)
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, allocatable, intent(inout) :: quantities(:)
       type(string_type), allocatable :: known(:)
       character(:), allocatable :: key
@@ -364,34 +358,33 @@ contains
          if (keys(i)%quantity /= not_computed) call append(known, trim(keys(i)%name))
          if (keys(i)%name /= key) cycle
          if (keys(i)%quantity == not_computed) then
-            call report%warning(data%place(position), key//' of *'//card%name//' is not '// &
+            call deck%warning(data%place(position), key//' of *'//card%name//' is not '// &
                'computed: it is not printed')
          else if (.not. any(quantities == keys(i)%quantity)) then
             quantities = [quantities, keys(i)%quantity]
          end if
          return
       end do
-      call report%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
+      call deck%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
          ' is not printed'//known_choices(key, known))
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.
-   subroutine read_frequency(card, context, report, frequency, points)
+   subroutine read_frequency(card, deck, frequency, points)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context    !! *TIME POINTS
-      type(deck_report_type), intent(inout) :: report   !! receives errors
+      type(deck_type), intent(inout) :: deck   !! *TIME POINTS; receives errors
       integer, intent(out) :: frequency                 !! n, at least 0
       type(time_points_type), intent(out) :: points     !! those that the card names
       integer :: i
 
       frequency = 1
       i = 0
-      call take_named(card, 'TIME POINTS', 'time points', context%time_point_names, report, i)
+      call deck%take_named(card, 'TIME POINTS', 'time points', i)
       if (i > 0) then
-         points = context%time_points(i)
+         points = deck%time_points(i)
          frequency = huge(frequency)   ! the last increment is written besides
       end if
-      call take_from(0, card, 'FREQUENCY', report, frequency)
+      call take_from(0, card, 'FREQUENCY', deck, frequency)
    end subroutine read_frequency
 
 end module deck_builder_controls

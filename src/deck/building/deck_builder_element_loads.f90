@@ -4,8 +4,7 @@ module deck_builder_element_loads
    use card_values, only: check_extra, need_field, need_plane_vector, need_vector
    use cards, only: data_card_type
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_context_type, read_surface, read_target
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use element_kinds, only: axisymmetric, element_corner_count, side_nodes
    use kinds, only: dp
    use load_requests, only: request_type
@@ -25,23 +24,22 @@ module deck_builder_element_loads
 contains
 
    !> Takes one data card.
-   subroutine build_element_load(keyword, data, request, film_amplitude, model, context, report)
+   subroutine build_element_load(keyword, data, request, film_amplitude, model, deck)
       character(*), intent(in) :: keyword                  !! DLOAD, DFLUX or FILM
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
       type(model_type), intent(in) :: model                !! mesh and sets
-      type(deck_context_type), intent(inout) :: context    !! receives the requests
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       character(:), allocatable :: label, labels
       integer :: surface
       logical :: valid
 
       valid = .true.
-      surface = named_surface(data, context, model%mesh)
-      if (surface == 0) call read_target(data, 1, context%element_index, &
-         model%mesh%element_sets, report, request%target_type, valid)
-      call need_field(data, 2, 'label of the load', report, label, valid)
+      surface = named_surface(data, deck, model%mesh)
+      if (surface == 0) call deck%need_elements(data, 1, model%mesh%element_sets, &
+         request%target_type, valid)
+      call need_field(data, 2, 'label of the load', deck, label, valid)
       if (len(label) == 0) return
       label = to_upper(label)
       select case (keyword)
@@ -55,91 +53,88 @@ contains
       if (surface > 0) then
          if (label(1:1) == labels(1:1) .and. len(label) <= 2) then
             call build_on_faces(labels(1:2), model%mesh%surfaces(surface), data, request, &
-               film_amplitude, context, report)
+               film_amplitude, deck)
          else
-            call report_label(keyword, label, labels(1:1), data, report)
+            call report_label(keyword, label, labels(1:1), data, deck)
          end if
          return
       else if (index('/'//labels//'/', '/'//label//'/') == 0) then
-         call report_label(keyword, label, labels, data, report)
+         call report_label(keyword, label, labels, data, deck)
          return
       end if
       request%component = 1
       if (scan(label(2:), '1234') == 1) then
          request%component = index('1234', label(2:2))
-         call check_face(data, request, model, context, report, valid)
+         call check_face(data, request, model, deck, valid)
       end if
-      if (label == 'BR' .or. label == 'BZ') call check_axis(data, request, model%mesh, report, &
-         valid)
-      call build_values(label, data, request, film_amplitude, context, report, valid)
+      if (label == 'BR' .or. label == 'BZ') call check_axis(data, request, model%mesh, deck, valid)
+      call build_values(label, data, request, film_amplitude, deck, valid)
    end subroutine build_element_load
 
    !> Index of the surface that a card names in place of an element or a set; else 0.
-   integer function named_surface(data, context, mesh)
+   integer function named_surface(data, deck, mesh)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(in) :: deck
       type(mesh_type), intent(in) :: mesh
       integer :: set
 
-      named_surface = context%surfaces%find(data%text(1))
+      named_surface = deck%surfaces%find(data%text(1))
       if (.not. data%has(1)) named_surface = 0
-      set = context%element_index%sets%find(data%text(1))
+      set = deck%element_index%sets%find(data%text(1))
       if (set == 0) return
       if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
    end function named_surface
 
    !> A load on the faces of a surface, as in CalculiX: a number in the label does not count.
-   subroutine build_on_faces(label, surface, data, request, film_amplitude, context, report)
+   subroutine build_on_faces(label, surface, data, request, film_amplitude, deck)
       character(*), intent(in) :: label                    !! with any number
       type(surface_type), intent(in) :: surface            !! the faces
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
-      type(deck_context_type), intent(inout) :: context    !! receives the requests
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       integer :: i, errors
       logical :: valid
 
-      errors = report%error_count()
+      errors = deck%error_count()
       request%set = 0
       do i = 1, size(surface%faces, 2)
          request%item = surface%faces(1, i)
          request%component = surface%faces(2, i)
          valid = .true.
-         call build_values(label, data, request, film_amplitude, context, report, valid)
-         if (report%error_count() > errors) exit
+         call build_values(label, data, request, film_amplitude, deck, valid)
+         if (deck%error_count() > errors) exit
       end do
    end subroutine build_on_faces
 
    !> The values behind a label.
-   subroutine build_values(label, data, request, film_amplitude, context, report, valid)
+   subroutine build_values(label, data, request, film_amplitude, deck, valid)
       character(*), intent(in) :: label
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
       integer, intent(in) :: film_amplitude
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
 
       select case (label)
       case ('GRAV')
-         call build_gravity(data, request, context, report, valid)
+         call build_gravity(data, request, deck, valid)
       case ('CENTRIF')
-         call build_rotation(data, request, context, report, valid)
+         call build_rotation(data, request, deck, valid)
       case ('F1', 'F2', 'F3', 'F4')
-         call build_film(data, request, film_amplitude, context, report, valid)
+         call build_film(data, request, film_amplitude, deck, valid)
       case default
-         call build_simple_load(label, data, request, context, report, valid)
+         call build_simple_load(label, data, request, deck, valid)
       end select
    end subroutine build_values
 
    !> Reports a label that a keyword does not know.
-   subroutine report_label(keyword, label, labels, data, report)
+   subroutine report_label(keyword, label, labels, data, deck)
       character(*), intent(in) :: keyword                  !! keyword
       character(*), intent(in) :: label                    !! what was written
       character(*), intent(in) :: labels                   !! what is known, separated by slashes
       type(data_card_type), intent(in) :: data             !! the card; the label is field 2
-      type(deck_report_type), intent(inout) :: report      !! receives the error
+      type(deck_type), intent(inout) :: deck   !! receives the error
       type(string_type), allocatable :: names(:)
       integer :: first, slash
 
@@ -150,17 +145,16 @@ contains
          first = first + slash
          if (first > len(labels)) exit
       end do
-      call report%error(data%place(2), 'unknown load '//label//' of *'//keyword// &
+      call deck%error(data%place(2), 'unknown load '//label//' of *'//keyword// &
          known_choices(label, names))
    end subroutine report_label
 
    !> Every element of the request has the side.
-   subroutine check_face(data, request, model, context, report, valid)
+   subroutine check_face(data, request, model, deck, valid)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
-      type(deck_context_type), intent(in) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer, allocatable :: elements(:)
       integer :: i
@@ -168,10 +162,10 @@ contains
       if (.not. valid) return
       elements = request%members(model%mesh%element_sets)
       do i = 1, size(elements)
-         if (.not. context%element_valid(elements(i))) cycle
+         if (.not. deck%element_valid(elements(i))) cycle
          associate (sides => element_corner_count(model%mesh%element_kind(elements(i))))
             if (request%component <= sides) cycle
-            call report%error(data%place(2), 'element '// &
+            call deck%error(data%place(2), 'element '// &
                to_text(model%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
          end associate
          valid = .false.
@@ -180,28 +174,27 @@ contains
    end subroutine check_face
 
    !> Every element of the request is axisymmetric.
-   subroutine check_axis(data, request, mesh, report, valid)
+   subroutine check_axis(data, request, mesh, deck, valid)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(in) :: request
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer, allocatable :: elements(:)
 
       if (.not. valid) return
       elements = request%members(mesh%element_sets)
       valid = all(mesh%element_plane(elements) == axisymmetric)
-      if (.not. valid) call report%error(data%place(2), 'BR and BZ are forces on axisymmetric '// &
+      if (.not. valid) call deck%error(data%place(2), 'BR and BZ are forces on axisymmetric '// &
          'elements; those of a plane are BX and BY')
    end subroutine check_axis
 
    !> A load with one value.
-   subroutine build_simple_load(label, data, request, context, report, valid)
+   subroutine build_simple_load(label, data, request, deck, valid)
       character(*), intent(in) :: label
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       character(:), allocatable :: what
 
@@ -220,18 +213,17 @@ contains
          request%kind = load_face_heat
          what = 'heat flux'
       end select
-      call need_field(data, 3, what, report, request%value, valid)
-      call check_extra(data, 3, 'element or set, '//label//', '//what, report)
-      if (valid) call context%loads%add(request)
+      call need_field(data, 3, what, deck, request%value, valid)
+      call check_extra(data, 3, 'element or set, '//label//', '//what, deck)
+      if (valid) call deck%loads%add(request)
    end subroutine build_simple_load
 
    !> Sink temperature and film coefficient, each with its amplitude.
-   subroutine build_film(data, request, film_amplitude, context, report, valid)
+   subroutine build_film(data, request, film_amplitude, deck, valid)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(in) :: request
       integer, intent(in) :: film_amplitude
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       type(request_type) :: sink, film
 
@@ -240,63 +232,61 @@ contains
       film%amplitude = film_amplitude
       sink%kind = load_film_sink
       film%kind = load_film_coefficient
-      call need_field(data, 3, 'sink temperature', report, sink%value, valid)
-      if (report%has_lost('film property', data%text(4))) return   ! a refused *FILM PROPERTY
-      call need_field(data, 4, 'film coefficient', report, film%value, valid)
-      call check_extra(data, 4, 'element or set, face, sink temperature, film coefficient', report)
+      call need_field(data, 3, 'sink temperature', deck, sink%value, valid)
+      if (deck%has_lost('film property', data%text(4))) return   ! a refused *FILM PROPERTY
+      call need_field(data, 4, 'film coefficient', deck, film%value, valid)
+      call check_extra(data, 4, 'element or set, face, sink temperature, film coefficient', deck)
       if (.not. valid) return
       if (film%value <= 0.0_dp) then
-         call report%error(data%place(4), 'a film coefficient must be positive')
+         call deck%error(data%place(4), 'a film coefficient must be positive')
          return
       end if
-      call context%loads%add(film)
-      call context%loads%add(sink)
+      call deck%loads%add(film)
+      call deck%loads%add(sink)
    end subroutine build_film
 
    !> Magnitude and direction; along x and along y the gravity is a load of its own.
-   subroutine build_gravity(data, request, context, report, valid)
+   subroutine build_gravity(data, request, deck, valid)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
-      type(deck_context_type), intent(inout) :: context    !! receives the requests
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       logical, intent(inout) :: valid                      !! becomes false after an error
       real(dp) :: vector(2)
       integer :: i
 
-      call need_plane_vector(data, 3, report, vector, valid)
-      call check_extra(data, 6, 'element or set, GRAV, magnitude, direction x, y, z', report)
+      call need_plane_vector(data, 3, deck, vector, valid)
+      call check_extra(data, 6, 'element or set, GRAV, magnitude, direction x, y, z', deck)
       if (.not. valid) return
       request%kind = load_gravity
       do i = 1, 2
          if (abs(vector(i)) <= 0.0_dp) cycle
          request%component = i
          request%value = vector(i)
-         call context%loads%add(request)
+         call deck%loads%add(request)
       end do
    end subroutine build_gravity
 
    !> Speed squared, a point and the direction of the axis: the y axis, or one along z, round which
    !> a plane turns. Round a point (x0, y0) the force is that round the origin less (x0, y0) times
    !> the density, which makes four loads of a place.
-   subroutine build_rotation(data, request, context, report, valid)
+   subroutine build_rotation(data, request, deck, valid)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
-      type(deck_context_type), intent(inout) :: context    !! receives the requests
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       logical, intent(inout) :: valid                      !! becomes false after an error
       real(dp) :: point(3), direction(3), values(4)
       integer :: i
 
-      call need_field(data, 3, 'speed squared', report, request%value, valid)
-      call need_vector(data, 4, 'point of the axis', report, point, valid)
-      call need_vector(data, 7, 'direction of the axis', report, direction, valid)
-      call check_extra(data, 9, &
-         'element or set, CENTRIF, speed squared, point x, y, z, direction x, y, z', report)
+      call need_field(data, 3, 'speed squared', deck, request%value, valid)
+      call need_vector(data, 4, 'point of the axis', deck, point, valid)
+      call need_vector(data, 7, 'direction of the axis', deck, direction, valid)
+      call check_extra(data, 9, 'element or set, CENTRIF, speed squared, point x, y, z, '// &
+         'direction x, y, z', deck)
       if (.not. valid) return
       if (request%value < 0.0_dp) then
-         call report%error(data%place(3), 'the square of a speed is not negative')
+         call deck%error(data%place(3), 'the square of a speed is not negative')
       else if (norm2(direction) <= 0.0_dp) then
-         call report%error(data%place(7), 'the direction is zero')
+         call deck%error(data%place(7), 'the direction is zero')
       else if (norm2(direction(:2)) <= 0.0_dp) then
          request%kind = load_centrifugal
          values(1:2) = request%value
@@ -304,101 +294,99 @@ contains
          do i = 1, 4
             request%component = i
             request%value = values(i)
-            call context%loads%add(request)
+            call deck%loads%add(request)
          end do
       else if (norm2(direction([1, 3])) > 0.0_dp) then
-         call report%error(data%place(7), 'the axis must be the y axis, or along z')
+         call deck%error(data%place(7), 'the axis must be the y axis, or along z')
       else if (norm2(point([1, 3])) > 0.0_dp) then
-         call report%error(data%place(4), 'the axis must be the y axis: x and z are 0 on it')
+         call deck%error(data%place(4), 'the axis must be the y axis: x and z are 0 on it')
       else
          request%kind = load_centrifugal
          request%component = centrifugal_round
-         call context%loads%add(request)
+         call deck%loads%add(request)
       end if
    end subroutine build_rotation
 
    !> Takes one data card.
-   subroutine build_surface_load(keyword, data, request, film_amplitude, model, context, report)
+   subroutine build_surface_load(keyword, data, request, film_amplitude, model, deck)
       character(*), intent(in) :: keyword                  !! DSLOAD, DSFLUX or SFILM
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
       type(model_type), intent(in) :: model                !! surfaces
-      type(deck_context_type), intent(inout) :: context    !! receives the requests
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       character(:), allocatable :: advice, label, labels
       real(dp) :: vector(2)
       integer :: errors, i, surface
       logical :: valid
 
       valid = .true.
-      errors = report%error_count()
+      errors = deck%error_count()
       advice = 'load its reference node by *CLOAD'
       if (keyword /= 'DSLOAD') advice = 'prescribe the temperature of its reference node'
-      call read_surface(data, 1, 'surface', context%surfaces, report, surface)
-      call need_faces(model%mesh, data%place(1), advice, report, surface)
+      call deck%need_surface(data, 1, 'surface', surface)
+      call need_faces(model%mesh, data%place(1), advice, deck, surface)
       valid = surface > 0
       select case (keyword)
       case ('DSFLUX')
          labels = 'S'
-         call check_extra(data, 3, 'surface, S, heat flux', report)
+         call check_extra(data, 3, 'surface, S, heat flux', deck)
       case ('SFILM')
          labels = 'F'
-         call check_extra(data, 4, 'surface, F, sink temperature, film coefficient', report)
+         call check_extra(data, 4, 'surface, F, sink temperature, film coefficient', deck)
       case default
          labels = 'P/TRVEC/TRSHR'
       end select
-      call need_field(data, 2, labels, report, label, valid)
+      call need_field(data, 2, labels, deck, label, valid)
       if (len(label) == 0) return
       label = to_upper(label)
       request%set = 0
       if (index('/'//labels//'/', '/'//label//'/') == 0) then
-         call report_label(keyword, label, labels, data, report)
+         call report_label(keyword, label, labels, data, deck)
          return
       end if
       select case (label)
       case ('P')
-         call need_field(data, 3, 'pressure', report, request%value, valid)
-         call check_extra(data, 3, 'surface, P, pressure', report)
+         call need_field(data, 3, 'pressure', deck, request%value, valid)
+         call check_extra(data, 3, 'surface, P, pressure', deck)
          request%kind = load_pressure
-         if (valid) call add_faces(model%mesh%surfaces(surface), request, 1, 0, context)
+         if (valid) call add_faces(model%mesh%surfaces(surface), request, 1, 0, deck)
       case ('TRVEC')
-         call need_plane_vector(data, 3, report, vector, valid)
-         call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', report)
+         call need_plane_vector(data, 3, deck, vector, valid)
+         call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', deck)
          request%kind = load_traction
          do i = 1, merge(2, 0, valid)
             request%value = vector(i)
-            call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, context)
+            call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, deck)
          end do
       case ('TRSHR')
-         call need_plane_vector(data, 3, report, vector, valid)
-         call check_extra(data, 6, 'surface, TRSHR, magnitude, direction x, y, z', report)
+         call need_plane_vector(data, 3, deck, vector, valid)
+         call check_extra(data, 6, 'surface, TRSHR, magnitude, direction x, y, z', deck)
          request%kind = load_traction
          if (valid) call add_shear(model%mesh, model%mesh%surfaces(surface), vector, data, &
-            request, context, report)
+            request, deck)
       case default
-         if (surface == 0 .or. report%error_count() > errors) return
-         call build_on_faces(label//'1', model%mesh%surfaces(surface), data, &
-            request, film_amplitude, context, report)
+         if (surface == 0 .or. deck%error_count() > errors) return
+         call build_on_faces(label//'1', model%mesh%surfaces(surface), data, request, &
+            film_amplitude, deck)
       end select
    end subroutine build_surface_load
 
    !> Tractions of one magnitude along straight sides, in the sense of a vector.
-   subroutine add_shear(mesh, surface, vector, data, request, context, report)
+   subroutine add_shear(mesh, surface, vector, data, request, deck)
       type(mesh_type), intent(in) :: mesh
       type(surface_type), intent(in) :: surface
       real(dp), intent(in) :: vector(2)                    ! of that magnitude
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: nodes(:)
       real(dp) :: chord(2), bow(2), along
       integer :: i, j, n
 
       do i = 1, size(surface%faces, 2)
          associate (element => surface%faces(1, i), face => surface%faces(2, i))
-            if (.not. context%element_valid(element)) cycle
+            if (.not. deck%element_valid(element)) cycle
             nodes = mesh%element_nodes(side_nodes(mesh%element_kind(element), face), element)
             n = size(nodes)
             chord = mesh%coordinates(:, nodes(n)) - mesh%coordinates(:, nodes(1))
@@ -406,36 +394,36 @@ contains
             bow = mesh%coordinates(:, nodes(n - 1)) - mesh%coordinates(:, nodes(1))
             along = dot_product(chord, vector)
             if (abs(chord(1)*bow(2) - chord(2)*bow(1)) > straight*norm2(bow)) then
-               call report%error(data%place(2), 'TRSHR acts on straight sides, but that of '// &
+               call deck%error(data%place(2), 'TRSHR acts on straight sides, but that of '// &
                   'element '//to_text(mesh%element_number(element))//' is curved; give TRVEC')
                return
             else if (abs(along) <= straight*norm2(vector) .and. norm2(vector) > 0.0_dp) then
-               call report%error(data%place(4), 'the direction is normal to the side of '// &
-                  'element '//to_text(mesh%element_number(element)))
+               call deck%error(data%place(4), 'the direction is normal to the side of element '// &
+                  to_text(mesh%element_number(element)))
                return
             end if
             do j = 1, 2
                request%item = element
                request%component = 2*face + j - 2
                request%value = sign(norm2(vector), along)*chord(j)
-               call context%loads%add(request)
+               call deck%loads%add(request)
             end do
          end associate
       end do
    end subroutine add_shear
 
    !> One request a face, its component a multiple of the face's number and an offset.
-   subroutine add_faces(surface, request, multiple, offset, context)
+   subroutine add_faces(surface, request, multiple, offset, deck)
       type(surface_type), intent(in) :: surface
       type(request_type), intent(inout) :: request
       integer, intent(in) :: multiple, offset
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       integer :: i
 
       do i = 1, size(surface%faces, 2)
          request%item = surface%faces(1, i)
          request%component = multiple*surface%faces(2, i) + offset
-         call context%loads%add(request)
+         call deck%loads%add(request)
       end do
    end subroutine add_faces
 

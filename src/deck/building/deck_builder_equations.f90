@@ -6,8 +6,7 @@ module deck_builder_equations
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use equations, only: coupling_type, equation_type
-   use deck_context, only: deck_context_type, need_named, read_target
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: card_count, cards_of, is_keyword
    use kinds, only: dp
@@ -36,11 +35,10 @@ module deck_builder_equations
 contains
 
    !> Builds all equations.
-   subroutine build_equations(cards, context, model, report)
+   subroutine build_equations(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context       !! numbers -> indexes
+      type(deck_type), intent(inout) :: deck   !! numbers -> indexes; receives errors
       type(model_type), intent(inout) :: model             !! receives the equations
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(term_type), allocatable :: terms(:)
       integer, allocatable :: places(:)
       type(equation_type), allocatable :: list(:)   ! (capacity)
@@ -55,12 +53,12 @@ contains
             data = 1
             do while (data <= size(card%data))
                first = data
-               call read_terms(card, data, context, model, report, terms)
+               call read_terms(card, data, deck, model, terms)
                valid = allocated(terms)
-               if (valid) call check_terms(terms, model, report, valid)
-               if (valid) call add_equations(terms, card%data(first)%place(1), model, report, &
-                  list, count)
-               if (.not. valid) call report%lose('equation')
+               if (valid) call check_terms(terms, model, deck, valid)
+               if (valid) call add_equations(terms, card%data(first)%place(1), model, deck, list, &
+                  count)
+               if (.not. valid) call deck%lose('equation')
             end do
          end associate
       end do
@@ -68,12 +66,11 @@ contains
    end subroutine build_equations
 
    !> Reads one equation: the number of its terms, then the terms, any number on a card.
-   subroutine read_terms(card, data, context, model, report, terms)
+   subroutine read_terms(card, data, deck, model, terms)
       type(keyword_card_type), intent(in) :: card
       integer, intent(inout) :: data               ! its first data card; then that behind it
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(term_type), allocatable, intent(out) :: terms(:)   ! unallocated after an error
       type(term_type), allocatable :: found(:)
       type(place_type) :: place
@@ -83,24 +80,24 @@ contains
       n = 0
       valid = .true.
       place = card%data(data)%place(1)
-      call need_field(card%data(data), 1, 'number of terms', report, n, valid)
-      call check_extra(card%data(data), 1, 'number of terms', report)
+      call need_field(card%data(data), 1, 'number of terms', deck, n, valid)
+      call check_extra(card%data(data), 1, 'number of terms', deck)
       if (valid .and. n < 1) then
-         call report%error(place, 'an equation has at least one term')
+         call deck%error(place, 'an equation has at least one term')
          valid = .false.
       end if
       data = data + 1
       allocate (found(0))
       do while (valid .and. size(found) < n .and. data <= size(card%data))
          do i = 1, size(card%data(data)%fields), term_fields
-            call read_term(card%data(data), i, context, model, report, found, valid)
+            call read_term(card%data(data), i, deck, model, found, valid)
          end do
          data = data + 1
       end do
       if (.not. valid) then
          data = size(card%data) + 1
       else if (size(found) /= n) then
-         call report%error(place, 'the equation should have '//to_text(n)//' terms; '// &
+         call deck%error(place, 'the equation should have '//to_text(n)//' terms; '// &
             to_text(size(found))//' are given')
       else
          call move_alloc(found, terms)
@@ -108,27 +105,25 @@ contains
    end subroutine read_terms
 
    !> Reads one term: node or set, degree of freedom, coefficient.
-   subroutine read_term(card, position, context, model, report, terms, valid)
+   subroutine read_term(card, position, deck, model, terms, valid)
       type(data_card_type), intent(in) :: card
       integer, intent(in) :: position
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(term_type), allocatable, intent(inout) :: terms(:)
       logical, intent(inout) :: valid
       type(term_type) :: term
       integer :: dof
 
       term%place = card%place(position)
-      call read_target(card, position, context%node_index, model%mesh%node_sets, report, &
-         term%target_type, valid)
-      call need_field(card, position + 1, 'degree of freedom', report, dof, valid)
-      call need_field(card, position + 2, 'coefficient', report, term%coefficient, valid)
+      call deck%need_nodes(card, position, model%mesh%node_sets, term%target_type, valid)
+      call need_field(card, position + 1, 'degree of freedom', deck, dof, valid)
+      call need_field(card, position + 2, 'coefficient', deck, term%coefficient, valid)
       if (.not. valid) return
       term%dof = axis_in_plane(model%transforms, model%mesh%node_sets, &
          term%members(model%mesh%node_sets), dof)
       if (all(term%dof /= [1, 2, dof_temperature])) then
-         call report%error(card%place(position + 1), 'degree of freedom '//to_text(dof)//'; an '// &
+         call deck%error(card%place(position + 1), 'degree of freedom '//to_text(dof)//'; an '// &
             'equation relates 1 and 2, or 11')
          valid = .false.
       end if
@@ -137,10 +132,10 @@ contains
 
    !> Displacements and temperatures are solved one after the other; sets have one length; the first
    !> term, which the others determine, is there.
-   subroutine check_terms(terms, model, report, valid)
+   subroutine check_terms(terms, model, deck, valid)
       type(term_type), intent(in) :: terms(:)
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer :: i, lengths(size(terms))
 
@@ -150,7 +145,7 @@ contains
          if (lengths(i) == 0) valid = .false.   ! its card has an error
          if (lengths(i) == 1 .or. maxval(lengths(:i - 1)) <= 1) cycle
          if (lengths(i) == maxval(lengths(:i - 1))) cycle
-         call report%error(terms(i)%place, 'the node sets of an equation must have the same '// &
+         call deck%error(terms(i)%place, 'the node sets of an equation must have the same '// &
             'number of nodes, or one node: '//to_text(maxval(lengths(:i - 1)))//' and '// &
             to_text(lengths(i)))
          valid = .false.
@@ -158,21 +153,21 @@ contains
       i = findloc((terms%dof == dof_temperature) .neqv. (terms(1)%dof == dof_temperature), &
          .true., dim=1)
       if (i > 0) then
-         call report%error(terms(i)%place, &
-            'an equation relates displacements or temperatures, not both')
+         call deck%error(terms(i)%place, 'an equation relates displacements or temperatures, '// &
+            'not both')
          valid = .false.
       end if
       if (abs(terms(1)%coefficient) > 0.0_dp) return
-      call report%error(terms(1)%place, 'the coefficient of the first term must not be 0')
+      call deck%error(terms(1)%place, 'the coefficient of the first term must not be 0')
       valid = .false.
    end subroutine check_terms
 
    !> Adds the equation, or one for each member of its sets in the order of the node numbers.
-   subroutine add_equations(terms, place, model, report, list, count)
+   subroutine add_equations(terms, place, model, deck, list, count)
       type(term_type), intent(in) :: terms(:)
       type(place_type), intent(in) :: place        ! where the equation begins
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(equation_type), allocatable, intent(inout) :: list(:)   ! (capacity)
       integer, intent(inout) :: count
       integer, allocatable :: members(:), nodes(:, :)
@@ -187,7 +182,7 @@ contains
          members = members(sort_order(model%mesh%node_number(members)))
          nodes(:, i) = members(min([(k, k=1, n)], size(members)))
       end do
-      equation%title = '*EQUATION, '//report%source%words_of(place)
+      equation%title = '*EQUATION, '//deck%source%words_of(place)
       equation%card = place%image
       do k = 1, n
          equation%node = [integer ::]
@@ -197,7 +192,7 @@ contains
             call equation%add_term(nodes(k, i), terms(i)%dof, terms(i)%coefficient)
          end do
          if (all(abs(equation%coefficient) <= 0.0_dp)) then
-            call report%error(place, 'the terms of the equation cancel')
+            call deck%error(place, 'the terms of the equation cancel')
             return
          end if
          if (count == size(list)) then
@@ -212,91 +207,87 @@ contains
 
    !> Builds all couplings and rigid bodies. Each has a node for its rotation, which the builder of
    !> nodes left behind those of the deck.
-   subroutine build_couplings(cards, context, model, report)
+   subroutine build_couplings(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! numbers -> indexes; receives notes
+      type(deck_type), intent(inout) :: deck  !! numbers -> indexes; receives notes; receives errors
       type(model_type), intent(inout) :: model             !! receives the couplings
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: errors, k, n
 
-      errors = report%error_count()
+      errors = deck%error_count()
       allocate (model%couplings(card_count(cards, 'COUPLING') + card_count(cards, 'RIGID BODY')))
       n = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name == 'RIGID BODY') then
             n = n + 1
-            call begin_coupling(cards%keywords(k), n, context, model, report)
+            call begin_coupling(cards%keywords(k), n, deck, model)
             if (cards%keywords(k)%has('ROT NODE')) call find_reference('ROT NODE', &
-               cards%keywords(k), context, model, report, model%couplings(n)%rotation_node)
-            call build_rigid_body(cards%keywords(k), context, model, report, model%couplings(n))
+               cards%keywords(k), deck, model, model%couplings(n)%rotation_node)
+            call build_rigid_body(cards%keywords(k), deck, model, model%couplings(n))
          else if (cards%keywords(k)%name == 'COUPLING') then
             n = n + 1
-            call begin_coupling(cards%keywords(k), n, context, model, report)
-            call need_named(cards%keywords(k), 'SURFACE', 'surface', context%surfaces, report, &
+            call begin_coupling(cards%keywords(k), n, deck, model)
+            call deck%need_named(cards%keywords(k), 'SURFACE', 'surface', &
                model%couplings(n)%surface)
             call need_faces(model%mesh, cards%keywords(k)%place_of('SURFACE'), 'it follows the '// &
-               'reference node of its *RIGID BODY', report, model%couplings(n)%surface)
+               'reference node of its *RIGID BODY', deck, model%couplings(n)%surface)
             if (is_keyword(cards, k + 1, 'KINEMATIC')) cycle
-            call report%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
-               'directly follow *COUPLING and name the degrees of freedom')
+            call deck%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must directly '// &
+               'follow *COUPLING and name the degrees of freedom')
          else if (cards%keywords(k)%name == 'KINEMATIC') then
             if (is_keyword(cards, k - 1, 'COUPLING')) then
-               call read_degrees(cards%keywords(k), context, report, model%couplings(n))
+               call read_degrees(cards%keywords(k), deck, model%couplings(n))
             else
-               call report%error(cards%keywords(k)%place, &
-                  '*KINEMATIC must directly follow *COUPLING')
+               call deck%error(cards%keywords(k)%place, '*KINEMATIC must directly follow *COUPLING')
             end if
          end if
       end do
-      if (report%error_count() > errors) call report%lose('equation')
-      call check_rigid_masters(model, report)
+      if (deck%error_count() > errors) call deck%lose('equation')
+      call check_rigid_masters(model, deck)
    end subroutine build_couplings
 
    !> Title and reference node of a coupling, and the node of its rotation.
-   subroutine begin_coupling(card, n, context, model, report)
+   subroutine begin_coupling(card, n, deck, model)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n                     ! index of the coupling
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
 
       associate (coupling => model%couplings(n))
          coupling%rotation = size(model%mesh%node_number) - size(model%couplings) + n
          coupling%card = card%place%image
-         coupling%title = '*'//card%name//', '//report%source%words_of(card%place)
-         call find_reference('REF NODE', card, context, model, report, coupling%reference)
+         coupling%title = '*'//card%name//', '//deck%source%words_of(card%place)
+         call find_reference('REF NODE', card, deck, model, coupling%reference)
          if (coupling%reference > 0) model%mesh%coordinates(:, coupling%rotation) = &
             model%mesh%coordinates(:, coupling%reference)
       end associate
    end subroutine begin_coupling
 
    !> The node that a parameter names, which the card must have: its number, or a set of one node.
-   subroutine find_reference(parameter, card, context, model, report, node)
+   subroutine find_reference(parameter, card, deck, model, node)
       character(*), intent(in) :: parameter
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context       !! numbers -> indexes
+      type(deck_type), intent(inout) :: deck   !! numbers -> indexes; receives errors
       type(model_type), intent(in) :: model                !! node sets
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, intent(out) :: node                         !! its index; 0 after an error
       character(:), allocatable :: name
       integer :: number, set
       logical :: is_number
 
       node = 0
-      call need_parameter(card, parameter, report, name)
+      call need_parameter(card, parameter, deck, name)
       if (len(name) == 0) return
       associate (place => card%place_of(parameter), sets => model%mesh%node_sets)
          call read_integer(name, number, is_number)
          if (is_number) then
-            node = context%node_index%find(number)
-            if (node == 0) call report%missing(place, 'there is no node '//name, 'node', name)
+            node = deck%node_index%find(number)
+            if (node == 0) call deck%missing(place, 'there is no node '//name, 'node', name)
             return
          end if
-         call need_named(card, parameter, 'node set', context%node_index%sets, report, set)
+         call deck%need_named(card, parameter, 'node set', set)
          if (set == 0) return
          if (size(sets(set)%members) /= 1) then
-            call report%error(place, 'there is one reference node; node set '//name// &
-               ' has '//to_text(size(sets(set)%members)))
+            call deck%error(place, 'there is one reference node; node set '//name//' has '// &
+               to_text(size(sets(set)%members)))
          else
             node = sets(set)%members(1)
          end if
@@ -304,39 +295,37 @@ contains
    end subroutine find_reference
 
    !> First and last degree of freedom on each data card; without one all follow.
-   subroutine read_degrees(card, context, report, coupling)
+   subroutine read_degrees(card, deck, coupling)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling
       integer :: j
 
       if (size(card%data) == 0) then
          coupling%follows = .true.
-         call context%note('*KINEMATIC without data: displacements along x and y follow')
+         call deck%note('*KINEMATIC without data: displacements along x and y follow')
       end if
       do j = 1, size(card%data)
-         call read_range(card%data(j), context, report, coupling)
+         call read_range(card%data(j), deck, coupling)
       end do
    end subroutine read_degrees
 
-   subroutine read_range(data, context, report, coupling)
+   subroutine read_range(data, deck, coupling)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling
       integer :: dof, first, last
       logical :: valid
 
       valid = .true.
       first = 0
-      call need_field(data, 1, 'first degree of freedom', report, first, valid)
+      call need_field(data, 1, 'first degree of freedom', deck, first, valid)
       last = first
-      call take_field(data, 2, 'last degree of freedom', report, last, valid)
-      call check_extra(data, 2, 'first and last degree of freedom', report)
+      call take_field(data, 2, 'last degree of freedom', deck, last, valid)
+      call check_extra(data, 2, 'first and last degree of freedom', deck)
       if (.not. valid) return
       if (last < first) then
-         call report%error(data%place(2), 'the last degree of freedom is below the first')
+         call deck%error(data%place(2), 'the last degree of freedom is below the first')
          return
       end if
       do dof = first, last
@@ -344,12 +333,12 @@ contains
          case (1, 2)
             coupling%follows(dof) = .true.
          case (3:6)
-            call context%note('*KINEMATIC: degrees of freedom 3 to 6, which nodes of a face do '// &
+            call deck%note('*KINEMATIC: degrees of freedom 3 to 6, which nodes of a face do '// &
                'not have, are ignored')
          case (dof_temperature)
             coupling%is_warm = .true.
          case default
-            call report%error(data%place(merge(1, 2, dof == first)), 'degree of freedom '// &
+            call deck%error(data%place(merge(1, 2, dof == first)), 'degree of freedom '// &
                to_text(dof)//'; faces follow in 1, 2 and 11')
             return
          end select
@@ -357,42 +346,40 @@ contains
    end subroutine read_range
 
    !> Builds all transforms.
-   subroutine build_transforms(cards, context, model, report)
+   subroutine build_transforms(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context       !! names of the node sets
+      type(deck_type), intent(inout) :: deck   !! names of the node sets; receives errors
       type(model_type), intent(inout) :: model             !! receives them
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: n
 
       places = cards_of(cards, 'TRANSFORM')
       allocate (model%transforms(size(places)))
       do n = 1, size(places)
-         call build_transform(cards%keywords(places(n)), context, report, model%transforms(n))
-         call check_nodes(cards%keywords(places(n)), n, model, report)
+         call build_transform(cards%keywords(places(n)), deck, model%transforms(n))
+         call check_nodes(cards%keywords(places(n)), n, model, deck)
       end do
    end subroutine build_transforms
 
-   subroutine build_transform(card, context, report, transform)
+   subroutine build_transform(card, deck, transform)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(transform_type), intent(out) :: transform
       character(:), allocatable :: kind
 
-      transform%title = '*TRANSFORM, '//report%source%words_of(card%place)
+      transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
       transform%card = card%place%image
-      call need_named(card, 'NSET', 'node set', context%node_index%sets, report, transform%set)
+      call deck%need_named(card, 'NSET', 'node set', transform%set)
       kind = 'R'
-      call choose(card, 'TYPE', 'R/C', report, kind)
+      call choose(card, 'TYPE', 'R/C', deck, kind)
       transform%cylindrical = kind == 'C'
-      if (size(card%data) > 0) call read_points(card%data(1), report, transform)
+      if (size(card%data) > 0) call read_points(card%data(1), deck, transform)
    end subroutine build_transform
 
    !> Two points: on the first axis and in the plane of the first two; or on the axis of a cylinder.
-   subroutine read_points(data, report, transform)
+   subroutine read_points(data, deck, transform)
       type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(transform_type), intent(inout) :: transform
       character(*), parameter :: names = 'xyz'
       real(dp) :: x(3, 2)
@@ -404,22 +391,22 @@ contains
       do j = 1, 2
          do i = 1, 3
             if (i < 3) call need_field(data, 3*(j - 1) + i, names(i:i)//' of point '// &
-               'ab'(j:j), report, x(i, j), valid)
-            if (i == 3) call take_field(data, 3*j, 'z of point '//'ab'(j:j), report, x(3, j), valid)
+               'ab'(j:j), deck, x(i, j), valid)
+            if (i == 3) call take_field(data, 3*j, 'z of point '//'ab'(j:j), deck, x(3, j), valid)
          end do
       end do
-      call check_extra(data, 6, 'x, y and z of two points', report)
+      call check_extra(data, 6, 'x, y and z of two points', deck)
       if (.not. valid) return
       transform%point = x(:2, 1)
       if (transform%cylindrical) then
          x(:, 2) = x(:, 2) - x(:, 1)
          transform%sense = sign(1.0_dp, x(3, 2))
          if (norm2(x(:2, 2)) > negligible*norm2(x(:, 2)) .or. &
-            norm2(x(:, 2)) <= 0.0_dp) call report%error(data%place(1), 'TYPE=C of a plane is '// &
+            norm2(x(:, 2)) <= 0.0_dp) call deck%error(data%place(1), 'TYPE=C of a plane is '// &
             'round an axis along z, such as 0., 0., 0., 0., 0., 1.')
       else
          call set_axes(x, transform, valid)
-         if (.not. valid) call report%error(data%place(1), 'TYPE=R of a plane has two points, '// &
+         if (.not. valid) call deck%error(data%place(1), 'TYPE=R of a plane has two points, '// &
             'not in line with the origin, that put one of the three axes along z, such as 1., '// &
             '1., 0., -1., 1., 0.')
       end if
@@ -452,11 +439,11 @@ contains
    end subroutine set_axes
 
    !> A node has one transform, and is not on the axis of it.
-   subroutine check_nodes(card, n, model, report)
+   subroutine check_nodes(card, n, model, deck)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer :: i, k
 
       if (model%transforms(n)%set == 0) return
@@ -466,14 +453,14 @@ contains
             do k = 1, n - 1
                if (model%transforms(k)%set == 0) cycle
                if (all(model%mesh%node_sets(model%transforms(k)%set)%members /= members(i))) cycle
-               call report%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
+               call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
                   ' has axes of its own by '//model%transforms(k)%title//' already')
                return
             end do
             if (.not. model%transforms(n)%cylindrical) cycle
             if (norm2(x(:, members(i)) - model%transforms(n)%point) > negligible*extent_of(x)) cycle
-            call report%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
-               ' is on the axis, where no direction is radial')
+            call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' is '// &
+               'on the axis, where no direction is radial')
             return
          end do
       end associate

@@ -6,8 +6,7 @@ module deck_builder_gap_conductance
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
       line_value
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use kinds, only: dp
    use text, only: read_real, to_text
    implicit none
@@ -29,38 +28,35 @@ contains
    !> Reads one *GAP CONDUCTANCE. With CLEARANCE it has the meaning that it has in Abaqus: beyond
    !> the last row no heat crosses. Without, the law is one of its own: whether it acts is seen when
    !> all laws of the interaction are known.
-   subroutine build_gap_conductance(card, name, is_open, context, report, law)
+   subroutine build_gap_conductance(card, name, is_open, deck, law)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       logical, intent(in) :: is_open                       !! whether it is over the clearance
-      type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives notes and errors
       type(conductance_law_type), intent(inout) :: law     !! receives the open or the closed side
       type(gap_table_type) :: table
       character(:), allocatable :: title
       real(dp), allocatable :: temperature(:)
       integer :: errors
 
-      errors = report%error_count()
+      errors = deck%error_count()
       title = '*GAP CONDUCTANCE'
       if (is_open) then
          title = '*GAP CONDUCTANCE, CLEARANCE'
-         if (card%has('PRESSURE')) call report%error(card%place_of('CLEARANCE'), 'PRESSURE and '// &
+         if (card%has('PRESSURE')) call deck%error(card%place_of('CLEARANCE'), 'PRESSURE and '// &
             'CLEARANCE exclude each other: both name the second column')
-         if (law%open_kind /= law_none) call report%error(card%place, &
-            'a second open law in one surface interaction')
+         if (law%open_kind /= law_none) call deck%error(card%place, 'a second open law in one '// &
+            'surface interaction')
       else if (law%closed_kind /= law_none) then
-         call report%error(card%place, 'a second *GAP CONDUCTANCE in one surface interaction')
+         call deck%error(card%place, 'a second *GAP CONDUCTANCE in one surface interaction')
       end if
-      call read_temperatures(card, context, report, temperature)
-      call read_table(card, trim(merge('gap     ', 'pressure', is_open)), temperature, report, &
-         table)
-      if (report%error_count() == errors) call check_columns(card, name, is_open, &
-         table, report)
+      call read_temperatures(card, deck, temperature)
+      call read_table(card, trim(merge('gap     ', 'pressure', is_open)), temperature, deck, table)
+      if (deck%error_count() == errors) call check_columns(card, name, is_open, table, deck)
       if (allocated(table%temperature)) then
-         if (is_open .and. report%error_count() == errors) call check_last_gaps(card, temperature, &
-            report)
-         call note_ends(title, name, 'mean temperatures', table%temperature, context)
+         if (is_open .and. deck%error_count() == errors) call check_last_gaps(card, temperature, &
+            deck)
+         call note_ends(title, name, 'mean temperatures', table%temperature, deck)
          if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
       end if
       if (is_open) then
@@ -80,9 +76,9 @@ contains
          end if
          call move_alloc(table%abscissa, law%table_pressure)
          call move_alloc(table%omega, law%closed_omega)
-         call note_ends(title, name, 'pressures', law%table_pressure, context)
-         call context%note('*GAP CONDUCTANCE: CalculiX switches NLGEOM on; here displacements '// &
-            'and strains are small')
+         call note_ends(title, name, 'pressures', law%table_pressure, deck)
+         call deck%note('*GAP CONDUCTANCE: CalculiX switches NLGEOM on; here displacements and '// &
+            'strains are small')
       end if
    end subroutine build_gap_conductance
 
@@ -122,22 +118,22 @@ contains
 
    !> Warns of a table that conducts nothing, and of one without a parameter that is taken as one of
    !> clearance, or that may be meant so.
-   subroutine check_columns(card, name, is_open, table, report)
+   subroutine check_columns(card, name, is_open, table, deck)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
       logical, intent(in) :: is_open
       type(gap_table_type), intent(in) :: table
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: words
       integer :: n
 
-      if (all(table%columns <= 0.0_dp)) call report%warning(card%place, &
-         'all conductances of this table of '//name//' are 0: it conducts no heat; the first '// &
-         'column of *GAP CONDUCTANCE is the conductance')
-      if (is_open .and. .not. card%has('CLEARANCE')) call report%warning(card%place, 'the '// &
-         'second column of this table of '//name//' is taken as the clearance, as in Abaqus; '// &
-         'in CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or PRESSURE if '// &
-         'that is meant')
+      if (all(table%columns <= 0.0_dp)) call deck%warning(card%place, 'all conductances of '// &
+         'this table of '//name//' are 0: it conducts no heat; the first column of *GAP '// &
+         'CONDUCTANCE is the conductance')
+      if (is_open .and. .not. card%has('CLEARANCE')) call deck%warning(card%place, 'the second '// &
+         'column of this table of '//name//' is taken as the clearance, as in Abaqus; in '// &
+         'CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or PRESSURE if that '// &
+         'is meant')
       if (is_open .or. card%has('PRESSURE') .or. all(table%columns <= 0.0_dp)) return
       n = size(table%abscissa)
       associate (before => table%columns(:n - 1, :), behind => table%columns(2:, :))
@@ -149,17 +145,17 @@ contains
             words = ' is the same in all rows'
          end if
       end associate
-      call report%warning(card%place, 'the conductance of '//name//words//'; its second column '// &
-         'is taken as the pressure, as in CalculiX; in Abaqus it is the clearance: write '// &
-         '*GAP CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
+      call deck%warning(card%place, 'the conductance of '//name//words//'; its second column '// &
+         'is taken as the pressure, as in CalculiX; in Abaqus it is the clearance: write *GAP '// &
+         'CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
    end subroutine check_columns
 
    !> Refuses a table that ends at other gaps at other temperatures: between them it would end at
    !> none.
-   subroutine check_last_gaps(card, temperature, report)
+   subroutine check_last_gaps(card, temperature, deck)
       type(keyword_card_type), intent(in) :: card
       real(dp), intent(in) :: temperature(:)
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp) :: first, gap
       integer :: i, n
       logical :: valid
@@ -171,10 +167,10 @@ contains
             if (temperature(i + 1) <= temperature(i)) cycle
          end if
          associate (data => card%data(i))
-            call need_field(data, 2, 'gap', report, gap, valid)
+            call need_field(data, 2, 'gap', deck, gap, valid)
             if (temperature(i) <= temperature(1)) first = gap
-            if (abs(gap - first) > 0.0_dp) call report%error(data%place(2), 'the table ends at '// &
-               'a different gap than at the first temperature; no heat crosses beyond the end, '// &
+            if (abs(gap - first) > 0.0_dp) call deck%error(data%place(2), 'the table ends at a '// &
+               'different gap than at the first temperature; no heat crosses beyond the end, '// &
                'which must be the same at all temperatures')
          end associate
       end do
@@ -182,16 +178,16 @@ contains
 
    !> Gives a law the closed side of *GAP CONDUCTANCE, unless *GAP LAW gives it another: then the
    !> table is for CalculiX, which knows no *GAP LAW.
-   subroutine join_gap_conductance(table, name, context, law)
+   subroutine join_gap_conductance(table, name, deck, law)
       type(conductance_law_type), intent(in) :: table      !! what build_gap_conductance made
       character(*), intent(in) :: name                     !! name of the surface interaction
-      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_type), intent(inout) :: deck   !! receives notes
       type(conductance_law_type), intent(inout) :: law     !! receives the closed side
 
       if (table%closed_kind == law_none) return
       if (law%closed_kind /= law_none) then
-         call context%note('*GAP CONDUCTANCE of '//name// &
-            ' is ignored: the closed *GAP LAW takes precedence')
+         call deck%note('*GAP CONDUCTANCE of '//name//' is ignored: the closed *GAP LAW takes '// &
+            'precedence')
          return
       end if
       law%closed_kind = table%closed_kind
@@ -205,11 +201,11 @@ contains
 
    !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
    !> it and are in groups of one temperature.
-   subroutine read_table(card, noun, temperature, report, table)
+   subroutine read_table(card, noun, temperature, deck, table)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
       real(dp), intent(in) :: temperature(:)               !! (rows) equal for one temperature
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       type(gap_table_type), intent(out) :: table
       integer :: i, n
       logical :: valid(2), valid_before
@@ -221,23 +217,23 @@ contains
          do i = 1, n
             associate (data => card%data(i))
                valid = .true.
-               call need_field(data, 1, 'conductance', report, omega(i), valid(1))
-               call need_field(data, 2, noun, report, abscissa(i), valid(2))
+               call need_field(data, 1, 'conductance', deck, omega(i), valid(1))
+               call need_field(data, 2, noun, deck, abscissa(i), valid(2))
                if (card%name == 'GAP CONDUCTANCE') then
-                  call check_extra(data, 3, 'conductance, '//noun//', temperature', report)
+                  call check_extra(data, 3, 'conductance, '//noun//', temperature', deck)
                else
-                  call check_extra(data, 2, 'conductance, '//noun, report)
+                  call check_extra(data, 2, 'conductance, '//noun, deck)
                end if
                if (valid(1) .and. omega(i) < 0.0_dp) then
-                  call report%error(data%place(1), 'the conductance must not be negative')
+                  call deck%error(data%place(1), 'the conductance must not be negative')
                end if
                if (i > 1) valid_before = valid_before .and. &
                   abs(temperature(i) - temperature(max(i - 1, 1))) <= 0.0_dp
                if (valid(2) .and. abscissa(i) < 0.0_dp) then
-                  call report%error(data%place(2), 'the '//noun//' must not be negative')
+                  call deck%error(data%place(2), 'the '//noun//' must not be negative')
                else if (valid(2) .and. valid_before) then
                   if (abscissa(i) <= abscissa(i - 1)) then
-                     call report%error(data%place(2), noun//'s must ascend')
+                     call deck%error(data%place(2), noun//'s must ascend')
                   end if
                end if
                valid_before = valid(2)
@@ -253,10 +249,9 @@ contains
 
    !> Temperatures behind the rows of a *GAP CONDUCTANCE: one for all of them means nothing, several
    !> ascend.
-   subroutine read_temperatures(card, context, report, temperature)
+   subroutine read_temperatures(card, deck, temperature)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives notes and errors
       real(dp), allocatable, intent(out) :: temperature(:) !! (rows) 0 for none
       integer :: comma, i
       logical :: valid
@@ -265,7 +260,7 @@ contains
          allocate (temperature(size(rows)), source=0.0_dp)
          valid = .true.
          do i = 1, size(rows)
-            call take_field(rows(i), 3, 'temperature', report, temperature(i), valid)
+            call take_field(rows(i), 3, 'temperature', deck, temperature(i), valid)
          end do
          if (.not. valid) temperature = 0.0_dp
          do i = 2, size(rows)
@@ -273,24 +268,24 @@ contains
             if (all(abs(temperature - temperature(1)) <= 0.0_dp)) exit
             comma = decimal_comma(rows(i))
             if (comma > 0 .and. size(rows(i)%fields) > size(rows(1)%fields)) then
-               call report_decimal_comma(rows(i), comma, report)
+               call report_decimal_comma(rows(i), comma, deck)
             else
-               call report%error(rows(i)%place(3), 'a temperature in some rows only; give one '// &
-                  'in each row or in none')
+               call deck%error(rows(i)%place(3), 'a temperature in some rows only; give one in '// &
+                  'each row or in none')
             end if
             return
          end do
          do i = 2, size(rows)
             if (temperature(i) >= temperature(i - 1)) cycle
-            call report%error(rows(i)%place(3), 'temperatures must ascend, and the rows of '// &
-               'each temperature must be consecutive')
+            call deck%error(rows(i)%place(3), 'temperatures must ascend, and the rows of each '// &
+               'temperature must be consecutive')
             return
          end do
          if (any(temperature > temperature(1)) .or. .not. valid) return
-         call check_unneeded_temperature(rows(1), 3, report)
+         call check_unneeded_temperature(rows(1), 3, deck)
          do i = 1, size(rows)
-            if (rows(i)%has(3)) call context%note('*GAP CONDUCTANCE: the temperature, the same '// &
-               'in every row, is ignored')
+            if (rows(i)%has(3)) call deck%note('*GAP CONDUCTANCE: the temperature, the same in '// &
+               'every row, is ignored')
          end do
       end associate
    end subroutine read_temperatures
@@ -327,15 +322,15 @@ contains
    end function ascending
 
    !> Notes that a table holds its end values.
-   subroutine note_ends(what, name, noun, abscissas, context)
+   subroutine note_ends(what, name, noun, abscissas, deck)
       character(*), intent(in) :: what                     !! the card
       character(*), intent(in) :: name                     !! name of the surface interaction
       character(*), intent(in) :: noun                     !! gaps, pressures or temperatures
       real(dp), intent(in) :: abscissas(:)                 !! (rows) ascending
-      type(deck_context_type), intent(inout) :: context    !! receives the note
+      type(deck_type), intent(inout) :: deck   !! receives the note
 
-      call context%note(what//' of '//name//': the table holds its end values outside the '// &
-         noun//' '//to_text(abscissas(1))//' to '//to_text(abscissas(size(abscissas))))
+      call deck%note(what//' of '//name//': the table holds its end values outside the '//noun// &
+         ' '//to_text(abscissas(1))//' to '//to_text(abscissas(size(abscissas))))
    end subroutine note_ends
 
 end module deck_builder_gap_conductance

@@ -5,8 +5,7 @@ module deck_builder_gap_heat
    use card_values, only: check_extra, need_field, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_gas, law_none
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use element_kinds, only: axisymmetric
    use friction_laws, only: friction_heat_type, rough_coefficient
    use kinds, only: dp
@@ -20,56 +19,55 @@ module deck_builder_gap_heat
 contains
 
    !> Reads one *GAP HEAT GENERATION.
-   subroutine build_friction_heat(card, model, report, heat)
+   subroutine build_friction_heat(card, model, deck, heat)
       type(keyword_card_type), intent(in) :: card
       type(model_type), intent(in) :: model                !! with its mesh
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       type(friction_heat_type), intent(out) :: heat
       logical :: valid
 
       heat%efficiency = 1.0_dp
       if (size(card%data) > 0) then
          associate (data => card%data(1))
-            call take_part(data, 1, 'eta (heat per work of friction)', report, heat%efficiency)
-            call take_part(data, 2, 'f (share of the slave)', report, heat%slave_share)
+            call take_part(data, 1, 'eta (heat per work of friction)', deck, heat%efficiency)
+            call take_part(data, 2, 'f (share of the slave)', deck, heat%slave_share)
             valid = .true.
-            call take_field(data, 3, 'sliding speed', report, heat%speed, valid)
-            call check_extra(data, 3, 'eta, f, sliding speed', report)
-            if (card%has('ANGULAR VELOCITY') .and. data%has(3)) call report%error(data%place(3), &
+            call take_field(data, 3, 'sliding speed', deck, heat%speed, valid)
+            call check_extra(data, 3, 'eta, f, sliding speed', deck)
+            if (card%has('ANGULAR VELOCITY') .and. data%has(3)) call deck%error(data%place(3), &
                'a sliding speed and ANGULAR VELOCITY= exclude each other; give one of them')
          end associate
       end if
       if (.not. card%has('ANGULAR VELOCITY')) return
       if (any(model%mesh%element_plane == axisymmetric)) then
-         call take_positive(card, 'ANGULAR VELOCITY', report, heat%angular_velocity)
+         call take_positive(card, 'ANGULAR VELOCITY', deck, heat%angular_velocity)
       else
-         call report%error(card%place_of('ANGULAR VELOCITY'), 'ANGULAR VELOCITY= needs '// &
+         call deck%error(card%place_of('ANGULAR VELOCITY'), 'ANGULAR VELOCITY= needs '// &
             'axisymmetric elements, which turn about their axis; give a sliding speed')
       end if
    end subroutine build_friction_heat
 
    !> A part of a whole.
-   subroutine take_part(data, i, what, report, part)
+   subroutine take_part(data, i, what, deck, part)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp), intent(inout) :: part
       logical :: valid
 
       valid = .true.
-      call take_field(data, i, what, report, part, valid)
+      call take_field(data, i, what, deck, part, valid)
       if (part >= 0.0_dp .and. part <= 1.0_dp) return
-      call report%error(data%place(i), what//' must be between 0 and 1')
+      call deck%error(data%place(i), what//' must be between 0 and 1')
       part = 1.0_dp
    end subroutine take_part
 
    !> Heat of friction needs friction that allows slip, and time. Checked with all steps read.
-   subroutine check_friction_heat(cards, context, model, report)
+   subroutine check_friction_heat(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck   !! receives errors and warnings
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
       real(dp) :: largest
       integer :: k, n, s
 
@@ -79,18 +77,18 @@ contains
             if (card%name == 'SURFACE INTERACTION') n = n + 1
             if (card%name /= 'GAP HEAT GENERATION' .or. n == 0) cycle
             largest = largest_friction(model, n)
-            if (largest <= 0.0_dp) call report%missing(card%place, 'interaction '// &
+            if (largest <= 0.0_dp) call deck%missing(card%place, 'interaction '// &
                model%interactions(n)%name//' makes no heat of friction: it has no *FRICTION '// &
                'above 0', '*FRICTION')
-            if (largest >= rough_coefficient) call report%error(card%place, 'interaction '// &
+            if (largest >= rough_coefficient) call deck%error(card%place, 'interaction '// &
                model%interactions(n)%name//' is rough: its faces do not slip, so friction '// &
                'makes no heat; leave *GAP HEAT GENERATION out, or give a coefficient of friction')
             if (model%interactions(n)%heat%leaves_plane()) cycle
             s = findloc(solves_heat(model%steps%analysis) .and. solves_mechanics( &
                model%steps%analysis) .and. .not. model%steps%is_transient, .true., dim=1)
-            if (s > 0) call report%warning(context%analysis_place(s), 'step '//to_text(s)// &
-               ' is steady, but friction makes heat by the rate of slip: the period of the '// &
-               'step, '//to_text(model%steps(s)%period)//', counts as time')
+            if (s > 0) call deck%warning(deck%analysis_place(s), 'step '//to_text(s)//' is '// &
+               'steady, but friction makes heat by the rate of slip: the period of the step, '// &
+               to_text(model%steps(s)%period)//', counts as time')
          end associate
       end do
    end subroutine check_friction_heat
@@ -115,11 +113,10 @@ contains
 
    !> Reads one *GAP RADIATION: emissivities of both faces, then view factors over the clearance.
    !> Two large grey faces exchange sigma/(1/e1 + 1/e2 - 1) (T1^4 - T2^4), times the view factor.
-   subroutine build_gap_radiation(card, constants, context, report, law)
+   subroutine build_gap_radiation(card, constants, deck, law)
       type(keyword_card_type), intent(in) :: card
       type(physical_constants_type), intent(in) :: constants
-      type(deck_context_type), intent(inout) :: context    !! receives a note
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives a note and errors
       type(conductance_law_type), intent(inout) :: law     !! receives radiation in the open gap
       real(dp) :: emissivity(2)
       real(dp), allocatable :: gap(:), view_factor(:)
@@ -127,24 +124,24 @@ contains
 
       associate (data => card%data(1))
          do i = 1, 2
-            emissivity(i) = part_of(data, i, 'emissivity', report)
+            emissivity(i) = part_of(data, i, 'emissivity', deck)
             if (emissivity(i) <= 0.0_dp) then
-               call report%error(data%place(i), 'the emissivity must not be 0')
+               call deck%error(data%place(i), 'the emissivity must not be 0')
                emissivity(i) = 1.0_dp
             end if
          end do
-         call check_extra(data, 2, 'two emissivities', report)
+         call check_extra(data, 2, 'two emissivities', deck)
       end associate
-      call read_view_factors(card%data(2:), report, gap, view_factor)
-      if (size(card%data) > 1 .and. view_factor(size(view_factor)) > 0.0_dp) call context%note( &
+      call read_view_factors(card%data(2:), deck, gap, view_factor)
+      if (size(card%data) > 1 .and. view_factor(size(view_factor)) > 0.0_dp) call deck%note( &
          '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last view '// &
          'factor')
-      if (.not. constants%has_radiation) call report%error(card%place, '*GAP RADIATION needs '// &
+      if (.not. constants%has_radiation) call deck%error(card%place, '*GAP RADIATION needs '// &
          '*PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
       if (law%open_kind == law_none) law%open_kind = law_gas
       if (allocated(law%by_temperature)) then
-         if (law%by_temperature%radiance > 0.0_dp) call report%error(card%place, &
-            '*GAP RADIATION beside EMISSIVITY= of *GAP LAW: leave one of them out')
+         if (law%by_temperature%radiance > 0.0_dp) call deck%error(card%place, '*GAP RADIATION '// &
+            'beside EMISSIVITY= of *GAP LAW: leave one of them out')
       end if
       if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
       law%by_temperature%radiance = constants%stefan_boltzmann*maxval(view_factor)/ &
@@ -156,9 +153,9 @@ contains
    end subroutine build_gap_radiation
 
    !> Rows of view factor and clearance; 1 at all clearances where there are none.
-   subroutine read_view_factors(rows, report, gap, view_factor)
+   subroutine read_view_factors(rows, deck, gap, view_factor)
       type(data_card_type), intent(in) :: rows(:)
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp), allocatable, intent(out) :: gap(:), view_factor(:)   ! (rows)
       integer :: i
       logical :: valid
@@ -166,35 +163,35 @@ contains
       allocate (gap(max(size(rows), 1)), source=0.0_dp)
       allocate (view_factor(size(gap)), source=1.0_dp)
       do i = 1, size(rows)
-         view_factor(i) = part_of(rows(i), 1, 'view factor', report)
+         view_factor(i) = part_of(rows(i), 1, 'view factor', deck)
          valid = .true.
-         call take_field(rows(i), 2, 'clearance', report, gap(i), valid)
-         call check_extra(rows(i), 2, 'view factor, clearance', report)
+         call take_field(rows(i), 2, 'clearance', deck, gap(i), valid)
+         call check_extra(rows(i), 2, 'view factor, clearance', deck)
          if (gap(i) < 0.0_dp) then
-            call report%error(rows(i)%place(2), 'the clearance must not be negative')
+            call deck%error(rows(i)%place(2), 'the clearance must not be negative')
          else if (i > 1 .and. valid) then
-            if (gap(i) <= gap(i - 1)) call report%error(rows(i)%place(2), 'clearances must ascend')
+            if (gap(i) <= gap(i - 1)) call deck%error(rows(i)%place(2), 'clearances must ascend')
          end if
       end do
       if (maxval(view_factor) > 0.0_dp) return
-      call report%error(rows(1)%place(1), 'all view factors are 0: the faces do not radiate; '// &
+      call deck%error(rows(1)%place(1), 'all view factors are 0: the faces do not radiate; '// &
          'leave *GAP RADIATION out')
       view_factor = 1.0_dp
    end subroutine read_view_factors
 
    !> A field of 0 to 1; 1 after an error.
-   real(dp) function part_of(data, i, what, report) result(part)
+   real(dp) function part_of(data, i, what, deck) result(part)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical :: valid
 
       valid = .true.
       part = 1.0_dp
-      call need_field(data, i, what, report, part, valid)
+      call need_field(data, i, what, deck, part, valid)
       if (part >= 0.0_dp .and. part <= 1.0_dp) return
-      call report%error(data%place(i), 'the '//what//' must be between 0 and 1')
+      call deck%error(data%place(i), 'the '//what//' must be between 0 and 1')
       part = 1.0_dp
    end function part_of
 

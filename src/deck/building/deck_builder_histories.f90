@@ -6,8 +6,7 @@ module deck_builder_histories
    use card_parameters, only: choose, chosen, take_parameter, take_positive
    use card_values, only: check_extra, decimal_comma, need_field, report_decimal_comma, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: deck_context_type, read_target, take_name
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type, take_name
    use deck_structure, only: cards_of
    use element_kinds, only: kind_count, plane_stress
    use kinds, only: dp
@@ -35,28 +34,26 @@ module deck_builder_histories
 contains
 
    !> Builds all amplitudes.
-   subroutine build_amplitudes(cards, context, model, report)
+   subroutine build_amplitudes(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives their names
+      type(deck_type), intent(inout) :: deck   !! receives their names and errors
       type(model_type), intent(inout) :: model             !! receives the amplitudes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: n
 
       places = cards_of(cards, 'AMPLITUDE')
       allocate(model%amplitudes(size(places)))
       do n = 1, size(places)
-         call take_name(cards, places(n), 'amplitude', context%amplitudes, &
-            model%amplitudes(n)%name, report)
-         call build_amplitude(cards%keywords(places(n)), report, model%amplitudes(n))
+         call take_name(cards, places(n), 'amplitude', deck%amplitudes, deck%deck_report_type, &
+            model%amplitudes(n)%name)
+         call build_amplitude(cards%keywords(places(n)), deck, model%amplitudes(n))
       end do
    end subroutine build_amplitudes
 
    !> Builds all *TIME POINTS: times, any number of them a card, or start, end and interval.
-   subroutine build_time_points(cards, context, report)
+   subroutine build_time_points(cards, deck)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives them
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives them and errors
       integer, allocatable :: places(:)
       character(:), allocatable :: kind
       integer :: i, j, n
@@ -64,81 +61,81 @@ contains
       real(dp) :: values(3)
 
       places = cards_of(cards, 'TIME POINTS')
-      allocate (context%time_points(size(places)))
+      allocate (deck%time_points(size(places)))
       do n = 1, size(places)
-         call take_name(cards, places(n), 'time points', context%time_point_names, &
-            context%time_points(n)%name, report)
-         associate (card => cards%keywords(places(n)), points => context%time_points(n))
+         call take_name(cards, places(n), 'time points', deck%time_point_names, &
+            deck%deck_report_type, deck%time_points(n)%name)
+         associate (card => cards%keywords(places(n)), points => deck%time_points(n))
             kind = 'STEP TIME'
-            call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)
+            call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, kind)
             points%total_time = kind == 'TOTAL TIME'
             allocate (points%times(0))
             do j = 1, size(card%data)
                valid = .true.
                if (card%has('GENERATE')) then
-                  call need_field(card%data(j), 1, 'start', report, values(1), valid)
-                  call need_field(card%data(j), 2, 'end', report, values(2), valid)
-                  call need_field(card%data(j), 3, 'interval', report, values(3), valid)
-                  call check_extra(card%data(j), 3, 'start, end, interval', report)
+                  call need_field(card%data(j), 1, 'start', deck, values(1), valid)
+                  call need_field(card%data(j), 2, 'end', deck, values(2), valid)
+                  call need_field(card%data(j), 3, 'interval', deck, values(3), valid)
+                  call check_extra(card%data(j), 3, 'start, end, interval', deck)
                   if (valid .and. .not. (values(3) > 0.0_dp .and. &
-                     values(2) >= values(1))) call report%error(card%data(j)%place(3), 'time '// &
+                     values(2) >= values(1))) call deck%error(card%data(j)%place(3), 'time '// &
                      'points go up from the start to the end by a positive interval')
                   if (valid .and. values(3) > 0.0_dp) points%times = [points%times, (values(1) + &
                      i*values(3), i=0, floor((values(2) - values(1))/values(3) + 1.0e-6_dp))]
                   cycle
                end if
                do i = 1, size(card%data(j)%fields)
-                  call need_field(card%data(j), i, 'time', report, values(1), valid)
+                  call need_field(card%data(j), i, 'time', deck, values(1), valid)
                   if (valid) points%times = [points%times, values(1)]
                end do
             end do
-            if (any(points%times(2:) <= points%times(:size(points%times) - 1))) call &
-               report%error(card%place, 'time points must ascend')
+            if (any(points%times(2:) <= points%times(:size(points%times) - 1))) call deck%error( &
+               card%place, 'time points must ascend')
          end associate
       end do
    end subroutine build_time_points
 
    !> Parameters of the card, then its points.
-   subroutine build_amplitude(card, report, amplitude)
+   subroutine build_amplitude(card, deck, amplitude)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(amplitude_type), intent(inout) :: amplitude
       character(:), allocatable :: kind
 
       kind = 'STEP TIME'
-      call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', report, kind)
+      call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, kind)
       amplitude%total_time = kind == 'TOTAL TIME'
       kind = 'RELATIVE'
-      call choose(card, 'VALUE', 'RELATIVE', report, kind)
+      call choose(card, 'VALUE', 'RELATIVE', deck, kind)
       kind = to_upper(card%text('DEFINITION'))
       select case (kind)
       case ('PERIODIC', 'MODULATED', 'DECAY', 'SOLUTION DEPENDENT', 'ACTUATOR', 'SPECTRUM', &
          'USER', 'BUBBLE')
-         call report%error(card%place_of('DEFINITION'), 'DEFINITION='//kind//' is refused; '// &
-            'give times and values')
+         call deck%error(card%place_of('DEFINITION'), 'DEFINITION='//kind//' is refused; give '// &
+            'times and values')
          kind = ''
       case default
          kind = 'TABULAR'
-         call choose(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', report, kind)
+         call choose(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, kind)
       end select
       amplitude%smooth = kind == 'SMOOTH STEP'
       if (len(kind) == 0) then
          allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
       else if (kind == 'EQUALLY SPACED') then
-         call read_values(card, report, amplitude)
+         call read_values(card, deck, amplitude)
       else
-         if (card%has('FIXED INTERVAL')) call report%error(card%place_of('FIXED INTERVAL'), &
+         if (card%has('FIXED INTERVAL')) call deck%error(card%place_of('FIXED INTERVAL'), &
             'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
-         if (card%has('BEGIN')) call report%error(card%place_of('BEGIN'), 'BEGIN= needs '// &
+         if (card%has('BEGIN')) call deck%error(card%place_of('BEGIN'), 'BEGIN= needs '// &
             'DEFINITION=EQUALLY SPACED')
-         call read_points(card, report, amplitude)
+         call read_points(card, deck, amplitude)
       end if
    end subroutine build_amplitude
 
    !> Values at equal intervals, any number of them a card.
-   subroutine read_values(card, report, amplitude)
+   subroutine read_values(card, deck, amplitude)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(amplitude_type), intent(inout) :: amplitude
       real(dp) :: begin, interval
       integer :: j, i, n
@@ -146,10 +143,10 @@ contains
 
       begin = 0.0_dp
       interval = 1.0_dp
-      call take_parameter(card, 'BEGIN', report, begin)
-      call take_positive(card, 'FIXED INTERVAL', report, interval)
-      if (card%lacks('FIXED INTERVAL')) call report%error(card%place, 'DEFINITION=EQUALLY '// &
-         'SPACED needs FIXED INTERVAL=')
+      call take_parameter(card, 'BEGIN', deck, begin)
+      call take_positive(card, 'FIXED INTERVAL', deck, interval)
+      if (card%lacks('FIXED INTERVAL')) call deck%error(card%place, 'DEFINITION=EQUALLY SPACED '// &
+         'needs FIXED INTERVAL=')
       n = sum([(size(card%data(j)%fields), j=1, size(card%data))])
       allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
       n = 0
@@ -158,15 +155,15 @@ contains
             n = n + 1
             amplitude%times(n) = begin + (n - 1)*interval
             valid = .true.
-            call need_field(card%data(j), i, 'value', report, amplitude%values(n), valid)
+            call need_field(card%data(j), i, 'value', deck, amplitude%values(n), valid)
          end do
       end do
    end subroutine read_values
 
    !> Pairs of time and value, any number of them a card.
-   subroutine read_points(card, report, amplitude)
+   subroutine read_points(card, deck, amplitude)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(amplitude_type), intent(inout) :: amplitude
       integer :: j, i, n
       logical :: valid
@@ -180,17 +177,17 @@ contains
       do j = 1, size(card%data)
          i = decimal_comma(card%data(j))
          if (i > 0 .and. .not. is_history(card%data(j), amplitude%times(:n))) then
-            call report_decimal_comma(card%data(j), i, report)
+            call report_decimal_comma(card%data(j), i, deck)
             return
          end if
          do i = 1, size(card%data(j)%fields), 2
             n = n + 1
             valid = .true.
-            call need_field(card%data(j), i, 'time', report, amplitude%times(n), valid)
-            call need_field(card%data(j), i + 1, 'value', report, amplitude%values(n), valid)
+            call need_field(card%data(j), i, 'time', deck, amplitude%times(n), valid)
+            call need_field(card%data(j), i + 1, 'value', deck, amplitude%values(n), valid)
             if (n < 2 .or. .not. valid) cycle
             if (amplitude%times(n) <= amplitude%times(n - 1)) then
-               call report%error(card%data(j)%place(i), 'times must ascend')
+               call deck%error(card%data(j)%place(i), 'times must ascend')
             end if
          end do
       end do
@@ -215,11 +212,10 @@ contains
    end function is_history
 
    !> Reads all initial temperatures.
-   subroutine build_temperatures(cards, context, model, report)
+   subroutine build_temperatures(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives the requests
+      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       type(model_type), intent(in) :: model                !! mesh and its sets
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(request_type) :: request
       character(:), allocatable :: kind
       integer, allocatable :: places(:)
@@ -230,34 +226,32 @@ contains
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
             if (card%lacks('TYPE')) then
-               call report%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE '// &
-                  'or TYPE=STRESS')
+               call deck%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE or '// &
+                  'TYPE=STRESS')
             end if
             kind = ''
-            call choose(card, 'TYPE', initial_kinds, report, kind)
-            if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) call &
-               context%note('*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing depends '// &
-               'on it')
+            call choose(card, 'TYPE', initial_kinds, deck, kind)
+            if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) call deck%note( &
+               '*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing depends on it')
             if (kind /= 'TEMPERATURE') cycle
             do j = 1, size(card%data)
                valid = .true.
                request%place = card%data(j)%place(1)
-               call read_target(card%data(j), 1, context%node_index, model%mesh%node_sets, report, &
-                  request%target_type, valid)
-               call need_field(card%data(j), 2, 'temperature', report, request%value, valid)
-               call check_extra(card%data(j), 2, 'node or set, temperature', report)
-               if (valid) call context%temperatures%add(request)
+               call deck%need_nodes(card%data(j), 1, model%mesh%node_sets, request%target_type, &
+                  valid)
+               call need_field(card%data(j), 2, 'temperature', deck, request%value, valid)
+               call check_extra(card%data(j), 2, 'node or set, temperature', deck)
+               if (valid) call deck%temperatures%add(request)
             end do
          end associate
       end do
    end subroutine build_temperatures
 
    !> Reads all initial stresses; later cards replace earlier ones.
-   subroutine build_initial_stresses(cards, context, mesh, report)
+   subroutine build_initial_stresses(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context       !! numbers of elements
+      type(deck_type), intent(inout) :: deck   !! numbers of elements; receives errors
       type(mesh_type), intent(inout) :: mesh               !! receives the stresses
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: points(:)
       integer :: j, k
 
@@ -270,15 +264,15 @@ contains
             points = spread(0, 1, size(mesh%element_number))
             do j = 1, size(card%data)
                if (size(card%data(j)%fields) > most_fields) then
-                  call take_point(card%data(j), context, points, mesh, report)
+                  call take_point(card%data(j), deck, points, mesh)
                else
-                  call take_elements(card%data(j), context, mesh, report)
+                  call take_elements(card%data(j), deck, mesh)
                end if
             end do
             do j = 1, size(points)
                if (points(j) <= 0 .or. points(j) == solid_points(mesh%element_kind(j))) cycle
-               call report%error(card%place, 'element '//to_text(mesh%element_number(j))// &
-                  ' has a stress at '//to_text(points(j))//' of the '// &
+               call deck%error(card%place, 'element '//to_text(mesh%element_number(j))//' has '// &
+                  'a stress at '//to_text(points(j))//' of the '// &
                   to_text(solid_points(mesh%element_kind(j)))//' integration points that it '// &
                   'has in CalculiX, and none at the others; an element has one stress here')
                exit
@@ -288,11 +282,10 @@ contains
    end subroutine build_initial_stresses
 
    !> Element or set, s11, s22, s33, s12; in plane stress Abaqus leaves s33 out.
-   subroutine take_elements(data, context, mesh, report)
+   subroutine take_elements(data, deck, mesh)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(inout) :: mesh
-      type(deck_report_type), intent(inout) :: report
       type(target_type) :: target
       integer, allocatable :: members(:)
       real(dp) :: stress(4)
@@ -300,16 +293,16 @@ contains
       logical :: is_flat, valid
 
       valid = .true.
-      call read_target(data, 1, context%element_index, mesh%element_sets, report, target, valid)
-      call read_stress(data, 2, 4, report, stress, valid)
+      call deck%need_elements(data, 1, mesh%element_sets, target, valid)
+      call read_stress(data, 2, 4, deck, stress, valid)
       if (.not. valid) return
       members = target%members(mesh%element_sets)
       if (target%item > 0) then
          call read_integer(data%fields(2)%text, number, valid)
          if (valid .and. number > 0 .and. number <= &
             solid_points(mesh%element_kind(target%item))) then
-            call report%error(data%place(2), 'integration point or stress? Give '//layout// &
-               ', or a stress with a decimal point')
+            call deck%error(data%place(2), 'integration point or stress? Give '//layout//', or '// &
+               'a stress with a decimal point')
             return
          end if
       end if
@@ -319,21 +312,20 @@ contains
       end do
       if (is_flat .and. size(data%fields) == 4) stress = [stress(:2), 0.0_dp, stress(3)]
       if (any(mesh%element_plane(members) == plane_stress) .and. abs(stress(3)) > 0.0_dp) then
-         call report%error(data%place(4), 's33 is 0 in plane stress; the card is element or '// &
-            'set, s11, s22, s12, or with s33=0 before s12')
+         call deck%error(data%place(4), 's33 is 0 in plane stress; the card is element or set, '// &
+            's11, s22, s12, or with s33=0 before s12')
          return
       end if
       mesh%initial_stress(:, members) = spread(stress, 2, size(members))
    end subroutine take_elements
 
    !> One integration point of an element as CalculiX has it; all of its points have one stress.
-   subroutine take_point(data, context, points, mesh, report)
+   subroutine take_point(data, deck, points, mesh)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       !> (elements) points that were given, -1 where one of them is wrong
       integer, intent(inout) :: points(:)
       type(mesh_type), intent(inout) :: mesh
-      type(deck_report_type), intent(inout) :: report
       type(target_type) :: target
       real(dp) :: stress(6)
       integer :: next, point
@@ -342,10 +334,10 @@ contains
       valid = .true.
       point = 0
       next = 1
-      call read_target(data, 1, context%element_index, mesh%element_sets, report, target, valid)
-      call need_field(data, 2, 'integration point', report, point, valid)
-      call read_stress(data, 3, 6, report, stress, valid)
-      call check_extra(data, 8, layout, report)
+      call deck%need_elements(data, 1, mesh%element_sets, target, valid)
+      call need_field(data, 2, 'integration point', deck, point, valid)
+      call read_stress(data, 3, 6, deck, stress, valid)
+      call check_extra(data, 8, layout, deck)
       associate (item => target%item)
          if (item > 0) then
             if (points(item) < 0) return
@@ -354,20 +346,20 @@ contains
          end if
          if (.not. valid) return
          if (target%set > 0) then
-            call report%error(data%place(1), 'an element set has no integration points; the '// &
-               'card is set, s11, s22, s33, s12, or '//layout)
+            call deck%error(data%place(1), 'an element set has no integration points; the card '// &
+               'is set, s11, s22, s33, s12, or '//layout)
          else if (any(abs(stress(5:)) > 0.0_dp)) then
-            call report%error(data%place(7), 's13 and s23 are 0 in a plane')
+            call deck%error(data%place(7), 's13 and s23 are 0 in a plane')
          else if (mesh%element_plane(item) == plane_stress .and. abs(stress(3)) > 0.0_dp) then
-            call report%error(data%place(5), 's33 is 0 in plane stress')
+            call deck%error(data%place(5), 's33 is 0 in plane stress')
          else if (point /= next .or. point > solid_points(mesh%element_kind(item))) then
-            call report%error(data%place(2), 'the integration points of an element follow each '// &
+            call deck%error(data%place(2), 'the integration points of an element follow each '// &
                'other from 1 to '//to_text(solid_points(mesh%element_kind(item)))//', as in '// &
                'CalculiX')
          else if (point > 1 .and. maxval(abs(stress(:4) - mesh%initial_stress(:, item))) > &
             printed*maxval(abs(stress))) then
-            call report%error(data%place(2), 'the stress differs from that at point 1 of '// &
-               'element '//to_text(mesh%element_number(item))//'; an element has one stress here')
+            call deck%error(data%place(2), 'the stress differs from that at point 1 of element '// &
+               to_text(mesh%element_number(item))//'; an element has one stress here')
          else
             if (point == 1) mesh%initial_stress(:, item) = stress(:4)
             points(item) = point
@@ -376,19 +368,19 @@ contains
    end subroutine take_point
 
    !> Components in a row; those that are left out are 0.
-   subroutine read_stress(data, first, components, report, stress, valid)
+   subroutine read_stress(data, first, components, deck, stress, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: first                    !! field of the first
       integer, intent(in) :: components               !! how many there can be
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp), intent(out) :: stress(:)
       logical, intent(inout) :: valid
       integer :: i
 
       stress = 0.0_dp
-      call need_field(data, first, 'stress', report, stress(1), valid)
+      call need_field(data, first, 'stress', deck, stress(1), valid)
       do i = 2, components
-         call take_field(data, first + i - 1, 'stress', report, stress(i), valid)
+         call take_field(data, first + i - 1, 'stress', deck, stress(i), valid)
       end do
    end subroutine read_stress
 

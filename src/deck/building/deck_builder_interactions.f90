@@ -11,8 +11,7 @@ module deck_builder_interactions
       join_gap_conductance
    use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
    use deck_builder_gap_laws, only: build_gap_law
-   use deck_context, only: deck_context_type, take_name
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type, take_name
    use deck_source, only: place_type
    use deck_structure, only: card_count
    use friction_laws, only: friction_law_type, rough_coefficient
@@ -34,11 +33,10 @@ module deck_builder_interactions
 contains
 
    !> Builds all surface interactions; a law belongs to the last *SURFACE INTERACTION before it.
-   subroutine build_interactions(cards, context, model, report)
+   subroutine build_interactions(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives notes
+      type(deck_type), intent(inout) :: deck   !! receives notes and errors and warnings
       type(model_type), intent(inout) :: model             !! receives the interactions
-      type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
       type(interaction_type) :: interaction
       type(place_type) :: law_place
       integer :: k, n, errors
@@ -50,22 +48,22 @@ contains
             if (card%name == 'STEP') exit
             select case (card%name)
             case ('SURFACE INTERACTION')
-               errors = report%error_count()
+               errors = deck%error_count()
                n = n + 1
-               call take_name(cards, k, 'surface interaction', context%interactions, &
-                  model%interactions(n)%name, report)
+               call take_name(cards, k, 'surface interaction', deck%interactions, &
+                  deck%deck_report_type, model%interactions(n)%name)
                law_place = card%place
-               call ignore_thickness(card, context, report)
+               call ignore_thickness(card, deck)
                interaction = model%interactions(n)
-               call build_laws(cards, k, model, context, report, interaction, law_place)
+               call build_laws(cards, k, model, deck, interaction, law_place)
                model%interactions(n) = interaction
-               if (report%error_count() > errors .or. card%flawed) cycle
-               call check_law(card, law_place, model%interactions(n), report)
+               if (deck%error_count() > errors .or. card%flawed) cycle
+               call check_law(card, law_place, model%interactions(n), deck)
             case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'GAP HEAT GENERATION', &
                'GAP RADIATION', 'SURFACE BEHAVIOR')
                if (n == 0 .and. len(card%meant) == 0) then
-                  call report%missing(card%place, '*'//card%name// &
-                     ' has no *SURFACE INTERACTION before it')
+                  call deck%missing(card%place, '*'//card%name//' has no *SURFACE INTERACTION '// &
+                     'before it')
                end if
             case default
                cycle
@@ -75,31 +73,29 @@ contains
    end subroutine build_interactions
 
    !> Thickness of the contact out of the plane, which Abaqus needs for surfaces of nodes alone.
-   subroutine ignore_thickness(card, context, report)
+   subroutine ignore_thickness(card, deck)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp) :: thickness
       logical :: valid
 
       if (size(card%data) == 0) return
       valid = .true.
       thickness = 1.0_dp
-      call take_field(card%data(1), 1, 'thickness', report, thickness, valid)
-      call check_extra(card%data(1), 1, 'thickness', report)
-      if (thickness <= 0.0_dp) call report%error(card%data(1)%place(1), 'the thickness must be '// &
+      call take_field(card%data(1), 1, 'thickness', deck, thickness, valid)
+      call check_extra(card%data(1), 1, 'thickness', deck)
+      if (thickness <= 0.0_dp) call deck%error(card%data(1)%place(1), 'the thickness must be '// &
          'positive')
-      call context%note('*SURFACE INTERACTION: the thickness is ignored: that of '// &
-         '*SOLID SECTION is taken')
+      call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of *SOLID SECTION '// &
+         'is taken')
    end subroutine ignore_thickness
 
    !> Reads the laws behind one *SURFACE INTERACTION.
-   subroutine build_laws(cards, place, model, context, report, interaction, law_place)
+   subroutine build_laws(cards, place, model, deck, interaction, law_place)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: place
       type(model_type), intent(in) :: model          ! with its mesh
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
       type(conductance_law_type) :: table
@@ -119,35 +115,32 @@ contains
             end if
             select case (card%name)
             case ('FRICTION')
-               call count_once(cards, k, friction, report)
-               call build_friction(card, context, report, interaction%friction)
+               call count_once(cards, k, friction, deck)
+               call build_friction(card, deck, interaction%friction)
             case ('SURFACE BEHAVIOR')
-               call count_once(cards, k, behavior, report)
-               call build_behavior(card, context, report, interaction%overlap)
+               call count_once(cards, k, behavior, deck)
+               call build_behavior(card, deck, interaction%overlap)
             case ('GAP HEAT GENERATION')
-               call count_once(cards, k, heat, report)
-               call build_friction_heat(card, model, report, interaction%heat)
+               call count_once(cards, k, heat, deck)
+               call build_friction_heat(card, model, deck, interaction%heat)
             case ('GAP RADIATION')
-               call count_once(cards, k, radiation, report)
+               call count_once(cards, k, radiation, deck)
             case ('GAP LAW')
-               call build_gap_law(card, interaction%name, model%constants, context, report, &
-                  interaction%law)
+               call build_gap_law(card, interaction%name, model%constants, deck, interaction%law)
             case ('GAP CONDUCTANCE')
                if (is_of_clearance(card, has_pressure(cards, place))) then
-                  call build_gap_conductance(card, interaction%name, .true., context, report, &
-                     interaction%law)
+                  call build_gap_conductance(card, interaction%name, .true., deck, interaction%law)
                else
-                  call build_gap_conductance(card, interaction%name, .false., context, report, &
-                     table)
+                  call build_gap_conductance(card, interaction%name, .false., deck, table)
                end if
             case default
                cycle
             end select
          end associate
       end do
-      call join_gap_conductance(table, interaction%name, context, interaction%law)
+      call join_gap_conductance(table, interaction%name, deck, interaction%law)
       if (radiation > 0) call build_gap_radiation(cards%keywords(radiation), model%constants, &
-         context, report, interaction%law)
+         deck, interaction%law)
    end subroutine build_laws
 
    !> Whether the laws behind a *SURFACE INTERACTION have a *GAP CONDUCTANCE, PRESSURE.
@@ -164,88 +157,85 @@ contains
    end function has_pressure
 
    !> Takes the keyword card of a law that a surface interaction has once.
-   subroutine count_once(cards, k, taken, report)
+   subroutine count_once(cards, k, taken, deck)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k
       integer, intent(inout) :: taken         ! the card before, 0 for none; receives this one
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
 
       associate (card => cards%keywords(k))
-         if (taken > 0) call report%error(card%place, 'a second *'//card%name//' in one '// &
-            'surface interaction; the first is on '// &
-            report%source%words_of(cards%keywords(taken)%place)//': leave one of them out')
+         if (taken > 0) call deck%error(card%place, 'a second *'//card%name//' in one surface '// &
+            'interaction; the first is on '//deck%source%words_of(cards%keywords(taken)%place)// &
+            ': leave one of them out')
       end associate
       taken = k
    end subroutine count_once
 
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
-   subroutine build_friction(card, context, report, friction)
+   subroutine build_friction(card, deck, friction)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives notes and errors
       type(friction_law_type), intent(out) :: friction
 
-      call take_parameter(card, 'TAUMAX', report, friction%largest_shear)
-      if (friction%largest_shear <= 0.0_dp) call report%error(card%place_of('TAUMAX'), &
-         'TAUMAX= must be positive; without friction leave out the card')
+      call take_parameter(card, 'TAUMAX', deck, friction%largest_shear)
+      if (friction%largest_shear <= 0.0_dp) call deck%error(card%place_of('TAUMAX'), 'TAUMAX= '// &
+         'must be positive; without friction leave out the card')
       if (card%has('ROUGH')) then
          friction%coefficient = rough_coefficient
-         if (card%has('TAUMAX')) call report%error(card%place_of('ROUGH'), 'TAUMAX= and ROUGH '// &
+         if (card%has('TAUMAX')) call deck%error(card%place_of('ROUGH'), 'TAUMAX= and ROUGH '// &
             'exclude each other: rough faces do not slip')
-         if (size(card%data) > 0) call report%error(card%data(1)%place(1), '*FRICTION, ROUGH '// &
-            'has no data')
+         if (size(card%data) > 0) call deck%error(card%data(1)%place(1), '*FRICTION, ROUGH has '// &
+            'no data')
       else if (size(card%data) > 0) then
-         call read_coefficient(card%data(1), context, report, friction%coefficient)
+         call read_coefficient(card%data(1), deck, friction%coefficient)
       end if
    end subroutine build_friction
 
    !> The coefficient, which is not so large that a pressure is lost in the last places of mu times
    !> it; a stick slope behind it is not needed.
-   subroutine read_coefficient(data, context, report, coefficient)
+   subroutine read_coefficient(data, deck, coefficient)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp), intent(inout) :: coefficient
       real(dp) :: slope
       logical :: valid
 
       valid = .true.
-      call need_field(data, 1, 'coefficient of friction', report, coefficient, valid)
-      call take_field(data, 2, 'stick slope', report, slope, valid)
-      call check_extra(data, 2, 'coefficient of friction, stick slope', report)
+      call need_field(data, 1, 'coefficient of friction', deck, coefficient, valid)
+      call take_field(data, 2, 'stick slope', deck, slope, valid)
+      call check_extra(data, 2, 'coefficient of friction, stick slope', deck)
       if (coefficient < 0.0_dp) then
-         call report%error(data%place(1), 'the coefficient of friction must not be negative')
+         call deck%error(data%place(1), 'the coefficient of friction must not be negative')
       else if (coefficient > rough_coefficient) then
-         call report%error(data%place(1), 'the coefficient of friction must not exceed '// &
+         call deck%error(data%place(1), 'the coefficient of friction must not exceed '// &
             to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
       else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then
-         call report%warning(data%place(1), 'a coefficient of friction of '// &
-            to_text(coefficient)//' is unusual: is it in per cent? Use ROUGH for faces that '// &
-            'never slip while closed')
+         call deck%warning(data%place(1), 'a coefficient of friction of '//to_text(coefficient)// &
+            ' is unusual: is it in per cent? Use ROUGH for faces that never slip while closed')
       end if
       if (size(data%fields) > 1) then
-         call context%note('*FRICTION: the stick slope is ignored')
-         call check_unneeded(data, 2, 'a stick slope', report, frictionless)
+         call deck%note('*FRICTION: the stick slope is ignored')
+         call check_unneeded(data, 2, 'a stick slope', deck, frictionless)
       end if
    end subroutine read_coefficient
 
    !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
-   subroutine check_law(card, law_place, interaction, report)
+   subroutine check_law(card, law_place, interaction, deck)
       type(keyword_card_type), intent(in) :: card
       type(place_type), intent(in) :: law_place      ! where the last of its laws is
       type(interaction_type), intent(in) :: interaction
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(conductance_law_type) :: law
       type(face_temperatures_type) :: faces
       real(dp) :: open, closed
       character(:), allocatable :: advice, there
 
-      if (table_jump(interaction%law) > 0.0_dp) call report%warning(card%place, &
-         'the conductance of '//interaction%name//' falls from '// &
-         to_text(table_jump(interaction%law))//' to 0 where the gap exceeds that of the last '// &
-         'row, '//to_text(maxval(interaction%law%table_gap))//'; an increment in which a gap '// &
-         'would stay there has no solution: end the table with a row of conductance 0')
-      if (radiation_ends(interaction%law)) call report%warning(law_place, 'faces of '// &
+      if (table_jump(interaction%law) > 0.0_dp) call deck%warning(card%place, 'the conductance '// &
+         'of '//interaction%name//' falls from '//to_text(table_jump(interaction%law))//' to 0 '// &
+         'where the gap exceeds that of the last row, '// &
+         to_text(maxval(interaction%law%table_gap))//'; an increment in which a gap would stay '// &
+         'there has no solution: end the table with a row of conductance 0')
+      if (radiation_ends(interaction%law)) call deck%warning(law_place, 'faces of '// &
          interaction%name//' radiate where they are open and not where they are closed: the '// &
          'conductance jumps by that of radiation where the gap closes; TYPE=CMY and '// &
          'TYPE=ROSS-STOUTE add to it')
@@ -261,7 +251,7 @@ contains
       advice = '; at gap 0 and pressure 0 both laws should give the same'
       if (law%open_kind == law_none) advice = ', for there is no open law; give the gas in '// &
          'gaps by *GAP LAW, TYPE=GAS'
-      call report%warning(law_place, 'the conductance of '//interaction%name//' jumps by '// &
+      call deck%warning(law_place, 'the conductance of '//interaction%name//' jumps by '// &
          to_text(law_jump(law))//' where the gap closes without pressure'//there//': from '// &
          to_text(open)//' open to '//to_text(closed)//' closed'//advice)
    end subroutine check_law

@@ -3,8 +3,7 @@
 module deck_builder_lines
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_structure, only: cards_of, data_count
    use element_kinds, only: element_corner_count, side_node_count, side_nodes
    use element_types, only: drawn_line, line_kind, line_node_count
@@ -43,71 +42,68 @@ contains
    end function element_cards
 
    !> Builds the lines, in the order of the deck; the nodes are known.
-   subroutine build_lines(cards, context, report)
+   subroutine build_lines(cards, deck)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives the lines
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives the lines and errors
       character(:), allocatable :: name
       integer, allocatable :: places(:)
       integer :: k, j, n
 
       places = element_cards(cards, of_lines=.true.)
       n = data_count(cards, places)
-      allocate(context%line_number(n), context%line_nodes(nodes_per_line, n), source=0)
-      allocate(context%line_kind(n), source=drawn_line)
-      allocate(context%line_place(n))
+      allocate(deck%line_number(n), deck%line_nodes(nodes_per_line, n), source=0)
+      allocate(deck%line_kind(n), source=drawn_line)
+      allocate(deck%line_place(n))
       n = 0
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
             name = to_upper(card%text('TYPE'))
-            if (line_kind(name) == drawn_line) call context%note('*ELEMENT, TYPE='//name// &
+            if (line_kind(name) == drawn_line) call deck%note('*ELEMENT, TYPE='//name// &
                ': lines are ignored, except for sets and surfaces that are made of them')
             do j = 1, size(card%data)
                n = n + 1
-               context%line_kind(n) = line_kind(name)
-               context%line_place(n) = card%data(j)%place(1)
-               call read_line(card%data(j), context, report, context%line_number(n), &
-                  context%line_nodes(:line_node_count(name), n))
+               deck%line_kind(n) = line_kind(name)
+               deck%line_place(n) = card%data(j)%place(1)
+               call read_line(card%data(j), deck, deck%line_number(n), &
+                  deck%line_nodes(:line_node_count(name), n))
             end do
          end associate
       end do
-      if (size(places) > 0 .and. data_count(cards, element_cards(cards, of_lines=.false.)) == 0) &
-         call report%missing(cards%keywords(places(1))%place_of('TYPE'), &
-         'the deck has lines, but no elements')
+      if (size(places) > 0 .and. &
+         data_count(cards, element_cards(cards, of_lines=.false.)) == 0) call deck%missing( &
+         cards%keywords(places(1))%place_of('TYPE'), 'the deck has lines, but no elements')
    end subroutine build_lines
 
    !> Number and nodes of one line; nodes that do not exist are errors, and 0.
-   subroutine read_line(data, context, report, number, nodes)
+   subroutine read_line(data, deck, number, nodes)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: number, nodes(:)
       integer :: q
       logical :: valid
 
       valid = .true.
-      call need_field(data, 1, 'element number', report, number, valid)
+      call need_field(data, 1, 'element number', deck, number, valid)
       do q = 1, size(nodes)
-         if (valid) call read_node(data, q, context, report, nodes(q), valid)
+         if (valid) call read_node(data, q, deck, nodes(q), valid)
       end do
-      if (valid) call check_extra(data, size(nodes) + 1, 'line, '//to_text(size(nodes))// &
-         ' nodes', report)
+      if (valid) call check_extra(data, size(nodes) + 1, 'line, '//to_text(size(nodes))//' nodes', &
+         deck)
    end subroutine read_line
 
    !> Index of node q of an element or a line; one that does not exist is an error, and 0.
-   subroutine read_node(data, q, context, report, node, valid)
+   subroutine read_node(data, q, deck, node, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: q                             !! node 1, 2, ... of the element
-      type(deck_context_type), intent(in) :: context       !! numbers -> indexes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! numbers -> indexes; receives errors
       integer, intent(inout) :: node                       !! stays as it is without a number
       logical, intent(inout) :: valid                      !! false where it has no number
       integer :: number
 
-      call need_field(data, q + 1, 'node '//to_text(q), report, number, valid)
+      call need_field(data, q + 1, 'node '//to_text(q), deck, number, valid)
       if (.not. valid) return
-      node = context%node_index%find(number)
-      if (node == 0) call report%missing(data%place(q + 1), 'there is no node '//to_text(number), &
+      node = deck%node_index%find(number)
+      if (node == 0) call deck%missing(data%place(q + 1), 'there is no node '//to_text(number), &
          'node', to_text(number))
    end subroutine read_node
 

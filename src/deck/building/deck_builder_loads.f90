@@ -4,8 +4,7 @@ module deck_builder_loads
    use card_values, only: check_extra, need_field, take_field
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_element_loads, only: build_element_load, build_surface_load
-   use deck_context, only: deck_context_type, read_target, take_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use kinds, only: dp
    use load_requests, only: request_type
    use model, only: model_type
@@ -33,80 +32,74 @@ module deck_builder_loads
 contains
 
    !> Takes one card of loads or prescribed values.
-   subroutine build_load_card(card, step, model, context, report)
+   subroutine build_load_card(card, step, model, deck)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
       type(model_type), intent(inout) :: model   !! mesh, sets, amplitudes; the step takes OP=NEW
-      type(deck_context_type), intent(inout) :: context    !! receives the requests
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       type(request_type) :: request
       character(:), allocatable :: kind
       integer :: j, errors, film_amplitude
 
       if (step == 0 .and. card%name /= 'BOUNDARY') return
-      errors = report%error_count()
+      errors = deck%error_count()
       request%step = step
       film_amplitude = 0
       kind = 'DISPLACEMENT'
-      call choose(card, 'TYPE', 'DISPLACEMENT', report, kind)
-      call read_operation(card, step, model, context, report)
-      call take_named(card, 'AMPLITUDE', 'amplitude', context%amplitudes, report, request%amplitude)
+      call choose(card, 'TYPE', 'DISPLACEMENT', deck, kind)
+      call read_operation(card, step, model, deck)
+      call deck%take_named(card, 'AMPLITUDE', 'amplitude', request%amplitude)
       request%keeps = card%has('FIXED')
-      if (request%keeps .and. request%amplitude > 0) call report%error(card%place_of('AMPLITUDE'), &
+      if (request%keeps .and. request%amplitude > 0) call deck%error(card%place_of('AMPLITUDE'), &
          'FIXED holds the values at the start of the step, which no amplitude changes; leave '// &
          'one of the two out')
-      call take_named(card, 'FILM AMPLITUDE', 'amplitude', context%amplitudes, report, &
-         film_amplitude)
+      call deck%take_named(card, 'FILM AMPLITUDE', 'amplitude', film_amplitude)
       if (film_amplitude > 0) then
          associate (film => model%amplitudes(film_amplitude))
-            if (any(film%values < 0.0_dp)) call report%error(card%place_of('FILM AMPLITUDE'), &
+            if (any(film%values < 0.0_dp)) call deck%error(card%place_of('FILM AMPLITUDE'), &
                'amplitude '//film%name//' becomes negative ('//to_text(minval(film%values))// &
                '), but a film coefficient must not; give factors of at least 0')
          end associate
       end if
-      if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, &
-         model%steps(step)%ramped, context)
+      if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, model%steps(step)%ramped, deck)
       do j = 1, size(card%data)
          request%place = card%data(j)%place(1)
          if (card%name == 'BOUNDARY') then
-            call build_boundary(card%data(j), request, model, context, report)
+            call build_boundary(card%data(j), request, model, deck)
             cycle
          end if
-         context%load_cards = context%load_cards + 1
-         request%card = context%load_cards
+         deck%load_cards = deck%load_cards + 1
+         request%card = deck%load_cards
          select case (card%name)
          case ('DSLOAD', 'DSFLUX', 'SFILM')
-            call build_surface_load(card%name, card%data(j), request, film_amplitude, model, &
-               context, report)
+            call build_surface_load(card%name, card%data(j), request, film_amplitude, model, deck)
          case ('DLOAD', 'DFLUX', 'FILM')
-            call build_element_load(card%name, card%data(j), request, film_amplitude, model, &
-               context, report)
+            call build_element_load(card%name, card%data(j), request, film_amplitude, model, deck)
          case default
-            call build_nodal_load(card%name, card%data(j), request, model, context, report)
+            call build_nodal_load(card%name, card%data(j), request, model, deck)
          end select
       end do
-      if (card%name == 'BOUNDARY' .and. (card%flawed .or. report%error_count() > errors)) then
-         context%boundaries_sound = .false.
+      if (card%name == 'BOUNDARY' .and. (card%flawed .or. deck%error_count() > errors)) then
+         deck%boundaries_sound = .false.
       end if
    end subroutine build_load_card
 
    !> OP=NEW on the first card of its keyword in a step ends what former steps gave by it.
-   subroutine read_operation(card, step, model, context, report)
+   subroutine read_operation(card, step, model, deck)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step
       type(model_type), intent(inout) :: model
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: operation
       logical :: first
 
       operation = 'MOD'
-      call choose(card, 'OP', 'MOD/NEW', report, operation)
-      first = context%load_step(card%known) < step
-      context%load_step(card%known) = step
+      call choose(card, 'OP', 'MOD/NEW', deck, operation)
+      first = deck%load_step(card%known) < step
+      deck%load_step(card%known) = step
       if (operation /= 'NEW' .or. step == 0) return
       if (.not. first) then
-         call report%warning(card%place_of('OP'), 'OP=NEW is ignored: it must be on the first *'// &
+         call deck%warning(card%place_of('OP'), 'OP=NEW is ignored: it must be on the first *'// &
             card%name//' of a step')
          return
       end if
@@ -146,78 +139,75 @@ contains
    end subroutine end_loads
 
    !> Notes what coefficient and sink of a film do where the card gives no amplitude.
-   subroutine note_film(card, ramped, context)
+   subroutine note_film(card, ramped, deck)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: ramped
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: coefficient
 
       if (card%has('AMPLITUDE') .and. card%has('FILM AMPLITUDE')) return
       coefficient = 'the coefficient acts fully at once'
       if (ramped) coefficient = 'the coefficient ramps over the step'
       if (card%has('AMPLITUDE')) then
-         call context%note('*'//card%name//', AMPLITUDE='//to_upper(card%text('AMPLITUDE'))// &
+         call deck%note('*'//card%name//', AMPLITUDE='//to_upper(card%text('AMPLITUDE'))// &
             ': the sink temperature follows it, '//coefficient)
       else if (card%has('FILM AMPLITUDE')) then
-         call context%note('*'//card%name//', FILM AMPLITUDE='//to_upper(card%text('FILM '// &
+         call deck%note('*'//card%name//', FILM AMPLITUDE='//to_upper(card%text('FILM '// &
             'AMPLITUDE'))//': the coefficient follows it, the sink temperature acts fully at once')
       else
-         call context%note('*'//card%name//' without amplitudes: '//coefficient// &
-            ', the sink temperature acts fully at once')
+         call deck%note('*'//card%name//' without amplitudes: '//coefficient//', the sink '// &
+            'temperature acts fully at once')
       end if
    end subroutine note_film
 
    !> *CLOAD, *CFLUX: node or set, degree of freedom, value; *TEMPERATURE: node or set, value.
-   subroutine build_nodal_load(keyword, data, request, model, context, report)
+   subroutine build_nodal_load(keyword, data, request, model, deck)
       character(*), intent(in) :: keyword
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
       type(model_type), intent(in) :: model
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer :: dof
       logical :: valid
 
       valid = .true.
       dof = 1
-      call read_target(data, 1, context%node_index, model%mesh%node_sets, report, &
-         request%target_type, valid)
+      call deck%need_nodes(data, 1, model%mesh%node_sets, request%target_type, valid)
       if (keyword == 'TEMPERATURE') then
          request%kind = load_temperature
-         call need_field(data, 2, 'temperature', report, request%value, valid)
-         call check_extra(data, 2, 'node or set, temperature', report)
+         call need_field(data, 2, 'temperature', deck, request%value, valid)
+         call check_extra(data, 2, 'node or set, temperature', deck)
       else
          request%kind = load_force
          if (keyword == 'CFLUX') request%kind = load_nodal_heat
-         call need_field(data, 2, 'degree of freedom', report, dof, valid)
-         call need_field(data, 3, merge('force', 'power', keyword == 'CLOAD'), report, &
+         call need_field(data, 2, 'degree of freedom', deck, dof, valid)
+         call need_field(data, 3, merge('force', 'power', keyword == 'CLOAD'), deck, &
             request%value, valid)
          call check_extra(data, 3, 'node or set, degree of freedom, '// &
-            merge('force', 'power', keyword == 'CLOAD'), report)
+            merge('force', 'power', keyword == 'CLOAD'), deck)
       end if
       if (.not. valid) return
       request%component = dof
       if (keyword == 'CLOAD') request%component = place_in_plane(request, model, dof)
       if (keyword == 'CLOAD' .and. (dof == dof_rotation .or. (dof == dof_turn .and. &
          names_rotation(request, model)))) then
-         call add_moment(data, request, model, context, report)
+         call add_moment(data, request, model, deck)
       else if (keyword == 'CLOAD' .and. all(request%component /= [1, 2])) then
-         call report%error(data%place(2), 'a force acts on degree of freedom 1 or 2')
+         call deck%error(data%place(2), 'a force acts on degree of freedom 1 or 2')
       else if (keyword == 'CFLUX' .and. dof /= dof_temperature) then
-         call report%error(data%place(2), 'heat acts on degree of freedom 11')
+         call deck%error(data%place(2), 'heat acts on degree of freedom 11')
       else
          if (keyword == 'CFLUX') request%component = 1
-         call context%loads%add(request)
+         call deck%loads%add(request)
       end if
    end subroutine build_nodal_load
 
    !> Puts a moment on the rotation of the reference node of a coupling.
-   subroutine add_moment(data, request, model, context, report)
+   subroutine add_moment(data, request, model, deck)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
       type(model_type), intent(in) :: model
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer :: i, node
 
       node = single_node(request, model)
@@ -225,83 +215,81 @@ contains
          .and. .not. model%couplings%is_section(), &
          .true., dim=1)
       if (i == 0 .or. node == 0) then
-         call report%error(data%place(2), 'a moment acts on the reference node of a *COUPLING '// &
-            'or *RIGID BODY; forces act on 1 and 2')
+         call deck%error(data%place(2), 'a moment acts on the reference node of a *COUPLING or '// &
+            '*RIGID BODY; forces act on 1 and 2')
          return
       end if
       request%set = 0
       request%item = model%couplings(i)%rotation
       request%component = 1
-      call context%loads%add(request)
+      call deck%loads%add(request)
    end subroutine add_moment
 
    !> Takes one data card: node or set, first and last degree of freedom, value; or node or set and
    !> the name of a support. 0 on the degrees 3 to 6, which a plane does not have, is ignored.
-   subroutine build_boundary(data, request, model, context, report)
+   subroutine build_boundary(data, request, model, deck)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, place
       type(model_type), intent(in) :: model                !! mesh and its sets
-      type(deck_context_type), intent(inout) :: context    !! receives the requests
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       integer :: first, last, dof
       integer, allocatable :: held(:)
       logical :: valid
 
       request%card = 1
-      if (context%boundaries%count > 0) request%card = &
-         context%boundaries%items(context%boundaries%count)%card + 1
+      if (deck%boundaries%count > 0) request%card = &
+         deck%boundaries%items(deck%boundaries%count)%card + 1
       valid = .true.
       request%value = 0.0_dp
-      call read_target(data, 1, context%node_index, model%mesh%node_sets, report, &
-         request%target_type, valid)
+      call deck%need_nodes(data, 1, model%mesh%node_sets, request%target_type, valid)
       if (valid) then
          if (place_in_plane(request, model, 1) == 0) then
-            call report%error(data%place(1), 'these nodes have axes by *TRANSFORM that differ '// &
-               'in which one is out of the plane; name the nodes of each on a card')
+            call deck%error(data%place(1), 'these nodes have axes by *TRANSFORM that differ in '// &
+               'which one is out of the plane; name the nodes of each on a card')
             return
          end if
       end if
       held = held_degrees(to_upper(data%text(2)))
       if (size(held) > 0) then
-         call check_extra(data, 2, 'node or set, '//to_upper(data%text(2)), report)
-         if (valid) call hold(held, request, model, context)
+         call check_extra(data, 2, 'node or set, '//to_upper(data%text(2)), deck)
+         if (valid) call hold(held, request, model, deck)
          return
       end if
-      call check_name(data, report, valid)
+      call check_name(data, deck, valid)
       if (.not. valid) return
-      call read_degrees(data, report, first, last, request%value, valid)
+      call read_degrees(data, deck, first, last, request%value, valid)
       if (.not. valid) return
       do dof = first, last
          if (names_rotation(request, model)) then
             if (dof == dof_turn) then
-               call add_rotations(request, model, context)
-               call warn_of_turn(data, request%value, report)
+               call add_rotations(request, model, deck)
+               call warn_of_turn(data, request%value, deck)
             else
-               call context%note(out_of_plane)
+               call deck%note(out_of_plane)
             end if
             cycle
          end if
          request%component = place_in_plane(request, model, dof)
          select case (request%component)
          case (1, 2, dof_temperature)
-            call context%boundaries%add(request)
+            call deck%boundaries%add(request)
          case (3:6)
             if (dof == dof_rotation .and. turns(request, model)) then
-               call add_rotations(request, model, context)
-               call warn_of_turn(data, request%value, report)
+               call add_rotations(request, model, deck)
+               call warn_of_turn(data, request%value, deck)
                cycle
             end if
             if (abs(request%value) > 0.0_dp) then
-               call report%error(data%place(4), 'degree of freedom '//to_text(dof)//' can only '// &
+               call deck%error(data%place(4), 'degree of freedom '//to_text(dof)//' can only '// &
                   'be 0 in the plane')
                return
             end if
-            call context%note(out_of_plane)
+            call deck%note(out_of_plane)
             if (place_in_plane(request, model, first) /= 3) cycle
-            if (first == 3 .and. dof == last) call report%warning(data%place(2), 'degree of '// &
+            if (first == 3 .and. dof == last) call deck%warning(data%place(2), 'degree of '// &
                'freedom 3 does not exist in a plane model: this support is ignored')
          case default
-            call report%error(data%place(merge(2, 3, dof == first)), 'degree of freedom '// &
+            call deck%error(data%place(merge(2, 3, dof == first)), 'degree of freedom '// &
                to_text(dof)//'; the plane has 1, 2 and 11')
             return
          end select
@@ -309,23 +297,23 @@ contains
    end subroutine build_boundary
 
    !> First and last degree of freedom, and the value.
-   subroutine read_degrees(data, report, first, last, value, valid)
+   subroutine read_degrees(data, deck, first, last, value, valid)
       type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, intent(out) :: first, last
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
 
       first = 0
       call need_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
-         report, first, valid)
+         deck, first, valid)
       last = first
       if (.not. valid) return
-      call take_field(data, 3, 'last degree of freedom'//value_advice(data), report, last, valid)
-      call take_field(data, 4, 'value', report, value, valid)
-      call check_extra(data, 4, 'node or set, first and last degree of freedom, value', report)
+      call take_field(data, 3, 'last degree of freedom'//value_advice(data), deck, last, valid)
+      call take_field(data, 4, 'value', deck, value, valid)
+      call check_extra(data, 4, 'node or set, first and last degree of freedom, value', deck)
       if (last >= first .or. .not. valid) return
-      call report%error(data%place(3), 'the last degree of freedom is below the first')
+      call deck%error(data%place(3), 'the last degree of freedom is below the first')
       valid = .false.
    end subroutine read_degrees
 
@@ -343,9 +331,9 @@ contains
    end function value_advice
 
    !> Reports a likely misspelling of the name of a support.
-   subroutine check_name(data, report, valid)
+   subroutine check_name(data, deck, valid)
       type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       character(:), allocatable :: name
       integer :: i
@@ -353,7 +341,7 @@ contains
       name = to_upper(data%text(2))
       do i = 1, size(support_names)
          if (.not. is_slip(name, trim(support_names(i)))) cycle
-         call report%error(data%place(2), 'unknown support '//name//'; the nearest known is '// &
+         call deck%error(data%place(2), 'unknown support '//name//'; the nearest known is '// &
             trim(support_names(i)))
          valid = .false.
          return
@@ -389,21 +377,21 @@ contains
    end function held_degrees
 
    !> Requests those of some degrees of freedom at 0 that the plane has.
-   subroutine hold(degrees, request, model, context)
+   subroutine hold(degrees, request, model, deck)
       integer, intent(in) :: degrees(:)
       type(request_type), intent(inout) :: request
       type(model_type), intent(in) :: model
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       integer :: i
 
       do i = 1, size(degrees)
          if (degrees(i) == dof_rotation .and. turns(request, model)) then
-            call add_rotations(request, model, context)
+            call add_rotations(request, model, deck)
          else if (place_in_plane(request, model, degrees(i)) > 2) then
-            call context%note(out_of_plane)
+            call deck%note(out_of_plane)
          else
             request%component = place_in_plane(request, model, degrees(i))
-            call context%boundaries%add(request)
+            call deck%boundaries%add(request)
          end if
       end do
    end subroutine hold
@@ -458,22 +446,22 @@ contains
    end function is_target
 
    !> Warns of a rotation that is not small.
-   subroutine warn_of_turn(data, angle, report)
+   subroutine warn_of_turn(data, angle, deck)
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: angle                        ! [rad]
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
 
-      if (abs(angle) > large_turn) call report%warning(data%place(4), 'a rotation of '// &
+      if (abs(angle) > large_turn) call deck%warning(data%place(4), 'a rotation of '// &
          to_text(angle)//' rad is large: points move along their tangents, and gaps and '// &
          'normals stay those of the undeformed model; turn the drawing, and let the rotation '// &
          'be below '//to_text(large_turn))
    end subroutine warn_of_turn
 
    !> Requests the rotations of reference nodes.
-   subroutine add_rotations(request, model, context)
+   subroutine add_rotations(request, model, deck)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(request_type) :: rotation
       integer :: i
 
@@ -485,7 +473,7 @@ contains
          if (.not. (is_target(model%couplings(i)%reference, request, model) .or. &
             is_target(model%couplings(i)%rotation_node, request, model))) cycle
          rotation%item = model%couplings(i)%rotation
-         call context%boundaries%add(rotation)
+         call deck%boundaries%add(rotation)
       end do
    end subroutine add_rotations
 

@@ -5,9 +5,7 @@ module deck_builder_materials
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
       take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_context, only: deck_context_type, need_element_set, need_named, take_name, &
-      take_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type, take_name
    use deck_source, only: place_type
    use deck_structure, only: card_count, cards_of, has_stand_in
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
@@ -41,34 +39,33 @@ module deck_builder_materials
 contains
 
    !> Builds all materials; a property belongs to the last *MATERIAL before it.
-   subroutine build_materials(cards, context, model, report)
+   subroutine build_materials(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives places and notes
+      type(deck_type), intent(inout) :: deck   !! receives places and notes and errors
       type(model_type), intent(inout) :: model             !! receives the materials
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k, n
 
       n = card_count(cards, 'MATERIAL')
-      allocate(model%materials(n), context%material_place(n))
+      allocate(model%materials(n), deck%material_place(n))
       n = 0
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             select case (card%name)
             case ('MATERIAL')
                n = n + 1
-               context%material_place(n) = card%place
-               call take_name(cards, k, 'material', context%materials, model%materials(n)%name, &
-                  report)
-               if (.not. report%has_lost('material')) cycle
-               call report%lose('*ELASTIC')   ! another material may have these
-               call report%lose('*CONDUCTIVITY')
-               call report%lose('*DENSITY')
+               deck%material_place(n) = card%place
+               call take_name(cards, k, 'material', deck%materials, deck%deck_report_type, &
+                  model%materials(n)%name)
+               if (.not. deck%has_lost('material')) cycle
+               call deck%lose('*ELASTIC')   ! another material may have these
+               call deck%lose('*CONDUCTIVITY')
+               call deck%lose('*DENSITY')
             case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT')
                if (n == 0) then
-                  if (len(card%meant) == 0) call report%missing(card%place, '*'//card%name// &
+                  if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')
                else if (size(card%data) > 0) then
-                  call build_property(card, context, report, model%materials(n))
+                  call build_property(card, deck, model%materials(n))
                end if
             case default
                cycle
@@ -78,10 +75,9 @@ contains
    end subroutine build_materials
 
    !> Reads a property. One with errors in it is not kept.
-   subroutine build_property(card, context, report, material)
+   subroutine build_property(card, deck, material)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(material_type), intent(inout) :: material
       type(property_type) :: property
       logical :: valid
@@ -90,53 +86,52 @@ contains
       select case (card%name)
       case ('ELASTIC')
          material%has_elasticity = .true.
-         call build_elasticity(card, context, report, property, valid)
+         call build_elasticity(card, deck, property, valid)
       case ('EXPANSION')
          material%has_expansion = .true.
-         if (is_isotropic(card, report)) then
+         if (is_isotropic(card, deck)) then
             property%names = [character(24) :: 'coefficient of expansion']
          else
             property%names = [character(24) :: 'alpha11', 'alpha22', 'alpha33']
          end if
-         call read_rows(card, context, report, property, valid)
-         call take_parameter(card, 'ZERO', report, material%no_strain)
+         call read_rows(card, deck, property, valid)
+         call take_parameter(card, 'ZERO', deck, material%no_strain)
          if (valid .and. card%has('ZERO')) then
-            if (size(property%temperature) == 1) call context%note('*EXPANSION: ZERO is '// &
-               'ignored with a single row: strains begin at the initial temperature')
+            if (size(property%temperature) == 1) call deck%note('*EXPANSION: ZERO is ignored '// &
+               'with a single row: strains begin at the initial temperature')
          end if
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
-         call build_conductivity(card, context, report, property, valid)
+         call build_conductivity(card, deck, property, valid)
       case ('SPECIFIC HEAT')
          material%has_specific_heat = .true.
          property%names = [character(24) :: 'specific heat']
-         call read_rows(card, context, report, property, valid)
-         if (valid) call refuse_not_positive(card, property, [1], report, valid)
+         call read_rows(card, deck, property, valid)
+         if (valid) call refuse_not_positive(card, property, [1], deck, valid)
       case default
          material%has_density = .true.
          property%names = [character(24) :: 'density']
-         call read_rows(card, context, report, property, valid)
-         if (valid) call refuse_not_positive(card, property, [1], report, valid)
+         call read_rows(card, deck, property, valid)
+         if (valid) call refuse_not_positive(card, property, [1], deck, valid)
       end select
       if (valid) call set_property(material, property)
    end subroutine build_property
 
    !> TYPE= of expansion and conductivity. CalculiX reads the first letters only, so longer words
    !> are in decks for it.
-   logical function is_isotropic(card, report)
+   logical function is_isotropic(card, deck)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: symmetry
 
       symmetry = 'ISO'
-      call choose(card, 'TYPE', 'ISO/ORTHO/ISOTROPIC/ORTHOTROPIC', report, symmetry)
+      call choose(card, 'TYPE', 'ISO/ORTHO/ISOTROPIC/ORTHOTROPIC', deck, symmetry)
       is_isotropic = symmetry(:3) == 'ISO'
    end function is_isotropic
 
-   subroutine build_elasticity(card, context, report, property, valid)
+   subroutine build_elasticity(card, deck, property, valid)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                       ! whether it has no errors
       integer, parameter :: moduli(6) = [1, 2, 3, 7, 8, 9]   ! of the engineering constants
@@ -144,10 +139,10 @@ contains
       integer :: errors, row
 
       kind = 'ISO'
-      errors = report%error_count()
-      call choose(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/'// &
-         'ANISOTROPIC', report, kind)
-      valid = report%error_count() == errors
+      errors = deck%error_count()
+      call choose(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING '// &
+         'CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/ANISOTROPIC', deck, kind)
+      valid = deck%error_count() == errors
       if (.not. valid) return
       select case (kind)
       case ('ENGINEERING CONSTANTS')
@@ -162,25 +157,24 @@ contains
       case default
          property%names = isotropic_names
       end select
-      call read_rows(card, context, report, property, valid)
+      call read_rows(card, deck, property, valid)
       if (.not. valid) return
-      if (property%symmetry == isotropic) call refuse_not_positive(card, property, [1], report, &
+      if (property%symmetry == isotropic) call refuse_not_positive(card, property, [1], deck, valid)
+      if (property%symmetry == engineering) call refuse_not_positive(card, property, moduli, deck, &
          valid)
-      if (property%symmetry == engineering) call refuse_not_positive(card, property, moduli, &
-         report, valid)
       do row = 1, size(property%temperature)
          if (.not. valid .and. property%symmetry /= isotropic) cycle
          call check_elasticity(card%data(first_card(property, row))%place( &
-            merge(2, 1, property%symmetry == isotropic)), property, row, report, valid)
+            merge(2, 1, property%symmetry == isotropic)), property, row, deck, valid)
       end do
    end subroutine build_elasticity
 
    !> Reports a row whose stiffness has no energy, or warps the plane.
-   subroutine check_elasticity(place, property, row, report, valid)
+   subroutine check_elasticity(place, property, row, deck, valid)
       type(place_type), intent(in) :: place
       type(property_type), intent(in) :: property
       integer, intent(in) :: row
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       real(dp) :: d(6, 6)
 
@@ -189,7 +183,7 @@ contains
          case (isotropic)
             if (constants(2) > -1.0_dp .and. constants(2) < 0.5_dp) return
             valid = .false.
-            call report%error(place, 'Poisson''s ratio must lie between -1 and 0.5')
+            call deck%error(place, 'Poisson''s ratio must lie between -1 and 0.5')
             return
          case (engineering)
             d = engineering_elasticity(constants)
@@ -201,45 +195,44 @@ contains
       end associate
       valid = .false.
       if (couples_out_of_plane(d)) then
-         call report%error(place, 'couplings of the shear 13 or 23 with strains in the plane '// &
-            'are refused: the plane would warp')
+         call deck%error(place, 'couplings of the shear 13 or 23 with strains in the plane are '// &
+            'refused: the plane would warp')
       else if (.not. is_positive_definite(d)) then
-         call report%error(place, 'these constants are not positive definite: some strain '// &
-            'would release energy')
+         call deck%error(place, 'these constants are not positive definite: some strain would '// &
+            'release energy')
       else
          valid = .true.
       end if
    end subroutine check_elasticity
 
    !> K11 and K22; K33, which CalculiX wants, is read and means nothing in the plane.
-   subroutine build_conductivity(card, context, report, property, valid)
+   subroutine build_conductivity(card, deck, property, valid)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                       ! whether it has no errors
       integer :: fields, n, row
 
-      if (is_isotropic(card, report)) then
+      if (is_isotropic(card, deck)) then
          property%names = [character(24) :: 'conductivity']
-         call read_rows(card, context, report, property, valid)
-         if (valid) call refuse_not_positive(card, property, [1], report, valid)
+         call read_rows(card, deck, property, valid)
+         if (valid) call refuse_not_positive(card, property, [1], deck, valid)
          return
       end if
       fields = size(card%data(1)%fields)
       n = min(max(fields, 2), 3)
       property%names = [character(24) :: 'K11', 'K22', 'K33']
       property%names = property%names(:n)
-      call read_rows(card, context, report, property, valid)
-      if (n == 3) call context%note('*CONDUCTIVITY: K33 is ignored')
+      call read_rows(card, deck, property, valid)
+      if (n == 3) call deck%note('*CONDUCTIVITY: K33 is ignored')
       if (.not. valid) return
-      call refuse_not_positive(card, property, [1, 2], report, valid)
+      call refuse_not_positive(card, property, [1, 2], deck, valid)
       if (n == 3) then
          ! Across the plane most materials conduct as along one of its axes.
          do row = 1, size(property%temperature)
             associate (constants => property%values(:, row))
                if (all(abs(constants(:2) - constants(3)) > 0.0_dp)) call check_unneeded( &
-                  card%data(row), 3, 'K33', report)
+                  card%data(row), 3, 'K33', deck)
             end associate
          end do
       end if
@@ -262,10 +255,9 @@ contains
    end function cards_of_row
 
    !> Reads the rows of a property: constants, eight on a card, and the temperature behind the last.
-   subroutine read_rows(card, context, report, property, valid)
+   subroutine read_rows(card, deck, property, valid)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(property_type), intent(inout) :: property        ! receives values and temperatures
       logical, intent(out) :: valid                         ! whether all could be read
       integer :: behind, last, n, row
@@ -276,35 +268,35 @@ contains
       valid = .not. card%flawed
       if (.not. valid) return
       do row = 1, n
-         call read_constants(card, first_card(property, row), property%names, report, &
+         call read_constants(card, first_card(property, row), property%names, deck, &
             property%values(:, row), valid)
          last = first_card(property, row + 1) - 1
          if (last > size(card%data)) return
          if (n > 1) then
-            call need_field(card%data(last), behind, 'temperature', report, &
+            call need_field(card%data(last), behind, 'temperature', deck, &
                property%temperature(row), valid)
             if (.not. valid .or. row == 1) cycle
             if (property%temperature(row) > property%temperature(row - 1)) cycle
             valid = .false.
-            call report%error(card%data(last)%place(behind), 'the temperatures of the rows '// &
-               'must ascend: '//to_text(property%temperature(row))//' follows '// &
+            call deck%error(card%data(last)%place(behind), 'the temperatures of the rows must '// &
+               'ascend: '//to_text(property%temperature(row))//' follows '// &
                to_text(property%temperature(row - 1)))
          else if (card%data(last)%has(behind)) then
             ! One temperature behind them means nothing.
-            call take_field(card%data(last), behind, 'temperature', report, &
+            call take_field(card%data(last), behind, 'temperature', deck, &
                property%temperature(row), valid)
-            call context%note('the temperature field of a single property row is ignored')
-            if (valid) call check_unneeded_temperature(card%data(last), behind, report)
+            call deck%note('the temperature field of a single property row is ignored')
+            if (valid) call check_unneeded_temperature(card%data(last), behind, deck)
          end if
       end do
    end subroutine read_rows
 
    !> Reads the constants of a row.
-   subroutine read_constants(card, first, names, report, values, valid)
+   subroutine read_constants(card, first, names, deck, values, valid)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: first                          ! its first data card
       character(*), intent(in) :: names(:)                  ! (constants)
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp), intent(out) :: values(:)                    ! (constants)
       logical, intent(inout) :: valid                       ! false where they cannot be read
       integer :: behind, i, last, place
@@ -314,21 +306,21 @@ contains
       do i = 1, size(values)
          place = first + (i - 1)/per_card
          if (place > size(card%data)) then
-            call report%error(card%data(size(card%data))%end, 'a card is missing after this '// &
-               'one: '//trim(names(i)))
+            call deck%error(card%data(size(card%data))%end, 'a card is missing after this one: '// &
+               trim(names(i)))
             valid = .false.
             return
          end if
-         call need_field(card%data(place), mod(i - 1, per_card) + 1, trim(names(i)), report, &
+         call need_field(card%data(place), mod(i - 1, per_card) + 1, trim(names(i)), deck, &
             values(i), valid)
          if (.not. card%data(place)%has(mod(i - 1, per_card) + 1)) return
          if (place == last) cycle
-         if (mod(i, per_card) == 0) call check_extra(card%data(place), per_card, &
-            'eight constants', report)
+         if (mod(i, per_card) == 0) call check_extra(card%data(place), per_card, 'eight '// &
+            'constants', deck)
       end do
       behind = mod(size(values) - 1, per_card) + 2
       call check_extra(card%data(last), behind, joined(names(per_card*(last - first) + 1:))// &
-         ', temperature', report)
+         ', temperature', deck)
    end subroutine read_constants
 
    pure function joined(names) result(list)
@@ -343,11 +335,11 @@ contains
    end function joined
 
    !> Reports constants that must be positive and are not.
-   subroutine refuse_not_positive(card, property, which, report, valid)
+   subroutine refuse_not_positive(card, property, which, deck, valid)
       type(keyword_card_type), intent(in) :: card
       type(property_type), intent(in) :: property         !! as read
       integer, intent(in) :: which(:)                     !! indexes of those that must be positive
-      type(deck_report_type), intent(inout) :: report     !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       logical, intent(inout) :: valid                     !! false where one is not
       integer :: i, row
 
@@ -355,19 +347,18 @@ contains
          do i = 1, size(which)
             if (property%values(which(i), row) > 0.0_dp) cycle
             valid = .false.
-            call report%error(card%data(first_card(property, row) + &
-               (which(i) - 1)/per_card)%place(mod(which(i) - 1, per_card) + 1), trim( &
-               property%names(which(i)))//' must be positive')
+            call deck%error(card%data(first_card(property, row) + (which(i) - 1)/per_card)%place( &
+               mod(which(i) - 1, per_card) + 1), trim(property%names(which(i)))//' must be '// &
+               'positive')
          end do
       end do
    end subroutine refuse_not_positive
 
    !> Builds all orientations.
-   subroutine build_orientations(cards, context, model, report)
+   subroutine build_orientations(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives their names
+      type(deck_type), intent(inout) :: deck   !! receives their names and errors
       type(model_type), intent(inout) :: model             !! receives the orientations
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: n
 
@@ -375,75 +366,75 @@ contains
       allocate(model%orientations(size(places)))
       do n = 1, size(places)
          associate (card => cards%keywords(places(n)))
-            call take_name(cards, places(n), 'orientation', context%orientations, &
-               model%orientations(n)%name, report)
-            if (size(card%data) > 0) call build_axes(card, model%orientations(n), report)
+            call take_name(cards, places(n), 'orientation', deck%orientations, &
+               deck%deck_report_type, model%orientations(n)%name)
+            if (size(card%data) > 0) call build_axes(card, model%orientations(n), deck)
          end associate
       end do
    end subroutine build_orientations
 
    !> Two points. a lies on axis 1, b in the plane of axes 1 and 2 on the side of axis 2; or both
    !> lie on the axis of a cylinder, along which axis 3 points from a to b.
-   subroutine build_axes(card, orientation, report)
+   subroutine build_axes(card, orientation, deck)
       type(keyword_card_type), intent(in) :: card
       type(orientation_type), intent(inout) :: orientation
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: system
       real(dp) :: a(3), b(3), turn
       logical :: valid
 
       system = 'RECTANGULAR'
-      call choose(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', report, system)
+      call choose(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, system)
       valid = .true.
       associate (data => card%data(1))
-         call read_point(data, 1, 'a', report, a, valid)
-         call read_point(data, 4, 'b', report, b, valid)
-         call check_extra(data, 6, 'a(1), a(2), a(3), b(1), b(2), b(3)', report)
+         call read_point(data, 1, 'a', deck, a, valid)
+         call read_point(data, 4, 'b', deck, b, valid)
+         call check_extra(data, 6, 'a(1), a(2), a(3), b(1), b(2), b(3)', deck)
          if (.not. valid) return
          orientation%cylindrical = system == 'CYLINDRICAL'
          turn = a(1)*b(2) - a(2)*b(1)
          if (orientation%cylindrical) then
             if (norm2(b(1:2) - a(1:2)) > 0.0_dp .or. &
-               .not. abs(b(3) - a(3)) > 0.0_dp) call report%error(data%place(4), 'the axis '// &
+               .not. abs(b(3) - a(3)) > 0.0_dp) call deck%error(data%place(4), 'the axis '// &
                'through a and b must be parallel to z')
             orientation%centre = a(1:2)
             orientation%hand = sign(1.0_dp, b(3) - a(3))
          else if (abs(a(3)) > 0.0_dp .or. abs(b(3)) > 0.0_dp) then
-            call report%error(data%place(merge(3, 6, abs(a(3)) > 0.0_dp)), 'axes 1 and 2 lie '// &
-               'in the plane: the z components of a and b must be 0')
+            call deck%error(data%place(merge(3, 6, abs(a(3)) > 0.0_dp)), 'axes 1 and 2 lie in '// &
+               'the plane: the z components of a and b must be 0')
          else if (.not. abs(turn) > epsilon(turn)*norm2(a)*norm2(b)) then
-            call report%error(data%place(1), 'a and b must not lie on one line')
+            call deck%error(data%place(1), 'a and b must not lie on one line')
          else
             orientation%direction = a(1:2)/norm2(a(1:2))
             orientation%hand = sign(1.0_dp, turn)
          end if
       end associate
       if (size(card%data) > 1) then
-         call turn_axes(card%data(2), orientation, report)
+         call turn_axes(card%data(2), orientation, deck)
       end if
    end subroutine build_axes
 
-   subroutine read_point(data, first, name, report, point, valid)
+   subroutine read_point(data, first, name, deck, point, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: first
       character(*), intent(in) :: name
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp), intent(out) :: point(3)
       logical, intent(inout) :: valid
       integer :: i
 
       point = 0.0_dp
       do i = 1, 3
-         call need_field(data, first + i - 1, 'component of '//name, report, point(i), valid)
+         call need_field(data, first + i - 1, 'component of '//name, deck, point(i), valid)
          if (.not. data%has(first + i - 1)) exit
       end do
    end subroutine read_point
 
    !> The second card: a turn round axis 3, from axis 1 towards axis 2.
-   subroutine turn_axes(data, orientation, report)
+   subroutine turn_axes(data, orientation, deck)
       type(data_card_type), intent(in) :: data
       type(orientation_type), intent(inout) :: orientation
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp) :: angle
       integer :: axis
       logical :: valid
@@ -451,12 +442,12 @@ contains
       valid = .true.
       axis = 3
       angle = 0.0_dp
-      call need_field(data, 1, 'axis', report, axis, valid)
-      call take_field(data, 2, 'angle in degrees', report, angle, valid)
-      call check_extra(data, 2, 'axis, angle', report)
+      call need_field(data, 1, 'axis', deck, axis, valid)
+      call take_field(data, 2, 'angle in degrees', deck, angle, valid)
+      call check_extra(data, 2, 'axis, angle', deck)
       if (.not. valid) return
       if (axis /= 3) then
-         call report%error(data%place(1), 'a turn about axis 1 or 2 leaves the plane: only axis 3')
+         call deck%error(data%place(1), 'a turn about axis 1 or 2 leaves the plane: only axis 3')
          return
       end if
       angle = angle*degree
@@ -467,71 +458,66 @@ contains
    end subroutine turn_axes
 
    !> Builds all sections, and gives the elements theirs.
-   subroutine build_sections(cards, context, model, report)
+   subroutine build_sections(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives notes, whether all is sound
+      type(deck_type), intent(inout) :: deck   !! receives notes, whether all is sound and errors
       type(model_type), intent(inout) :: model             !! receives the sections
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: n, set
       logical :: valid
 
       places = cards_of(cards, 'SOLID SECTION')
       allocate(model%sections(size(places)))
-      context%sections_sound = .not. (has_stand_in(cards, 'SOLID SECTION') .or. &
-         report%has_lost('element set'))
+      deck%sections_sound = &
+         .not. (has_stand_in(cards, 'SOLID SECTION') .or. deck%has_lost('element set'))
       valid = .true.
       do n = 1, size(places)
          associate (card => cards%keywords(places(n)), section => model%sections(n))
-            call need_named(card, 'MATERIAL', 'material', context%materials, report, &
-               section%material)
-            call take_named(card, 'ORIENTATION', 'orientation', context%orientations, report, &
-               section%orientation)
+            call deck%need_named(card, 'MATERIAL', 'material', section%material)
+            call deck%take_named(card, 'ORIENTATION', 'orientation', section%orientation)
             if (size(card%data) > 0) then
                associate (data => card%data(1))
-                  call take_field(data, 1, 'thickness', report, section%thickness, valid)
+                  call take_field(data, 1, 'thickness', deck, section%thickness, valid)
                   if (size(data%fields) > 1) then
-                     call check_extra(data, 2, 'thickness, points', report)
-                     call check_unneeded(data, 2, 'a number of points', report)
-                     call context%note('*SOLID SECTION: what is behind the thickness is ignored')
+                     call check_extra(data, 2, 'thickness, points', deck)
+                     call check_unneeded(data, 2, 'a number of points', deck)
+                     call deck%note('*SOLID SECTION: what is behind the thickness is ignored')
                   end if
-                  if (section%thickness <= 0.0_dp) call report%error(data%place(1), 'the '// &
+                  if (section%thickness <= 0.0_dp) call deck%error(data%place(1), 'the '// &
                      'thickness must be positive')
                end associate
             end if
-            call give_section(card, n, context, model%mesh, report, set)
+            call give_section(card, n, deck, model%mesh, set)
             if (size(card%data) > 0 .or. set == 0) cycle
-            if (any(model%mesh%element_plane(model%mesh%element_sets(set)%members) /= &
-               axisymmetric)) call context%note('*SOLID SECTION without a thickness: '// &
-               to_text(section%thickness))
+            if (any(model%mesh%element_plane( &
+               model%mesh%element_sets(set)%members) /= axisymmetric)) call deck%note('*SOLID '// &
+               'SECTION without a thickness: '//to_text(section%thickness))
          end associate
       end do
    end subroutine build_sections
 
    !> Gives the elements of its set a section; its trusses take it later. Sections are not sound
    !> where that set is not known.
-   subroutine give_section(card, section, context, mesh, report, set)
+   subroutine give_section(card, section, deck, mesh, set)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: section
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(inout) :: mesh
-      type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: set        ! that of the card; 0 after an error
       integer, allocatable :: kinds(:)   ! of the lines of the set
 
-      call need_named(card, 'ELSET', 'element set', context%element_index%sets, report, set)
+      call deck%need_named(card, 'ELSET', 'element set', set)
       if (set > 0) then
-         kinds = context%line_kind(context%line_sets(set)%members)
-         if (all(kinds /= truss)) call need_element_set(card, context%element_index%sets, &
-            mesh%element_sets, report, set)
+         kinds = deck%line_kind(deck%line_sets(set)%members)
+         if (all(kinds /= truss)) call deck%need_element_set(card, mesh%element_sets, set)
       end if
-      context%sections_sound = context%sections_sound .and. set > 0
+      deck%sections_sound = deck%sections_sound .and. set > 0
       if (set == 0) return
-      if (size(kinds) > 0 .and. all(kinds /= truss)) call report%warning(card%place_of('ELSET'), &
+      if (size(kinds) > 0 .and. all(kinds /= truss)) call deck%warning(card%place_of('ELSET'), &
          'element set '//mesh%element_sets(set)%name//' also has lines, which are ignored')
       associate (members => mesh%element_sets(set)%members)
-         if (any(mesh%element_section(members) > 0)) call report%warning(card%place, &
-            'this section replaces an earlier one; elements concerned: '// &
+         if (any(mesh%element_section(members) > 0)) call deck%warning(card%place, 'this '// &
+            'section replaces an earlier one; elements concerned: '// &
             to_text(count(mesh%element_section(members) > 0)))
          mesh%element_section(members) = section
       end associate

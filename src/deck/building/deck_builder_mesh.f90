@@ -4,9 +4,8 @@ module deck_builder_mesh
    use card_values, only: check_extra, check_unneeded, may_be_decimals, need_field, take_field
    use cards, only: cards_type, data_card_type
    use deck_builder_lines, only: element_cards, read_node
-   use deck_context, only: deck_context_type, plane_by_element
+   use deck_context, only: deck_type, plane_by_element
    use deck_reader, only: keyword_of
-   use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, plane_stress, &
@@ -27,11 +26,10 @@ module deck_builder_mesh
 contains
 
    !> Builds the nodes, in the order of the deck.
-   subroutine build_nodes(cards, context, mesh, report)
+   subroutine build_nodes(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives the numbers
+      type(deck_type), intent(inout) :: deck   !! receives the numbers and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the nodes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), allocatable :: heights(:)
       integer, allocatable :: places(:)
       integer :: j, k, n
@@ -40,36 +38,35 @@ contains
       places = cards_of(cards, 'NODE')
       n = data_count(cards, places)
       allocate(mesh%node_number(n), mesh%coordinates(2, n), heights(n))
-      allocate(context%node_place(n), context%node_valid(n))
+      allocate(deck%node_place(n), deck%node_valid(n))
       n = 0
       told = .false.
       do k = 1, size(places)
          associate (rows => cards%keywords(places(k))%data)
             do j = 1, size(rows)
                n = n + 1
-               context%node_place(n) = rows(j)%place(1)
-               call build_node(rows(j), context, report, mesh%node_number(n), &
-                  mesh%coordinates(:, n), heights(n), context%node_valid(n))
+               deck%node_place(n) = rows(j)%place(1)
+               call build_node(rows(j), deck, mesh%node_number(n), mesh%coordinates(:, n), &
+                  heights(n), deck%node_valid(n))
                ! Decimal commas tear the coordinates, and the last of their parts means nothing.
                if (told .or. .not. may_be_decimals(rows(j), 5)) cycle
-               call check_unneeded(rows(j), 5, 'a direction', report)
+               call check_unneeded(rows(j), 5, 'a direction', deck)
                told = .true.
             end do
          end associate
       end do
-      call move_alloc(heights, context%node_height)
-      call drop_repeated(mesh, context, report)
-      if (n == 0) call report%lose('node')
-      context%node_index%noun = 'node'
-      call context%node_index%build(mesh%node_number)
-      call add_rotations(cards, context, mesh)
+      call move_alloc(heights, deck%node_height)
+      call drop_repeated(mesh, deck)
+      if (n == 0) call deck%lose('node')
+      deck%node_index%noun = 'node'
+      call deck%node_index%build(mesh%node_number)
+      call add_rotations(cards, deck, mesh)
    end subroutine build_nodes
 
    !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
-   subroutine drop_repeated(mesh, context, report)
+   subroutine drop_repeated(mesh, deck)
       type(mesh_type), intent(inout) :: mesh
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: kept(:), places(:)
       logical :: keeps(size(mesh%node_number))
       integer :: i, first
@@ -81,27 +78,27 @@ contains
       keeps(places) = .false.
       do i = 1, size(places)
          first = findloc(mesh%node_number, mesh%node_number(places(i)), dim=1)
-         if (norm2(mesh%coordinates(:, places(i)) - mesh%coordinates(:, first)) > 0.0_dp) call &
-            report%warning(context%node_place(places(i)), 'node '// &
-            to_text(mesh%node_number(first))//' is defined twice, first on '// &
-            report%source%words_of(context%node_place(first))//': the last place is used')
+         if (norm2(mesh%coordinates(:, places(i)) - &
+            mesh%coordinates(:, first)) > 0.0_dp) call deck%warning(deck%node_place(places(i)), &
+            'node '//to_text(mesh%node_number(first))//' is defined twice, first on '// &
+            deck%source%words_of(deck%node_place(first))//': the last place is used')
          mesh%coordinates(:, first) = mesh%coordinates(:, places(i))
-         context%node_height(first) = context%node_height(places(i))
-         context%node_place(first) = context%node_place(places(i))
-         context%node_valid(first) = context%node_valid(places(i))
+         deck%node_height(first) = deck%node_height(places(i))
+         deck%node_place(first) = deck%node_place(places(i))
+         deck%node_valid(first) = deck%node_valid(places(i))
       end do
       kept = pack([(i, i=1, size(keeps))], keeps)
       mesh%node_number = mesh%node_number(kept)
       mesh%coordinates = mesh%coordinates(:, kept)
-      context%node_place = context%node_place(kept)
-      context%node_valid = context%node_valid(kept)
-      context%node_height = context%node_height(kept)
+      deck%node_place = deck%node_place(kept)
+      deck%node_valid = deck%node_valid(kept)
+      deck%node_height = deck%node_height(kept)
    end subroutine drop_repeated
 
    !> Adds a node for the rotation of each coupling and rigid body, which no card can name.
-   subroutine add_rotations(cards, context, mesh)
+   subroutine add_rotations(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(inout) :: mesh
       real(dp) :: place(2)
       integer :: k
@@ -111,17 +108,16 @@ contains
          if (all(cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
          place = mesh%coordinates(:, 1)
          call add_node(mesh, place)
-         context%node_place = [context%node_place, cards%keywords(k)%place]
-         context%node_valid = [context%node_valid, .true.]
+         deck%node_place = [deck%node_place, cards%keywords(k)%place]
+         deck%node_valid = [deck%node_valid, .true.]
       end do
    end subroutine add_rotations
 
    !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what is behind z
    !> is the direction of a normal in Abaqus.
-   subroutine build_node(data, context, report, number, coordinates, z, valid)
+   subroutine build_node(data, deck, number, coordinates, z, valid)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, intent(out) :: number
       real(dp), intent(out) :: coordinates(2)
       real(dp), intent(out) :: z
@@ -132,29 +128,28 @@ contains
       valid = .true.
       coordinates = 0.0_dp
       z = 0.0_dp
-      call read_number(data, 'node', report, number)
+      call read_number(data, 'node', deck, number)
       do i = 1, 2
-         call take_field(data, i + 1, names(i:i), report, coordinates(i), valid)
+         call take_field(data, i + 1, names(i:i), deck, coordinates(i), valid)
          if (data%has(i + 1) .or. data%is_undefined(i + 1) .or. number == 0) cycle
-         call report%warning(data%place(i + 1), 'node '//to_text(number)//' has no '//names(i:i)// &
+         call deck%warning(data%place(i + 1), 'node '//to_text(number)//' has no '//names(i:i)// &
             ': 0 is used')
       end do
-      call take_field(data, 4, 'z', report, z, valid)
+      call take_field(data, 4, 'z', deck, z, valid)
       if (data%has(4)) then
-         call context%note('*NODE: third coordinates are ignored')
+         call deck%note('*NODE: third coordinates are ignored')
       end if
-      call check_extra(data, 7, 'number, x, y', report)
-      if (size(data%fields) > 4) call context%note('*NODE: numbers after the third '// &
-         'coordinate are ignored')
+      call check_extra(data, 7, 'number, x, y', deck)
+      if (size(data%fields) > 4) call deck%note('*NODE: numbers after the third coordinate are '// &
+         'ignored')
    end subroutine build_node
 
    !> The nodes of elements lie in the plane z = 0, but for rounding. Others may be those of a
    !> drawing or of a rigid body.
-   subroutine check_heights(cards, context, mesh, report)
+   subroutine check_heights(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context       ! whether the elements are sound
+      type(deck_type), intent(inout) :: deck   ! whether the elements are sound
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       integer, allocatable :: places(:)
       logical :: has_element(0:size(mesh%node_number))
       real(dp) :: rounding
@@ -165,20 +160,20 @@ contains
       rounding = height_rounding*extent_of(mesh%coordinates)
       has_element = .false.
       do e = 1, size(mesh%element_number)
-         if (context%element_valid(e)) has_element(mesh%element_nodes(:, e)) = .true.
+         if (deck%element_valid(e)) has_element(mesh%element_nodes(:, e)) = .true.
       end do
       has_element(0) = .false.
-      if (.not. any(has_element(1:size(context%node_height)) .and. &
-         abs(context%node_height) > rounding)) return
+      if (.not. any(has_element(1:size(deck%node_height)) .and. &
+         abs(deck%node_height) > rounding)) return
       places = cards_of(cards, 'NODE')
       do k = 1, size(places)
          associate (rows => cards%keywords(places(k))%data)
             do j = 1, size(rows)
                call read_integer(rows(j)%text(1), number, valid)
-               i = context%node_index%find(number)
+               i = deck%node_index%find(number)
                if (.not. has_element(i)) cycle
-               if (abs(context%node_height(i)) <= rounding) cycle
-               if (rows(j)%end%image == context%node_place(i)%image) call report%error( &
+               if (abs(deck%node_height(i)) <= rounding) cycle
+               if (rows(j)%end%image == deck%node_place(i)%image) call deck%error( &
                   rows(j)%place(4), 'models are two-dimensional: z must be 0', 'z')
             end do
          end associate
@@ -186,47 +181,46 @@ contains
    end subroutine check_heights
 
    !> The number of a node or element, from 1; 0 after an error.
-   subroutine read_number(data, noun, report, number)
+   subroutine read_number(data, noun, deck, number)
       type(data_card_type), intent(in) :: data
       character(*), intent(in) :: noun
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, intent(out) :: number
       logical :: valid
 
       number = 0
       valid = .true.
-      call need_field(data, 1, noun//' number', report, number, valid)
+      call need_field(data, 1, noun//' number', deck, number, valid)
       if (valid .and. number < 1) then
-         call report%error(data%place(1), 'numbers begin with 1')
+         call deck%error(data%place(1), 'numbers begin with 1')
          number = 0
       end if
-      if (number == 0) call report%lose(noun)
+      if (number == 0) call deck%lose(noun)
    end subroutine read_number
 
    !> Reports elements that are given twice: one of the two may stand for one that is missing.
-   subroutine check_repeated(places, numbers, report)
+   subroutine check_repeated(places, numbers, deck)
       type(place_type), intent(in) :: places(:)        ! where each is
       integer, intent(in) :: numbers(:)
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: second(:)                ! indexes into numbers
       integer :: i
 
       second = repeated(numbers)
       second = pack(second, numbers(second) > 0)
       do i = 1, size(second)
-         call report%twice(places(second(i)), 'element '//to_text(numbers(second(i))), &
+         call deck%twice(places(second(i)), 'element '//to_text(numbers(second(i))), &
             places(findloc(numbers, numbers(second(i)), dim=1)))
       end do
-      if (size(second) > 0) call report%lose('element')
+      if (size(second) > 0) call deck%lose('element')
    end subroutine check_repeated
 
    !> Builds the elements, in the order of the deck; one of a type that cannot be used keeps its
    !> number only.
-   subroutine build_elements(cards, context, mesh, report)
+   subroutine build_elements(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives the numbers
+      type(deck_type), intent(inout) :: deck   !! receives the numbers and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the elements
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, message, note
       integer, allocatable :: places(:)
       integer :: i, k, j, kind, n, plane
@@ -237,65 +231,64 @@ contains
       allocate(mesh%element_nodes(nodes_per_element, n), source=0)
       allocate(mesh%element_kind(n), source=quad8)
       allocate(mesh%element_plane(n), source=plane_strain)
-      allocate(context%element_place(n))
-      allocate(context%element_valid(n), source=.false.)
+      allocate(deck%element_place(n))
+      allocate(deck%element_valid(n), source=.false.)
       mesh%element_section = 0
       n = 0
       do i = 1, size(places)
          k = places(i)
-         call need_parameter(cards%keywords(k), 'TYPE', report, name)
+         call need_parameter(cards%keywords(k), 'TYPE', deck, name)
          message = ''
          if (len(name) > 0) then
             call take_element_type(name, kind, plane, message, note)
-            if (len(note) > 0) call context%note(note)
+            if (len(note) > 0) call deck%note(note)
          end if
-         if (plane == plane_stress .and. context%plane == plane_by_element) call warn_of_gmsh( &
-            cards%keywords(k)%place_of('TYPE'), report)
-         if (context%plane /= plane_by_element) plane = context%plane
-         if (len(message) > 0) call report%error(cards%keywords(k)%place_of('TYPE'), message)
+         if (plane == plane_stress .and. deck%plane == plane_by_element) call warn_of_gmsh( &
+            cards%keywords(k)%place_of('TYPE'), deck)
+         if (deck%plane /= plane_by_element) plane = deck%plane
+         if (len(message) > 0) call deck%error(cards%keywords(k)%place_of('TYPE'), message)
          do j = 1, size(cards%keywords(k)%data)
             n = n + 1
-            context%element_place(n) = cards%keywords(k)%data(j)%place(1)
-            call read_number(cards%keywords(k)%data(j), 'element', report, mesh%element_number(n))
+            deck%element_place(n) = cards%keywords(k)%data(j)%place(1)
+            call read_number(cards%keywords(k)%data(j), 'element', deck, mesh%element_number(n))
             if (len(name) == 0 .or. len(message) > 0) cycle
             mesh%element_kind(n) = kind
             mesh%element_plane(n) = plane
-            call read_element_nodes(cards%keywords(k)%data(j), context, report, &
-               mesh%element_nodes(:element_node_count(kind), n), context%element_valid(n))
-            call check_layout(cards%keywords(k)%data(j), kind, cards%keywords(k)%place, report)
+            call read_element_nodes(cards%keywords(k)%data(j), deck, &
+               mesh%element_nodes(:element_node_count(kind), n), deck%element_valid(n))
+            call check_layout(cards%keywords(k)%data(j), kind, cards%keywords(k)%place, deck)
          end do
       end do
-      call check_heights(cards, context, mesh, report)
-      if (n == 0) call report%lose('element')
-      context%element_index%noun = 'element'
-      call context%element_index%build(mesh%element_number)
+      call check_heights(cards, deck, mesh)
+      if (n == 0) call deck%lose('element')
+      deck%element_index%noun = 'element'
+      call deck%element_index%build(mesh%element_number)
       ! Elements and lines have different numbers.
-      call check_repeated([context%element_place, context%line_place], &
-         [mesh%element_number, context%line_number], report)
-      context%member_index%noun = 'element'
-      call context%member_index%build([mesh%element_number, context%line_number])
+      call check_repeated([deck%element_place, deck%line_place], &
+         [mesh%element_number, deck%line_number], deck)
+      deck%member_index%noun = 'element'
+      call deck%member_index%build([mesh%element_number, deck%line_number])
    end subroutine build_elements
 
    !> Warns of plane stress that gmsh wrote, which calls all elements so; once.
-   subroutine warn_of_gmsh(place, report)
+   subroutine warn_of_gmsh(place, deck)
       type(place_type), intent(in) :: place              ! where the type of an element is
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer :: i
 
       do i = place%image - 1, 1, -1
-         associate (line => report%source%images(i)%value)
+         associate (line => deck%source%images(i)%value)
             if (index(line, gmsh_comment) == 1) exit
             if (keyword_of(line) == 'NODE') return
          end associate
       end do
-      if (i > 0) call report%warning(place, 'gmsh calls all elements CPS, plane stress; say '// &
-         'what is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')
+      if (i > 0) call deck%warning(place, 'gmsh calls all elements CPS, plane stress; say what '// &
+         'is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')
    end subroutine warn_of_gmsh
 
-   subroutine read_element_nodes(data, context, report, nodes, valid)
+   subroutine read_element_nodes(data, deck, nodes, valid)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: nodes(:)
       logical, intent(out) :: valid
       integer :: q
@@ -304,26 +297,26 @@ contains
       valid = .true.
       do q = 1, min(size(nodes), size(data%fields) - 1)
          is_number = .true.
-         call read_node(data, q, context, report, nodes(q), is_number)
+         call read_node(data, q, deck, nodes(q), is_number)
          valid = valid .and. nodes(q) > 0
-         if (nodes(q) > 0) valid = valid .and. context%node_valid(nodes(q))
+         if (nodes(q) > 0) valid = valid .and. deck%node_valid(nodes(q))
       end do
       if (size(data%fields) /= size(nodes) + 1) valid = .false.
       if (.not. valid) return
       do q = 2, size(nodes)
          if (all(nodes(:q - 1) /= nodes(q))) cycle
-         call report%error(data%place(q + 1), 'a node appears twice in this element')
+         call deck%error(data%place(q + 1), 'a node appears twice in this element')
          valid = .false.
       end do
    end subroutine read_element_nodes
 
    !> Reports the first of the elements of a keyword card that have too many fields or too few: its
    !> TYPE= may be wrong.
-   subroutine check_layout(data, kind, keyword, report)
+   subroutine check_layout(data, kind, keyword, deck)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
       type(place_type), intent(in) :: keyword          ! where the *ELEMENT card is
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: layout
 
       associate (fields => size(data%fields), due => element_node_count(kind) + 1, &
@@ -331,10 +324,10 @@ contains
          if (fields > due) then
             layout = 'element, '//to_text(corners)//' corners'
             if (due > corners + 1) layout = layout//', '//to_text(corners)//' midside nodes'
-            call report%error(data%place(due + 1), 'extra field; the card is '//layout, 'extra '// &
+            call deck%error(data%place(due + 1), 'extra field; the card is '//layout, 'extra '// &
                'fields of '//to_text(keyword%image))
          else if (fields < due .and. .not. data%is_undefined(fields)) then
-            call report%error(data%place(fields + 1), 'missing field: node '//to_text(fields), &
+            call deck%error(data%place(fields + 1), 'missing field: node '//to_text(fields), &
                'missing fields of '//to_text(keyword%image))
          end if
       end associate

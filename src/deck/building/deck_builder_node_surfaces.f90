@@ -3,8 +3,7 @@ module deck_builder_node_surfaces
    use card_parameters, only: chosen, surface_kinds
    use card_values, only: check_extra, take_field
    use cards, only: cards_type, keyword_card_type
-   use deck_context, only: deck_context_type, read_target
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count
    use element_sides, only: element_sides_type, find_sides
@@ -20,11 +19,10 @@ module deck_builder_node_surfaces
 contains
 
    !> Finds the faces of all surfaces of nodes.
-   subroutine build_node_surfaces(cards, context, mesh, report)
+   subroutine build_node_surfaces(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives their places, and notes
+      type(deck_type), intent(inout) :: deck   !! receives their places, and notes and errors
       type(mesh_type), intent(inout) :: mesh               !! with its node sets; receives the faces
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       logical, allocatable :: named(:)
       integer :: n, errors
@@ -33,22 +31,21 @@ contains
       do n = 1, size(places)
          associate (card => cards%keywords(places(n)))
             if (chosen(card, 'TYPE', surface_kinds) /= 'NODE') cycle
-            errors = report%error_count()
-            call read_nodes(card, context, mesh, report, named)
-            if (report%error_count() == errors .and. all(context%element_valid)) then
-               call find_faces(card, named, mesh, report, n, context)
+            errors = deck%error_count()
+            call read_nodes(card, deck, mesh, named)
+            if (deck%error_count() == errors .and. all(deck%element_valid)) then
+               call find_faces(card, named, mesh, deck, n)
             end if
-            if (size(mesh%surfaces(n)%faces, 2) == 0) call report%lose('surface')
+            if (size(mesh%surfaces(n)%faces, 2) == 0) call deck%lose('surface')
          end associate
       end do
    end subroutine build_node_surfaces
 
    !> The nodes that a surface names.
-   subroutine read_nodes(card, context, mesh, report, named)
+   subroutine read_nodes(card, deck, mesh, named)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       logical, allocatable, intent(out) :: named(:)      ! (nodes)
       type(target_type) :: target
       integer :: j
@@ -59,13 +56,13 @@ contains
       do j = 1, size(card%data)
          associate (data => card%data(j))
             valid = .true.
-            call read_target(data, 1, context%node_index, mesh%node_sets, report, target, valid)
+            call deck%need_nodes(data, 1, mesh%node_sets, target, valid)
             if (data%has(2)) then
-               call take_field(data, 2, 'area', report, area, valid)
-               call context%note('*SURFACE, TYPE=NODE: areas are ignored: those of the faces '// &
-                  'are taken')
+               call take_field(data, 2, 'area', deck, area, valid)
+               call deck%note('*SURFACE, TYPE=NODE: areas are ignored: those of the faces are '// &
+                  'taken')
             end if
-            call check_extra(data, 2, 'node or set, area', report)
+            call check_extra(data, 2, 'node or set, area', deck)
             if (.not. valid) cycle
             named(target%members(mesh%node_sets)) = .true.
          end associate
@@ -73,13 +70,12 @@ contains
    end subroutine read_nodes
 
    !> The outer sides of elements all of whose nodes are named. A node on none of them is an error.
-   subroutine find_faces(card, named, mesh, report, surface, context)
+   subroutine find_faces(card, named, mesh, deck, surface)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: named(:)
       type(mesh_type), intent(inout) :: mesh
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, intent(in) :: surface
-      type(deck_context_type), intent(inout) :: context
       type(element_sides_type) :: sides
       type(number_list_type) :: found
       logical :: taken(0:size(named))
@@ -99,10 +95,9 @@ contains
          end do
       end do
       mesh%surfaces(surface)%faces = reshape(found%numbers(), [2, found%count/2])
-      context%face_places(surface)%items = spread(card%place, 1, &
-         size(mesh%surfaces(surface)%faces, 2))
+      deck%face_places(surface)%items = spread(card%place, 1, size(mesh%surfaces(surface)%faces, 2))
       e = findloc(named .and. .not. taken(1:), .true., dim=1)
-      if (e > 0) call report%error(card%data(1)%place(1), 'node '//to_text(mesh%node_number(e))// &
+      if (e > 0) call deck%error(card%data(1)%place(1), 'node '//to_text(mesh%node_number(e))// &
          ' of surface '//mesh%surfaces(surface)%name//' is on no side of an element, at the '// &
          'edge of its body, whose nodes are all in the surface: add the nodes that are '// &
          'missing, or name elements and faces S1 to S4')

@@ -4,8 +4,7 @@ module deck_builder_options
    use cards, only: cards_type, keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_context_type, look_up, need_element_set, need_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
    use kinds, only: dp
@@ -24,11 +23,10 @@ module deck_builder_options
 contains
 
    !> Reads *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
-   subroutine build_options(cards, context, model, report)
+   subroutine build_options(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives plane, order, levels, axis
+      type(deck_type), intent(inout) :: deck   !! receives plane, order, levels, axis and errors
       type(model_type), intent(inout) :: model             !! receives heading, units, solver
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: solver
       integer :: k
 
@@ -45,22 +43,22 @@ contains
                if (size(card%data) == 0 .or. len(model%heading) > 0) cycle
                model%heading = card%data(1)%fields(1)%text
             case ('OPTIONS')
-               call build_option_card(card, context, model, report)
+               call build_option_card(card, deck, model)
             case ('PHYSICAL CONSTANTS')
-               call take_parameter(card, 'ABSOLUTE ZERO', report, model%constants%absolute_zero)
+               call take_parameter(card, 'ABSOLUTE ZERO', deck, model%constants%absolute_zero)
                if (card%has('STEFAN BOLTZMANN')) call take_positive(card, 'STEFAN BOLTZMANN', &
-                  report, model%constants%stefan_boltzmann)
+                  deck, model%constants%stefan_boltzmann)
                model%constants%has_absolute_zero = card%has('ABSOLUTE ZERO')
                model%constants%has_radiation = model%constants%has_absolute_zero .and. &
                   card%has('STEFAN BOLTZMANN')
             case ('SOLVER')
-               call need_choice(card, 'TYPE', 'SKYLINE/MUMPS', report, solver)
+               call need_choice(card, 'TYPE', 'SKYLINE/MUMPS', deck, solver)
                if (solver == 'SKYLINE') model%solver = solver_skyline
                if (solver == 'MUMPS') model%solver = solver_mumps
             case ('REFINE')
-               call build_levels(card, context, report)
+               call build_levels(card, deck)
             case ('CONTROLS')
-               call context%note('*'//card%name//' is ignored')
+               call deck%note('*'//card%name//' is ignored')
             case default
                cycle
             end select
@@ -68,49 +66,47 @@ contains
       end do
    end subroutine build_options
 
-   subroutine build_option_card(card, context, model, report)
+   subroutine build_option_card(card, deck, model)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: errors, plane
 
       plane = ''
       errors = 'YES'
-      call choose(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', report, plane)
-      if (plane == 'STRAIN') context%plane = plane_strain
-      if (plane == 'STRESS') context%plane = plane_stress
-      if (plane == 'AXISYMMETRIC') context%plane = axisymmetric
-      if (card%has('ORDER')) call build_order(card, context, model, report)
-      call choose(card, 'ERRORS', 'YES/NO', report, errors)
+      call choose(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', deck, plane)
+      if (plane == 'STRAIN') deck%plane = plane_strain
+      if (plane == 'STRESS') deck%plane = plane_stress
+      if (plane == 'AXISYMMETRIC') deck%plane = axisymmetric
+      if (card%has('ORDER')) call build_order(card, deck, model)
+      call choose(card, 'ERRORS', 'YES/NO', deck, errors)
       if (card%has('ERRORS')) model%estimates_errors = errors == 'YES'
-      if (card%has('UNITS')) call build_units(card, model, report)
+      if (card%has('UNITS')) call build_units(card, model, deck)
       if (.not. card%has('LOAD')) return
-      context%load_set = to_upper(card%text('LOAD'))
-      context%load_place = card%place_of('LOAD')
+      deck%load_set = to_upper(card%text('LOAD'))
+      deck%load_place = card%place_of('LOAD')
    end subroutine build_option_card
 
-   subroutine build_order(card, context, model, report)
+   subroutine build_order(card, deck, model)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
       integer :: errors
 
-      errors = report%error_count()
+      errors = deck%error_count()
       model%order_place = card%place_of('ORDER')
-      call take_parameter(card, 'ORDER', report, context%order)
-      if (any(context%order == [1, 2])) return
-      if (report%error_count() == errors) call report%error(model%order_place, &
-         'ORDER= must be 1 (elements without midside nodes) or 2 (elements as they are)')
-      context%order = 2
+      call take_parameter(card, 'ORDER', deck, deck%order)
+      if (any(deck%order == [1, 2])) return
+      if (deck%error_count() == errors) call deck%error(model%order_place, 'ORDER= must be 1 '// &
+         '(elements without midside nodes) or 2 (elements as they are)')
+      deck%order = 2
    end subroutine build_order
 
    !> UNITS="length stress power temperature".
-   subroutine build_units(card, model, report)
+   subroutine build_units(card, model, deck)
       type(keyword_card_type), intent(in) :: card
       type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: rest
       character(len(card%text('UNITS'))) :: words(4)
       integer :: i, blank
@@ -123,7 +119,7 @@ contains
          rest = trim(adjustl(rest(blank:)))
       end do
       if (len(rest) > 0 .or. words(4) == '') then
-         call report%error(card%place_of('UNITS'), 'UNITS= has four words: length, stress, '// &
+         call deck%error(card%place_of('UNITS'), 'UNITS= has four words: length, stress, '// &
             'power, temperature')
          return
       end if
@@ -133,90 +129,87 @@ contains
       model%units%temperature = trim(words(4))
    end subroutine build_units
 
-   subroutine build_levels(card, context, report)
+   subroutine build_levels(card, deck)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
 
       if (card%has('SURFACE') .or. card%has('ELSET')) return
-      if (card%has('DISTANCE')) call report%error(card%place_of('DISTANCE'), 'DISTANCE= is '// &
+      if (card%has('DISTANCE')) call deck%error(card%place_of('DISTANCE'), 'DISTANCE= is '// &
          'measured from a surface or a set: give SURFACE= or ELSET= too')
-      if (context%levels_place%image > 0) then
-         call report%error(card%place, 'a second *REFINE of the whole model')
+      if (deck%levels_place%image > 0) then
+         call deck%error(card%place, 'a second *REFINE of the whole model')
          return
       end if
-      context%levels_place = card%place_of('LEVELS')
-      call take_levels(card, report, context%levels)
+      deck%levels_place = card%place_of('LEVELS')
+      call take_levels(card, deck, deck%levels)
    end subroutine build_levels
 
    !> Reads LEVELS= of *REFINE; 0 after an error.
-   subroutine take_levels(card, report, levels)
+   subroutine take_levels(card, deck, levels)
       type(keyword_card_type), intent(in) :: card          !! the *REFINE
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       integer, intent(inout) :: levels                     !! 0 before
 
-      if (card%lacks('LEVELS')) call report%error(card%place, '*REFINE needs LEVELS=')
-      call take_parameter(card, 'LEVELS', report, levels)
+      if (card%lacks('LEVELS')) call deck%error(card%place, '*REFINE needs LEVELS=')
+      call take_parameter(card, 'LEVELS', deck, levels)
       if (levels >= 0 .and. levels <= most_levels) return
-      call report%error(card%place_of('LEVELS'), 'LEVELS= must lie between 0 and '// &
+      call deck%error(card%place_of('LEVELS'), 'LEVELS= must lie between 0 and '// &
          to_text(most_levels))
       levels = 0
    end subroutine take_levels
 
    !> Reads LOAD=nset,dof of *OPTIONS: the prescribed value that the load axis follows.
-   subroutine build_load_axis(last, context, model, report)
+   subroutine build_load_axis(last, deck, model)
       type(place_type), intent(in) :: last                 !! where the deck ends
-      type(deck_context_type), intent(inout) :: context    !! set, its place, and what is prescribed
+      !> set, its place, and what is prescribed; receives errors
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model   !! receives node, degree of freedom and label
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name
       integer, allocatable :: members(:)
       integer :: comma, set, dof, i
       logical :: valid
 
       model%load_label = 'time'
-      if (.not. allocated(context%load_set)) then
-         call context%note('*OPTIONS without LOAD=: the load axis is the time')
+      if (.not. allocated(deck%load_set)) then
+         call deck%note('*OPTIONS without LOAD=: the load axis is the time')
          return
       end if
-      comma = index(context%load_set, ',')
-      if (comma == 0) comma = len(context%load_set) + 1
-      name = context%load_set(:comma - 1)
-      call read_integer(context%load_set(min(comma + 1, len(context%load_set) + 1):), dof, valid)
-      set = context%node_index%sets%find(name)
+      comma = index(deck%load_set, ',')
+      if (comma == 0) comma = len(deck%load_set) + 1
+      name = deck%load_set(:comma - 1)
+      call read_integer(deck%load_set(min(comma + 1, len(deck%load_set) + 1):), dof, valid)
+      set = deck%node_index%sets%find(name)
       if (valid .and. set > 0) dof = axis_in_plane(model%transforms, model%mesh%node_sets, &
          model%mesh%node_sets(set)%members, dof)
       if (.not. valid .or. .not. any(dof == [1, 2, dof_temperature])) then
-         call report%error(context%load_place, &
-            'LOAD= has a node set and a degree of freedom 1, 2 or 11')
+         call deck%error(deck%load_place, 'LOAD= has a node set and a degree of freedom 1, 2 or 11')
          return
       end if
-      call look_up('node set', name, context%node_index%sets, context%load_place, report, set)
+      call deck%look_up('node set', name, deck%load_place, set)
       if (set == 0) return
       members = model%mesh%node_sets(set)%members
       if (size(members) == 0) return
-      members = pack(members, .not. context%dropped(members))
+      members = pack(members, .not. deck%dropped(members))
       if (size(members) == 0) then
-         call report%error(context%load_place, 'ORDER=1 leaves no node of '//name// &
-            ', which has midside nodes only; LOAD= needs one at a corner')
+         call deck%error(deck%load_place, 'ORDER=1 leaves no node of '//name//', which has '// &
+            'midside nodes only; LOAD= needs one at a corner')
          return
       end if
       model%load_node = members(1)
       model%load_dof = dof
       model%load_label = dof_name(dof)//' of '//name
-      if (.not. (context%boundaries_sound .and. context%sets_sound)) return
-      if (is_prescribed(context, model)) return
-      do i = 1, context%boundaries%count
-         if (context%boundaries%items(i)%component /= dof) cycle
-         call report%error(context%load_place, 'LOAD= follows a value that no *BOUNDARY '// &
-            'prescribes: '//dof_name(dof)//' of '//name)
+      if (.not. (deck%boundaries_sound .and. deck%sets_sound)) return
+      if (is_prescribed(deck, model)) return
+      do i = 1, deck%boundaries%count
+         if (deck%boundaries%items(i)%component /= dof) cycle
+         call deck%error(deck%load_place, 'LOAD= follows a value that no *BOUNDARY prescribes: '// &
+            dof_name(dof)//' of '//name)
          return
       end do
-      if (report%has_lost('*STEP')) return
-      call report%error(last, 'no *BOUNDARY prescribes any '//dof_name(dof)// &
-         ' (degree of freedom '//to_text(dof)//'), which LOAD='//context%load_set// &
-         ' of *OPTIONS follows; give the values, as '//name//', '//to_text(dof)//', '// &
-         to_text(dof)//', value')
+      if (deck%has_lost('*STEP')) return
+      call deck%error(last, 'no *BOUNDARY prescribes any '//dof_name(dof)//' (degree of '// &
+         'freedom '//to_text(dof)//'), which LOAD='//deck%load_set//' of *OPTIONS follows; '// &
+         'give the values, as '//name//', '//to_text(dof)//', '//to_text(dof)//', value')
    end subroutine build_load_axis
 
    pure function dof_name(dof) result(name)
@@ -234,14 +227,14 @@ contains
    end function dof_name
 
    !> Whether a *BOUNDARY prescribes the degree of freedom of the load axis at its node.
-   pure logical function is_prescribed(context, model)
-      type(deck_context_type), intent(in) :: context
+   pure logical function is_prescribed(deck, model)
+      type(deck_type), intent(in) :: deck
       type(model_type), intent(in) :: model
       integer :: i
 
       is_prescribed = .true.
-      do i = 1, context%boundaries%count
-         associate (request => context%boundaries%items(i))
+      do i = 1, deck%boundaries%count
+         associate (request => deck%boundaries%items(i))
             if (request%component /= model%load_dof) cycle
             if (request%item == model%load_node) return
             if (request%set == 0) cycle
@@ -252,11 +245,10 @@ contains
    end function is_prescribed
 
    !> Takes the *REFINE cards that name a surface or a set.
-   subroutine build_regions(cards, context, model, report)
+   subroutine build_regions(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck   !! receives errors
       type(model_type), intent(inout) :: model             !! its mesh; receives the regions
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(refined_region_type) :: region
       integer :: k
 
@@ -265,38 +257,36 @@ contains
          associate (card => cards%keywords(k))
             if (card%name /= 'REFINE') cycle
             if (.not. (card%has('SURFACE') .or. card%has('ELSET'))) cycle
-            call build_region(card, context, model%mesh, report, region)
+            call build_region(card, deck, model%mesh, region)
             model%regions = [model%regions, region]
          end associate
       end do
    end subroutine build_regions
 
-   subroutine build_region(card, context, mesh, report, region)
+   subroutine build_region(card, deck, mesh, region)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       type(refined_region_type), intent(out) :: region
       integer :: errors, surface
 
       region%card = card%place%image
-      call take_levels(card, report, region%levels)
+      call take_levels(card, deck, region%levels)
       if (card%has('SURFACE') .and. card%has('ELSET')) then
-         call report%error(card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, not '// &
-            'both; give a card for each')
+         call deck%error(card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, not both; '// &
+            'give a card for each')
       else if (card%has('SURFACE')) then
-         call need_named(card, 'SURFACE', 'surface', context%surfaces, report, surface)
-         call need_faces(mesh, card%place_of('SURFACE'), 'name the face that touches it', report, &
+         call deck%need_named(card, 'SURFACE', 'surface', surface)
+         call need_faces(mesh, card%place_of('SURFACE'), 'name the face that touches it', deck, &
             surface)
          region%surfaces = [surface]
       else
-         call need_element_set(card, context%element_index%sets, mesh%element_sets, report, &
-            region%set)
+         call deck%need_element_set(card, mesh%element_sets, region%set)
       end if
       if (.not. card%has('DISTANCE')) return
-      errors = report%error_count()
-      call take_parameter(card, 'DISTANCE', report, region%distance)
-      if (region%distance <= 0.0_dp .and. report%error_count() == errors) call report%error( &
+      errors = deck%error_count()
+      call take_parameter(card, 'DISTANCE', deck, region%distance)
+      if (region%distance <= 0.0_dp .and. deck%error_count() == errors) call deck%error( &
          card%place_of('DISTANCE'), 'DISTANCE= must be above 0')
    end subroutine build_region
 

@@ -3,8 +3,7 @@ module deck_builder_rigid
    use card_parameters, only: choose, is_on
    use cards, only: keyword_card_type
    use deck_builder_rigid_lines, only: lines_of
-   use deck_context, only: deck_context_type, take_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_source, only: place_type
    use equations, only: coupling_type
    use mesh, only: mesh_type
@@ -17,11 +16,10 @@ contains
 
    !> Reads what follows the reference node, which is known: sets of nodes and elements, and the
    !> surfaces that are lines.
-   subroutine build_rigid_body(card, context, model, report, coupling)
+   subroutine build_rigid_body(card, deck, model, coupling)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck   !! receives errors
       type(model_type), intent(inout) :: model             !! receives whom its surfaces follow
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(coupling_type), intent(inout) :: coupling       !! receives the rest
       character(*), parameter :: names(3) = [character(8) :: 'NSET', 'TIE NSET', 'PIN NSET']
       character(:), allocatable :: position
@@ -34,27 +32,26 @@ contains
       allocate (coupling%node_sets(0), lines(0))
       do i = 1, size(names)
          set = 0
-         call take_named(card, trim(names(i)), 'node set', context%node_index%sets, report, set)
+         call deck%take_named(card, trim(names(i)), 'node set', set)
          if (set > 0) coupling%node_sets = [coupling%node_sets, set]
       end do
-      call take_named(card, 'ELSET', 'element set', context%element_index%sets, report, &
-         coupling%element_set)
+      call deck%take_named(card, 'ELSET', 'element set', coupling%element_set)
       if (coupling%element_set > 0) then
-         lines = lines_of(model%mesh%element_sets(coupling%element_set)%name, context)
-         coupling%nodes = pack(context%line_nodes(:, lines), context%line_nodes(:, lines) > 0)
+         lines = lines_of(model%mesh%element_sets(coupling%element_set)%name, deck)
+         coupling%nodes = pack(deck%line_nodes(:, lines), deck%line_nodes(:, lines) > 0)
       end if
       surface = 0
-      call take_named(card, 'ANALYTICAL SURFACE', 'surface', context%surfaces, report, surface)
+      call deck%take_named(card, 'ANALYTICAL SURFACE', 'surface', surface)
       if (surface > 0) then
          if (.not. allocated(model%mesh%surfaces(surface)%drawing)) then
-            call report%error(card%place_of('ANALYTICAL SURFACE'), 'surface '// &
+            call deck%error(card%place_of('ANALYTICAL SURFACE'), 'surface '// &
                model%mesh%surfaces(surface)%name//' is no drawing; name one of *SURFACE, '// &
                'TYPE=SEGMENTS, or the elements by ELSET=')
             return
          end if
       end if
-      call choose(card, 'POSITION', 'INPUT', report, position)
-      isothermal = is_on(card, 'ISOTHERMAL', report)
+      call choose(card, 'POSITION', 'INPUT', deck, position)
+      isothermal = is_on(card, 'ISOTHERMAL', deck)
       ! Lines conduct no heat: they have one temperature.
       coupling%is_warm = isothermal .or. (size(lines) > 0 .and. size(coupling%node_sets) == 0)
       do i = 1, size(model%mesh%surfaces)
@@ -71,29 +68,29 @@ contains
       if (surface > 0 .or. coupling%element_set > 0 .or. size(coupling%node_sets) > 0) return
       if (card%has('NSET') .or. card%has('ELSET') .or. card%has('TIE NSET') .or. &
          card%has('PIN NSET') .or. card%has('ANALYTICAL SURFACE')) return
-      call report%error(card%place, '*RIGID BODY names nothing that is rigid; give ELSET=, '// &
-         'NSET= or ANALYTICAL SURFACE=')
+      call deck%error(card%place, '*RIGID BODY names nothing that is rigid; give ELSET=, NSET= '// &
+         'or ANALYTICAL SURFACE=')
    end subroutine build_rigid_body
 
    !> Refuses a rigid surface where faces of elements are needed.
-   subroutine need_faces(mesh, place, advice, report, surface)
+   subroutine need_faces(mesh, place, advice, deck, surface)
       type(mesh_type), intent(in) :: mesh
       type(place_type), intent(in) :: place                !! where it is named
       character(*), intent(in) :: advice                   !! what to name in its place
-      type(deck_report_type), intent(inout) :: report      !! receives the error
+      type(deck_type), intent(inout) :: deck   !! receives the error
       integer, intent(inout) :: surface                    !! 0 for none, and after an error
 
       if (surface == 0) return
       if (.not. allocated(mesh%surfaces(surface)%drawing)) return
-      call report%error(place, 'surface '//mesh%surfaces(surface)%name//' is rigid: it has no '// &
+      call deck%error(place, 'surface '//mesh%surfaces(surface)%name//' is rigid: it has no '// &
          'faces; '//advice)
       surface = 0
    end subroutine need_faces
 
    !> Rigid surfaces in contact have a reference node.
-   subroutine check_rigid_masters(model, report)
+   subroutine check_rigid_masters(model, deck)
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       integer :: i
 
       do i = 1, size(model%contacts)
@@ -101,7 +98,7 @@ contains
          associate (surface => model%mesh%surfaces(model%contacts(i)%master))
             if (.not. allocated(surface%drawing)) cycle
             if (surface%drawing%reference > 0) cycle
-            call report%missing(place_type(image=model%contacts(i)%card), 'rigid surface '// &
+            call deck%missing(place_type(image=model%contacts(i)%card), 'rigid surface '// &
                surface%name//' belongs to no *RIGID BODY, whose reference node it follows; '// &
                'give *RIGID BODY, REF NODE=node, '//trim(merge('ELSET=its elements         ', &
                'ANALYTICAL SURFACE=its name', allocated(surface%drawing%line))), 'equation')

@@ -4,8 +4,7 @@ module deck_builder_sections
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_equations, only: find_reference
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_context_type, need_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use equations, only: coupling_type
    use kinds, only: dp
@@ -20,46 +19,44 @@ module deck_builder_sections
 contains
 
    !> Builds all sections, behind the couplings: their nodes are behind all others.
-   subroutine build_pre_tensions(cards, context, model, report)
+   subroutine build_pre_tensions(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! knows the nodes; receives notes
+      type(deck_type), intent(inout) :: deck   !! knows the nodes; receives notes; receives errors
       type(model_type), intent(inout) :: model             !! receives sections, nodes, surfaces
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(coupling_type) :: section
       integer, allocatable :: places(:)
       integer :: k
 
       places = cards_of(cards, 'PRE-TENSION SECTION')
       do k = 1, size(places)
-         call build_section(cards%keywords(places(k)), context, model, report, section)
+         call build_section(cards%keywords(places(k)), deck, model, section)
          if (section%opposite > 0) then
             model%couplings = [model%couplings, section]
          else
-            call report%lose('equation')
+            call deck%lose('equation')
          end if
       end do
    end subroutine build_pre_tensions
 
    !> Builds one section; without an opposite face after an error.
-   subroutine build_section(card, context, model, report, section)
+   subroutine build_section(card, deck, model, section)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
       type(coupling_type), intent(out) :: section
       character(:), allocatable :: fault
       logical :: valid
 
       section%card = card%place%image
-      section%title = '*PRE-TENSION SECTION, '//report%source%words_of(card%place)
-      call find_reference('NODE', card, context, model, report, section%reference)
-      call need_named(card, 'SURFACE', 'surface', context%surfaces, report, section%surface)
+      section%title = '*PRE-TENSION SECTION, '//deck%source%words_of(card%place)
+      call find_reference('NODE', card, deck, model, section%reference)
+      call deck%need_named(card, 'SURFACE', 'surface', section%surface)
       call need_faces(model%mesh, card%place_of('SURFACE'), 'a section lies between elements '// &
-         'of a body', report, section%surface)
-      valid = section%reference > 0 .and. section%surface > 0 .and. all(context%element_valid)
+         'of a body', deck, section%surface)
+      valid = section%reference > 0 .and. section%surface > 0 .and. all(deck%element_valid)
       if (valid) valid = size(model%mesh%surfaces(section%surface)%faces) > 0
       if (valid) section%normal = section_normal(section%surface, model%mesh)
-      if (size(card%data) > 0) call read_normal(card%data(1), report, section%normal, valid)
+      if (size(card%data) > 0) call read_normal(card%data(1), deck, section%normal, valid)
       if (.not. valid) return
       fault = ''
       if (norm2(section%normal) <= 0.0_dp) fault = 'is closed: it has no normal'
@@ -69,14 +66,14 @@ contains
       if (any(model%couplings%reference == section%reference)) fault = 'has node '// &
          to_text(model%mesh%node_number(section%reference))//', which is the reference node '// &
          'of another card'
-      if (len(fault) == 0) call cut(card, context, model%mesh, section, fault)
-      if (len(fault) > 0) call report%error(card%place, 'this section '//fault)
+      if (len(fault) == 0) call cut(card, deck, model%mesh, section, fault)
+      if (len(fault) > 0) call deck%error(card%place, 'this section '//fault)
    end subroutine build_section
 
    !> Cuts the mesh, and adds the other face.
-   subroutine cut(card, context, mesh, section, fault)
+   subroutine cut(card, deck, mesh, section, fault)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(inout) :: mesh
       type(coupling_type), intent(inout) :: section
       character(:), allocatable, intent(out) :: fault
@@ -91,19 +88,19 @@ contains
       other%card = section%card
       mesh%surfaces = [mesh%surfaces, other]
       section%opposite = size(mesh%surfaces)
-      context%face_places = [context%face_places, context%face_places(section%surface)]
-      context%node_place = [context%node_place, spread(card%place, 1, last - first + 1)]
-      context%node_valid = [context%node_valid, spread(.true., 1, last - first + 1)]
-      context%dropped = [context%dropped, spread(.false., 1, last - first + 1)]
-      call context%note(section%title//': the elements of its surface have the nodes '// &
-         to_text(mesh%node_number(first))//' to '//to_text(mesh%node_number(last))// &
-         ' there, which the deck does not have')
+      deck%face_places = [deck%face_places, deck%face_places(section%surface)]
+      deck%node_place = [deck%node_place, spread(card%place, 1, last - first + 1)]
+      deck%node_valid = [deck%node_valid, spread(.true., 1, last - first + 1)]
+      deck%dropped = [deck%dropped, spread(.false., 1, last - first + 1)]
+      call deck%note(section%title//': the elements of its surface have the nodes '// &
+         to_text(mesh%node_number(first))//' to '//to_text(mesh%node_number(last))//' there, '// &
+         'which the deck does not have')
    end subroutine cut
 
    !> The normal; its third component is 0.
-   subroutine read_normal(data, report, normal, valid)
+   subroutine read_normal(data, deck, normal, valid)
       type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp), intent(inout) :: normal(2)
       logical, intent(inout) :: valid
       character(*), parameter :: names = 'xyz'
@@ -112,14 +109,14 @@ contains
 
       given = 0.0_dp
       do i = 1, 2
-         call need_field(data, i, names(i:i)//' of the normal', report, given(i), valid)
+         call need_field(data, i, names(i:i)//' of the normal', deck, given(i), valid)
       end do
-      call take_field(data, 3, 'z of the normal', report, given(3), valid)
-      call check_extra(data, 3, 'x, y and z of the normal', report)
+      call take_field(data, 3, 'z of the normal', deck, given(3), valid)
+      call check_extra(data, 3, 'x, y and z of the normal', deck)
       if (.not. valid) return
       normal = unit_vector(given(:2))
       if (norm2(normal) > 0.0_dp .and. abs(given(3)) <= 0.0_dp) return
-      call report%error(data%place(1), 'the normal of a section is a direction in the plane, '// &
+      call deck%error(data%place(1), 'the normal of a section is a direction in the plane, '// &
          'such as 0., 1., 0.')
       valid = .false.
    end subroutine read_normal

@@ -7,9 +7,7 @@ module deck_builder_sets
    use deck_builder_lines, only: find_line_faces, is_line_card
    use deck_builder_rigid, only: need_faces
    use deck_builder_rigid_lines, only: build_line_surface, is_rigid_side
-   use deck_context, only: deck_context_type, item_index_type, place_list_type, read_target, &
-      take_name, take_named
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type, item_index_type, place_list_type, read_target, take_name
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
    use load_requests, only: target_type
@@ -33,12 +31,12 @@ contains
 
    !> Builds all sets of nodes or of elements, lines among them; a name that is on several cards
    !> is one set.
-   subroutine build_sets(noun, cards, context, mesh, report, sets)
+   subroutine build_sets(noun, cards, deck, mesh, sets)
       character(*), intent(in) :: noun                           !! node or element
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context   !! numbers -> indexes; receives the names
+      !> numbers -> indexes; receives the names; receives errors
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh  !! for nodes: has the element sets and surfaces
-      type(deck_report_type), intent(inout) :: report            !! receives errors
       type(set_type), allocatable, intent(out) :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
@@ -48,8 +46,8 @@ contains
       parameter = trim(parameter)
       definer = to_upper(noun)
       allocate(draft%items(size(cards%keywords)), draft%members(size(cards%keywords)))
-      draft%numbers = context%node_index
-      if (noun == 'element') draft%numbers = context%member_index
+      draft%numbers = deck%node_index
+      if (noun == 'element') draft%numbers = deck%member_index
       first = [0, size(mesh%element_number)]
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
@@ -57,7 +55,7 @@ contains
                kind = merge(2, 1, is_line_card(card))
                count = size(card%data)
                if (card%has(parameter)) then
-                  call open_set(card, parameter, report, draft, i)
+                  call open_set(card, parameter, deck, draft, i)
                   if (noun == 'node') then
                      call draft%members(i)%add(nodes_of(card, draft%numbers))
                   else
@@ -66,13 +64,13 @@ contains
                end if
                first(kind) = first(kind) + count
             else if (card%name == parameter) then
-               call build_set(card, context, mesh, report, draft)
+               call build_set(card, deck, mesh, draft)
             end if
          end associate
       end do
       allocate(sets(draft%sets))
-      if (noun == 'node') context%node_index%sets = draft%numbers%sets
-      if (noun == 'element') context%element_index%sets = draft%numbers%sets
+      if (noun == 'node') deck%node_index%sets = draft%numbers%sets
+      if (noun == 'element') deck%element_index%sets = draft%numbers%sets
       do i = 1, draft%sets
          call move_alloc(draft%items(i)%name, sets(i)%name)
          sets(i)%members = unique_sorted(draft%members(i)%numbers())
@@ -96,10 +94,10 @@ contains
    end function nodes_of
 
    !> Finds the set that a card names, or begins it.
-   subroutine open_set(card, parameter, report, draft, set)
+   subroutine open_set(card, parameter, deck, draft, set)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(draft_type), intent(inout) :: draft
       integer, intent(out) :: set
       character(:), allocatable :: name
@@ -110,8 +108,8 @@ contains
       set = draft%numbers%sets%find(name)
       if (set > 0) return
       call read_integer(name, number, is_number)
-      if (is_number) call report%error(card%place_of(parameter), 'the name of a set must not '// &
-         'be a number')
+      if (is_number) call deck%error(card%place_of(parameter), 'the name of a set must not be '// &
+         'a number')
       call draft%numbers%sets%add(name)
       draft%sets = draft%sets + 1
       set = draft%sets
@@ -119,11 +117,10 @@ contains
    end subroutine open_set
 
    !> Reads one *NSET or *ELSET card.
-   subroutine build_set(card, context, mesh, report, draft)
+   subroutine build_set(card, deck, mesh, draft)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       type(draft_type), intent(inout) :: draft
       character(:), allocatable :: name
       integer, allocatable :: nodes(:)
@@ -131,22 +128,22 @@ contains
       integer :: set, j, i, known
       logical :: valid
 
-      call need_parameter(card, card%name, report, name)
+      call need_parameter(card, card%name, deck, name)
       if (len(name) == 0) return
       known = draft%sets
-      call open_set(card, card%name, report, draft, set)
+      call open_set(card, card%name, deck, draft, set)
       if (draft%numbers%noun == 'node') then
-         call find_nodes(card, context, mesh, report, nodes)
+         call find_nodes(card, deck, mesh, nodes)
          call draft%members(set)%add(nodes)
       end if
       do j = 1, size(card%data)
          if (card%has('GENERATE')) then
-            call generate(card%data(j), report, draft, set)
+            call generate(card%data(j), deck, draft, set)
             cycle
          end if
          do i = 1, size(card%data(j)%fields)
             valid = .true.
-            call read_target(card%data(j), i, draft%numbers, draft%items(:known), report, other, &
+            call read_target(card%data(j), i, draft%numbers, draft%items(:known), deck, other, &
                valid)
             if (other%item > 0) call draft%members(set)%add([other%item])
             ! Each member once, lest sets that hold a set twice double.
@@ -157,24 +154,23 @@ contains
    end subroutine build_set
 
    !> The nodes of the element set or the surface that an *NSET card names; some repeatedly.
-   subroutine find_nodes(card, context, mesh, report, nodes)
+   subroutine find_nodes(card, deck, mesh, nodes)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context          ! lines of element sets
+      type(deck_type), intent(inout) :: deck   ! lines of element sets
       type(mesh_type), intent(in) :: mesh                     ! element sets and surfaces
-      type(deck_report_type), intent(inout) :: report
       integer, allocatable, intent(out) :: nodes(:)
       type(number_list_type) :: found
       integer :: i, set, surface
 
       set = 0
       surface = 0
-      call take_named(card, 'ELSET', 'element set', context%element_index%sets, report, set)
+      call deck%take_named(card, 'ELSET', 'element set', set)
       if (set > 0) then
          call found%add([mesh%element_nodes(:, mesh%element_sets(set)%members)])
-         call found%add([context%line_nodes(:, context%line_sets(set)%members)])
+         call found%add([deck%line_nodes(:, deck%line_sets(set)%members)])
       end if
-      call take_named(card, 'SURFACE', 'surface', context%surfaces, report, surface)
-      call need_faces(mesh, card%place_of('SURFACE'), 'name its reference node', report, surface)
+      call deck%take_named(card, 'SURFACE', 'surface', surface)
+      call need_faces(mesh, card%place_of('SURFACE'), 'name its reference node', deck, surface)
       if (surface > 0) then
          associate (faces => mesh%surfaces(surface)%faces)
             do i = 1, size(faces, 2)
@@ -188,9 +184,9 @@ contains
    end subroutine find_nodes
 
    !> Numbers from first to last; those between that do not exist are ignored with a warning.
-   subroutine generate(data, report, draft, set)
+   subroutine generate(data, deck, draft, set)
       type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(draft_type), intent(inout) :: draft
       integer, intent(in) :: set
       character(:), allocatable :: range
@@ -199,13 +195,13 @@ contains
 
       valid = .true.
       step = 1
-      call need_field(data, 1, 'first number', report, first, valid)
-      call need_field(data, 2, 'last number', report, last, valid)
-      call take_field(data, 3, 'increment', report, step, valid)
-      call check_extra(data, 3, 'first number, last number, increment', report)
+      call need_field(data, 1, 'first number', deck, first, valid)
+      call need_field(data, 2, 'last number', deck, last, valid)
+      call take_field(data, 3, 'increment', deck, step, valid)
+      call check_extra(data, 3, 'first number, last number, increment', deck)
       if (.not. valid .or. draft%numbers%is_empty()) return
       if (step < 1 .or. last < first) then
-         call report%error(data%place(1), 'the numbers must ascend from first to last')
+         call deck%error(data%place(1), 'the numbers must ascend from first to last')
          return
       end if
       count = (last - first)/step + 1
@@ -221,10 +217,10 @@ contains
       range = 'from '//to_text(first)//' to '//to_text(last)
       associate (noun => draft%numbers%noun)
          if (found == 0 .and. draft%members(set)%count == 0) then
-            call report%missing(data%place(1), 'there is no '//noun//' '//range, noun)
-         else if (found < count .and. .not. report%has_lost(noun)) then
+            call deck%missing(data%place(1), 'there is no '//noun//' '//range, noun)
+         else if (found < count .and. .not. deck%has_lost(noun)) then
             if (step > 1) range = range//' in steps of '//to_text(step)
-            call report%warning(data%place(1), 'missing '//noun//'s are left out: '// &
+            call deck%warning(data%place(1), 'missing '//noun//'s are left out: '// &
                to_text(count - found)//' of '//to_text(count)//' '//range//', the first is '// &
                to_text(first + first_missing*step))
          end if
@@ -232,30 +228,28 @@ contains
    end subroutine generate
 
    !> Builds all surfaces.
-   subroutine build_surfaces(cards, context, mesh, report)
+   subroutine build_surfaces(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives their places
+      type(deck_type), intent(inout) :: deck   !! receives their places and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the surfaces
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer, allocatable :: places(:)
       integer :: n
 
       places = cards_of(cards, 'SURFACE')
-      allocate(mesh%surfaces(size(places)), context%face_places(size(places)))
+      allocate(mesh%surfaces(size(places)), deck%face_places(size(places)))
       do n = 1, size(places)
-         call take_name(cards, places(n), 'surface', context%surfaces, mesh%surfaces(n)%name, &
-            report)
-         call build_surface(cards%keywords(places(n)), context, mesh, report, mesh%surfaces(n), &
-            context%face_places(n))
+         call take_name(cards, places(n), 'surface', deck%surfaces, deck%deck_report_type, &
+            mesh%surfaces(n)%name)
+         call build_surface(cards%keywords(places(n)), deck, mesh, mesh%surfaces(n), &
+            deck%face_places(n))
       end do
    end subroutine build_surfaces
 
    !> Builds one surface; a face that is named twice counts once, in the order of elements.
-   subroutine build_surface(card, context, mesh, report, surface, places)
+   subroutine build_surface(card, deck, mesh, surface, places)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       type(surface_type), intent(inout) :: surface
       type(place_list_type), intent(inout) :: places   ! receives where each face is named
       character(:), allocatable :: kind
@@ -267,39 +261,38 @@ contains
 
       kind = 'ELEMENT'
       surface%card = card%place%image
-      errors = report%error_count()
-      call choose(card, 'TYPE', surface_kinds, report, kind)
+      errors = deck%error_count()
+      call choose(card, 'TYPE', surface_kinds, deck, kind)
       allocate(surface%faces(2, 0))
       ! The data of another type have other fields; node sets are made of surfaces, too.
-      if (report%error_count() > errors .or. kind == 'NODE') return
+      if (deck%error_count() > errors .or. kind == 'NODE') return
       if (kind == 'SEGMENTS') then
-         call build_drawing(card, report, surface)
+         call build_drawing(card, deck, surface)
       else if (size(card%data) > 0) then
-         if (is_rigid_side(card%data(1), context)) then
-            call build_line_surface(card, context, mesh, report, surface)
+         if (is_rigid_side(card%data(1), deck)) then
+            call build_line_surface(card, deck, mesh, surface)
             kind = 'RIGID'
          end if
       end if
       if (kind /= 'ELEMENT') then
-         if (.not. allocated(surface%drawing)) call report%lose('surface')
+         if (.not. allocated(surface%drawing)) call deck%lose('surface')
          return
       end if
       do j = 1, size(card%data)
          ! An element set that has lines, without a face.
-         if (.not. card%data(j)%has(2) .and. has_lines(card%data(j), context)) then
-            call add_line_faces(card%data(j), context, mesh, report, found)
+         if (.not. card%data(j)%has(2) .and. has_lines(card%data(j), deck)) then
+            call add_line_faces(card%data(j), deck, mesh, found)
             call named%add(spread(j, 1, found%count - named%count))
             cycle
          end if
          valid = .true.
-         call read_target(card%data(j), 1, context%element_index, mesh%element_sets, report, &
-            target, valid)
+         call deck%need_elements(card%data(j), 1, mesh%element_sets, target, valid)
          ! An unknown set may be one of lines, which has no face.
-         if (valid .or. card%data(j)%has(2)) call read_face(card%data(j), report, face, valid)
-         call check_extra(card%data(j), 2, 'element or set, face', report)
+         if (valid .or. card%data(j)%has(2)) call read_face(card%data(j), deck, face, valid)
+         call check_extra(card%data(j), 2, 'element or set, face', deck)
          if (.not. valid) cycle
          elements = target%members(mesh%element_sets)
-         call check_face(card%data(j), mesh, elements, face, report, valid)
+         call check_face(card%data(j), mesh, elements, face, deck, valid)
          if (.not. valid) cycle
          call found%add(4*elements + face - 1)
          call named%add(spread(j, 1, size(elements)))
@@ -315,64 +308,63 @@ contains
    end subroutine build_surface
 
    !> Whether the first field names an element set that has lines.
-   pure logical function has_lines(data, context)
+   pure logical function has_lines(data, deck)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(in) :: deck
       integer :: set
 
-      set = context%element_index%sets%find(data%text(1))
+      set = deck%element_index%sets%find(data%text(1))
       has_lines = set > 0
-      if (has_lines) has_lines = size(context%line_sets(set)%members) > 0
+      if (has_lines) has_lines = size(deck%line_sets(set)%members) > 0
    end function has_lines
 
    !> Adds the faces under the lines of a set; the first line under which there is none, or one
    !> inside a body, is an error.
-   subroutine add_line_faces(data, context, mesh, report, found)
+   subroutine add_line_faces(data, deck, mesh, found)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report
       type(number_list_type), intent(inout) :: found
       integer, allocatable :: members(:), faces(:, :), uses(:)
       character(:), allocatable :: fault
       integer :: i, bad
 
-      call check_extra(data, 1, 'element set of lines', report)
-      members = context%line_sets(context%element_index%sets%find(data%text(1)))%members
+      call check_extra(data, 1, 'element set of lines', deck)
+      members = deck%line_sets(deck%element_index%sets%find(data%text(1)))%members
       allocate(faces(2, size(members)), uses(size(members)))
-      call find_line_faces(mesh, context%element_valid, context%line_nodes(:, members), faces, uses)
+      call find_line_faces(mesh, deck%element_valid, deck%line_nodes(:, members), faces, uses)
       call found%add(pack(4*faces(1, :) + faces(2, :) - 1, uses == 1))
-      if (all(uses == 1) .or. .not. all(context%element_valid)) return
+      if (all(uses == 1) .or. .not. all(deck%element_valid)) return
       bad = findloc(uses == 1, .false., dim=1)
       fault = 'belongs to no side of an element'
       if (uses(bad) > 1) fault = 'lies inside a body, between two elements'
       if (count(uses /= 1) > 1) fault = fault//'; lines of the set that are no faces: '// &
          to_text(count(uses /= 1))
-      associate (nodes => context%line_nodes(:, members(bad)))
+      associate (nodes => deck%line_nodes(:, members(bad)))
          if (any(nodes(:2) == 0)) return
          i = findloc(nodes > 0, .true., dim=1, back=.true.)
          if (all(mesh%element_nodes /= nodes(1) .and. mesh%element_nodes /= nodes(2))) then
             fault = fault//', nor do its nodes: its curve is the side of no surface in the '// &
                'drawing, such as a second one at the place of one that is; take that one'
          end if
-         call report%error(data%place(1), 'line '//to_text(context%line_number(members(bad)))// &
+         call deck%error(data%place(1), 'line '//to_text(deck%line_number(members(bad)))// &
             ' from node '//to_text(mesh%node_number(nodes(1)))//' to '// &
             to_text(mesh%node_number(nodes(i)))//' '//fault)
       end associate
    end subroutine add_line_faces
 
    !> Every element of a data card has the face.
-   subroutine check_face(data, mesh, elements, face, report, valid)
+   subroutine check_face(data, mesh, elements, face, deck, valid)
       type(data_card_type), intent(in) :: data
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: elements(:), face
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer :: i
 
       do i = 1, size(elements)
          if (face <= element_corner_count(mesh%element_kind(elements(i)))) cycle
-         call report%error(data%place(2), 'element '//to_text(mesh%element_number(elements(i)))// &
+         call deck%error(data%place(2), 'element '//to_text(mesh%element_number(elements(i)))// &
             ' is a triangle and has no face S'//to_text(face))
          valid = .false.
          return
@@ -380,22 +372,22 @@ contains
    end subroutine check_face
 
    !> Reads the second field of a card as S and the number of a face.
-   subroutine read_face(data, report, face, valid)
+   subroutine read_face(data, deck, face, valid)
       type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, intent(out) :: face                       !! 1..4, 0 after an error
       logical, intent(inout) :: valid
       character(:), allocatable :: label
 
       face = 0
-      call need_field(data, 2, 'face S1 to S4', report, label, valid)
+      call need_field(data, 2, 'face S1 to S4', deck, label, valid)
       if (len(label) == 0) return
       label = to_upper(label)
       if (len(label) == 2) then
          if (label(1:1) == 'S') face = index('1234', label(2:2))
       end if
       if (face > 0) return
-      call report%error(data%place(2), ''''//data%text(2)//''' is no face; faces are S1 to S4')
+      call deck%error(data%place(2), ''''//data%text(2)//''' is no face; faces are S1 to S4')
       valid = .false.
    end subroutine read_face
 

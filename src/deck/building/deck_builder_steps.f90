@@ -8,8 +8,7 @@ module deck_builder_steps
    use deck_builder_controls, only: build_continuation, build_fixed_point, build_print, &
       build_restart, build_start, build_thermal_scheme, read_frequency
    use deck_builder_loads, only: build_load_card
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_structure, only: card_count, cards_of
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -41,11 +40,10 @@ module deck_builder_steps
 contains
 
    !> Builds all steps, in their order.
-   subroutine build_steps(cards, context, model, report)
+   subroutine build_steps(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(inout) :: context    !! receives requests and notes
+      type(deck_type), intent(inout) :: deck   !! receives requests and notes and errors
       type(model_type), intent(inout) :: model             !! receives the steps
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(step_controls_type) :: controls
       type(card_counts_type) :: counts
       type(step_type) :: before
@@ -53,10 +51,10 @@ contains
       integer :: k, n
 
       has_scheme = .false.
-      context%analyses_sound = .not. report%has_lost('*STEP')
-      context%boundaries_sound = context%analyses_sound
+      deck%analyses_sound = .not. deck%has_lost('*STEP')
+      deck%boundaries_sound = deck%analyses_sound
       n = card_count(cards, 'STEP')
-      allocate(model%steps(n), context%step_place(n), context%analysis_place(n))
+      allocate(model%steps(n), deck%step_place(n), deck%analysis_place(n))
       n = 0
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
@@ -64,61 +62,60 @@ contains
             case ('STEP')
                n = n + 1
                counts = card_counts_type(says_course=card%has('AMPLITUDE'))
-               context%step_place(n) = card%place
+               deck%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
-               call begin_step(card, before, context, report, model%steps(n))
+               call begin_step(card, before, deck, model%steps(n))
                if (card%has('PERTURBATION')) call check_perturbation(card, n > 1, &
-                  size(model%contacts) > 0, context, report)
+                  size(model%contacts) > 0, deck)
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
-               call begin_analysis(card, n, counts, context, report, model%steps)
+               call begin_analysis(card, n, counts, deck, model%steps)
             case ('END STEP')
                if (counts%analyses > 0) cycle
-               context%analyses_sound = .false.
-               call report%missing(card%place, &
-                  'the step has no *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT')
+               deck%analyses_sound = .false.
+               call deck%missing(card%place, 'the step has no *STATIC, *HEAT TRANSFER or '// &
+                  '*COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT', 'RESTART', 'START', 'THERMAL SCHEME')
                has_scheme = has_scheme .or. card%name == 'THERMAL SCHEME'
-               call build_control(card, context, model, report, controls)
+               call build_control(card, deck, model, controls)
             case ('CONTINUATION')
-               if (n > 0) call build_continuation(card, report, model%steps(n)%continuation)
+               if (n > 0) call build_continuation(card, deck, model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
                'SFILM', 'TEMPERATURE')
-               call build_load_card(card, n, model, context, report)
+               call build_load_card(card, n, model, deck)
             case ('CHANGE FRICTION', 'FRICTION', 'MODEL CHANGE', 'CONTACT INTERFERENCE')
-               call build_contact_change(cards, k, n, model, context, report)
+               call build_contact_change(cards, k, n, model, deck)
             case default
                if (card%meant == 'STATIC' .or. card%name == 'NO ANALYSIS') then
                   ! One that is refused is reported already.
                   counts%analyses = counts%analyses + 1
-                  context%analyses_sound = .false.
+                  deck%analyses_sound = .false.
                else if (n > 0) then
-                  call build_output(card, context, model%mesh, counts, report, model%steps(n))
+                  call build_output(card, deck, model%mesh, counts, model%steps(n))
                end if
             end select
          end associate
          if (n > 0) call take_controls(controls, has_scheme, counts%is_uncoupled, model%steps(n))
       end do
-      call warn_of_nlgeom(cards, report, model%steps)
+      call warn_of_nlgeom(cards, deck, model%steps)
    end subroutine build_steps
 
    !> Reads a card that controls this step and later ones.
-   subroutine build_control(card, context, model, report, controls)
+   subroutine build_control(card, deck, model, controls)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(step_controls_type), intent(inout) :: controls
 
       select case (card%name)
       case ('FIXED POINT')
-         call build_fixed_point(card, report, controls%fixed_point)
+         call build_fixed_point(card, deck, controls%fixed_point)
       case ('RESTART')
-         call build_restart(card, report, controls)
+         call build_restart(card, deck, controls)
       case ('START')
-         call build_start(card, context, model, report, controls%start)
+         call build_start(card, deck, model, controls%start)
       case default
-         call build_thermal_scheme(card, report, controls%scheme)
+         call build_thermal_scheme(card, deck, controls%scheme)
       end select
    end subroutine build_control
 
@@ -136,72 +133,68 @@ contains
    end subroutine take_controls
 
    !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
-   subroutine warn_of_nlgeom(cards, report, steps)
+   subroutine warn_of_nlgeom(cards, deck, steps)
       type(cards_type), intent(in) :: cards
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: steps(:)
       integer, allocatable :: places(:)
 
       steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
       places = pack(cards_of(cards, 'STEP'), steps%nlgeom)
-      if (size(places) > 0) call report%warning(cards%keywords(places(1))%place_of('NLGEOM'), &
+      if (size(places) > 0) call deck%warning(cards%keywords(places(1))%place_of('NLGEOM'), &
          'NLGEOM is not modelled: displacements and strains stay small')
    end subroutine warn_of_nlgeom
 
    !> Reads a card of a step that asks for output; others are ignored.
-   subroutine build_output(card, context, mesh, counts, report, step)
+   subroutine build_output(card, deck, mesh, counts, step)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
       type(card_counts_type), intent(inout) :: counts
-      type(deck_report_type), intent(inout) :: report
       type(step_type), intent(inout) :: step
 
       select case (card%name)
       case ('NODE FILE', 'EL FILE', 'CONTACT FILE', 'NODE OUTPUT', 'ELEMENT OUTPUT', &
          'CONTACT OUTPUT')
-         call build_file_output(card, counts%files, context, report, step)
+         call build_file_output(card, counts%files, deck, step)
       case ('NODE PRINT')
          counts%node_prints = counts%node_prints + 1
-         call build_print(card, counts%node_prints == 1, context, mesh, report, step%node_prints)
+         call build_print(card, counts%node_prints == 1, deck, mesh, step%node_prints)
       case ('EL PRINT')
          counts%element_prints = counts%element_prints + 1
-         call build_print(card, counts%element_prints == 1, context, mesh, report, &
-            step%element_prints)
+         call build_print(card, counts%element_prints == 1, deck, mesh, step%element_prints)
       case ('STABILITY')
          if (step%analysis /= analysis_coupled .or. counts%analyses == 0) then
-            call report%error(card%place, '*STABILITY needs a step with *COUPLED '// &
+            call deck%error(card%place, '*STABILITY needs a step with *COUPLED '// &
                'TEMPERATURE-DISPLACEMENT before it: whether a state lasts is decided by heat '// &
                'and contact together')
             return
          end if
          step%stability_frequency = huge(1)
-         call take_from(1, card, 'FREQUENCY', report, step%stability_frequency)
+         call take_from(1, card, 'FREQUENCY', deck, step%stability_frequency)
       case ('CONTACT PRINT')
-         call read_frequency(card, context, report, step%contact_print_frequency, &
-            step%contact_print_points)
+         call read_frequency(card, deck, step%contact_print_frequency, step%contact_print_points)
       case default   ! of the model, or not known
       end select
    end subroutine build_output
 
    !> Reads *STEP; output goes on as in the step before.
-   subroutine begin_step(card, before, context, report, step)
+   subroutine begin_step(card, before, deck, step)
       type(keyword_card_type), intent(in) :: card
       type(step_type), intent(in) :: before
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
       character(:), allocatable :: history
 
-      call take_parameter(card, 'INC', report, step%max_increments)
+      call take_parameter(card, 'INC', deck, step%max_increments)
       if (step%max_increments < 1) then
-         call report%error(card%place_of('INC'), 'INC= must be at least 1')
+         call deck%error(card%place_of('INC'), 'INC= must be at least 1')
       end if
       if (.not. card%has('INC')) then
-         call context%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
+         call deck%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
       end if
       history = 'RAMP'
-      call choose(card, 'AMPLITUDE', 'RAMP/STEP', report, history)
+      call choose(card, 'AMPLITUDE', 'RAMP/STEP', deck, history)
       step%ramped = history == 'RAMP'
       step%field_frequency = before%field_frequency
       step%field_points = before%field_points
@@ -209,78 +202,75 @@ contains
       step%contact_print_points = before%contact_print_points
       if (allocated(before%node_prints)) step%node_prints = before%node_prints
       if (allocated(before%element_prints)) step%element_prints = before%element_prints
-      step%nlgeom = is_on(card, 'NLGEOM', report)
+      step%nlgeom = is_on(card, 'NLGEOM', deck)
    end subroutine begin_step
 
    !> A perturbation of the initial state is a step, unless contact changes with the load.
-   subroutine check_perturbation(card, is_later, has_contact, context, report)
+   subroutine check_perturbation(card, is_later, has_contact, deck)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: is_later, has_contact
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
 
       if (is_later .or. has_contact) then
-         call report%error(card%place_of('PERTURBATION'), 'PERTURBATION is refused on *STEP: '// &
+         call deck%error(card%place_of('PERTURBATION'), 'PERTURBATION is refused on *STEP: '// &
             trim(merge('steps go on from the one before', 'contact changes with the load  ', &
             is_later))//'; leave it out')
       else
-         call context%note('*STEP: PERTURBATION is ignored: the step begins with the initial state')
+         call deck%note('*STEP: PERTURBATION is ignored: the step begins with the initial state')
       end if
    end subroutine check_perturbation
 
    !> Reads the analysis of step n, the only one that it may have.
-   subroutine begin_analysis(card, n, counts, context, report, steps)
+   subroutine begin_analysis(card, n, counts, deck, steps)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n   !! number of the step, 0 before the first
       type(card_counts_type), intent(inout) :: counts
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: steps(:)
 
       counts%analyses = counts%analyses + 1
-      if (counts%analyses > 1) call report%error(card%place, 'a second analysis in one step')
+      if (counts%analyses > 1) call deck%error(card%place, 'a second analysis in one step')
       counts%is_uncoupled = card%name(1:2) == 'UN'
       if (n == 0) return
-      context%analysis_place(n) = card%place
-      call build_analysis(card, n, context, report, steps(n))
+      deck%analysis_place(n) = card%place
+      call build_analysis(card, n, deck, steps(n))
       if (steps(n)%is_transient .and. .not. counts%says_course) then
          steps(n)%ramped = .false.
-         call context%note('*'//card%name//' without STEADY STATE: loads without an amplitude '// &
-            'act at once; *STEP, AMPLITUDE=RAMP ramps them')
+         call deck%note('*'//card%name//' without STEADY STATE: loads without an amplitude act '// &
+            'at once; *STEP, AMPLITUDE=RAMP ramps them')
       end if
    end subroutine begin_analysis
 
    !> Reads *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
-   subroutine build_analysis(card, n, context, report, step)
+   subroutine build_analysis(card, n, deck, step)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n   ! number of the step
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
       character(:), allocatable :: creep
       integer :: errors
 
-      errors = report%error_count()
+      errors = deck%error_count()
       step%analysis = analysis_coupled
       if (card%name == 'STATIC') step%analysis = analysis_static
       if (card%name == 'HEAT TRANSFER') step%analysis = analysis_heat
       step%is_transient = solves_heat(step%analysis) .and. card%lacks('STEADY STATE')
       creep = 'NONE'
-      call choose(card, 'CREEP', 'NONE', report, creep)
-      step%direct = is_on(card, 'DIRECT', report)
+      call choose(card, 'CREEP', 'NONE', deck, creep)
+      step%direct = is_on(card, 'DIRECT', deck)
       if (size(card%data) > 0) then
-         call build_increments(card%data(1), context, report, step)
-         if (card%name == 'HEAT TRANSFER') call check_rate(card%data(1), report)
+         call build_increments(card%data(1), deck, step)
+         if (card%name == 'HEAT TRANSFER') call check_rate(card%data(1), deck)
       else
-         call context%note('*'//card%name//' without data: one increment, period 1')
+         call deck%note('*'//card%name//' without data: one increment, period 1')
       end if
       if (adapts_increments(step) .and. .not. has_largest(card)) step%largest_increment = &
          step%period
-      call build_storage(card, context, report, step)
-      if (card%flawed .or. report%error_count() > errors) then
-         context%analyses_sound = .false.
+      call build_storage(card, deck, step)
+      if (card%flawed .or. deck%error_count() > errors) then
+         deck%analyses_sound = .false.
       else if (.not. adapts_increments(step)) then
-         call fit_increments(card, n, context, report, step)
+         call fit_increments(card, n, deck, step)
       end if
    end subroutine build_analysis
 
@@ -293,39 +283,37 @@ contains
    end function has_largest
 
    !> What a step that stores heat allows its increments, and whether strains take up heat.
-   subroutine build_storage(card, context, report, step)
+   subroutine build_storage(card, deck, step)
       type(keyword_card_type), intent(in) :: card
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
 
       if (.not. step%is_transient) then
          if (card%has('DELTMX') .or. card%has('LOCAL ERROR') .or. &
-            card%has('DILATATION')) call context%note('*'//card%name//', STEADY STATE: '// &
-            'DELTMX=, LOCAL ERROR= and DILATATION= are ignored, no heat is stored')
+            card%has('DILATATION')) call deck%note('*'//card%name//', STEADY STATE: DELTMX=, '// &
+            'LOCAL ERROR= and DILATATION= are ignored, no heat is stored')
          return
       end if
-      call take_parameter(card, 'DELTMX', report, step%largest_change)
-      if (step%largest_change <= 0.0_dp) call report%error(card%place_of('DELTMX'), 'DELTMX= '// &
+      call take_parameter(card, 'DELTMX', deck, step%largest_change)
+      if (step%largest_change <= 0.0_dp) call deck%error(card%place_of('DELTMX'), 'DELTMX= '// &
          'must be positive: the largest change of a temperature in an increment')
-      call take_parameter(card, 'LOCAL ERROR', report, step%local_error)
-      if (step%local_error <= 0.0_dp) call report%error(card%place_of('LOCAL ERROR'), 'LOCAL '// &
+      call take_parameter(card, 'LOCAL ERROR', deck, step%local_error)
+      if (step%local_error <= 0.0_dp) call deck%error(card%place_of('LOCAL ERROR'), 'LOCAL '// &
          'ERROR= must be positive: 1E-3 is 0.1 % of the range of temperatures')
-      step%dilates = is_on(card, 'DILATATION', report)
-      if (step%direct .and. (card%has('DELTMX') .or. card%has('LOCAL ERROR'))) call context%note( &
+      step%dilates = is_on(card, 'DILATATION', deck)
+      if (step%direct .and. (card%has('DELTMX') .or. card%has('LOCAL ERROR'))) call deck%note( &
          '*'//card%name//', DIRECT: DELTMX= and LOCAL ERROR= are ignored, increments are fixed')
-      if (adapts_increments(step) .and. .not. card%has('LOCAL ERROR')) call context%note('*'// &
+      if (adapts_increments(step) .and. .not. card%has('LOCAL ERROR')) call deck%note('*'// &
          card%name//' without LOCAL ERROR=: increments err by at most '// &
          percent(step%local_error)//' of the range of temperatures')
    end subroutine build_storage
 
    !> Increments are all as long as the first, unless INC= does not hold for these: then they grow
    !> as in CalculiX, up to the largest.
-   subroutine fit_increments(card, n, context, report, step)
+   subroutine fit_increments(card, n, deck, step)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n                ! of the step
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
       character(:), allocatable :: number
 
@@ -335,19 +323,18 @@ contains
          step%grows = .not. step%direct
          if (.not. has_largest(card)) step%largest_increment = step%period
          if (too_many(step)) then
-            call report%error(context%step_place(n), 'the step takes '//number// &
-               ' increments of '//to_text(step%first_increment)//', more than the '// &
-               to_text(step%max_increments)//' of INC=; give INC='//number// &
-               ' or a first increment of '//to_text(step%period/step%max_increments))
+            call deck%error(deck%step_place(n), 'the step takes '//number//' increments of '// &
+               to_text(step%first_increment)//', more than the '//to_text(step%max_increments)// &
+               ' of INC=; give INC='//number//' or a first increment of '// &
+               to_text(step%period/step%max_increments))
          else
-            call context%note('*'//card%name//': INC='//to_text(step%max_increments)// &
-               ' is not enough for increments of '//to_text(step%first_increment)// &
-               '; they grow, each to '//to_text(increment_growth)//' times the one before, '// &
-               'up to '// &
+            call deck%note('*'//card%name//': INC='//to_text(step%max_increments)//' is not '// &
+               'enough for increments of '//to_text(step%first_increment)//'; they grow, each '// &
+               'to '//to_text(increment_growth)//' times the one before, up to '// &
                to_text(step%largest_increment))
          end if
       else if (has_largest(card) .and. .not. step%direct) then
-         call context%note('largest increment ignored: no increment is longer than the first')
+         call deck%note('largest increment ignored: no increment is longer than the first')
       end if
    end subroutine fit_increments
 
@@ -360,21 +347,19 @@ contains
 
    !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0
    !> leaves its last increment.
-   subroutine build_file_output(card, files, context, report, step)
+   subroutine build_file_output(card, files, deck, step)
       type(keyword_card_type), intent(in) :: card
       integer, intent(inout) :: files
-      type(deck_context_type), intent(inout) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
       type(time_points_type) :: points
       integer :: frequency
 
-      call read_frequency(card, context, report, frequency, points)
+      call read_frequency(card, deck, frequency, points)
       if (files == 0) step%field_points = time_points_type()
       if (allocated(points%times)) step%field_points = points
       if (frequency == 0) then
-         call context%note('*'//card%name// &
-            ', FREQUENCY=0: the last increment of the step is written')
+         call deck%note('*'//card%name//', FREQUENCY=0: the last increment of the step is written')
          frequency = huge(frequency)
       end if
       files = files + 1
@@ -383,36 +368,34 @@ contains
    end subroutine build_file_output
 
    !> First increment, period, smallest and largest increment.
-   subroutine build_increments(data, context, report, step)
+   subroutine build_increments(data, deck, step)
       type(data_card_type), intent(in) :: data             !! data card of the analysis
-      type(deck_context_type), intent(inout) :: context    !! receives notes
-      type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
+      type(deck_type), intent(inout) :: deck   !! receives notes and errors and warnings
       type(step_type), intent(inout) :: step               !! receives the times
       integer :: comma, most
       logical :: valid
 
       valid = .true.
-      call take_field(data, 1, 'first increment', report, step%first_increment, valid)
-      call take_field(data, 2, 'period', report, step%period, valid)
+      call take_field(data, 1, 'first increment', deck, step%first_increment, valid)
+      call take_field(data, 2, 'period', deck, step%period, valid)
       step%smallest_increment = min(smallest_part*step%period, step%first_increment)
       step%largest_increment = step%first_increment
-      call take_field(data, 3, 'smallest increment', report, step%smallest_increment, valid)
-      call take_field(data, 4, 'largest increment', report, step%largest_increment, valid)
-      if (.not. data%has(1)) call context%note('first increment not given: 1')
-      if (.not. data%has(2)) call context%note('period not given: 1')
-      if (step%direct .and. (data%has(3) .or. data%has(4))) call context%note('smallest and '// &
+      call take_field(data, 3, 'smallest increment', deck, step%smallest_increment, valid)
+      call take_field(data, 4, 'largest increment', deck, step%largest_increment, valid)
+      if (.not. data%has(1)) call deck%note('first increment not given: 1')
+      if (.not. data%has(2)) call deck%note('period not given: 1')
+      if (step%direct .and. (data%has(3) .or. data%has(4))) call deck%note('smallest and '// &
          'largest increment ignored: with DIRECT increments are fixed')
-      if (.not. (step%direct .or. data%has(3))) call context%note('smallest increment not '// &
-         'given: '//to_text(step%smallest_increment))
+      if (.not. (step%direct .or. data%has(3))) call deck%note('smallest increment not given: '// &
+         to_text(step%smallest_increment))
       comma = decimal_comma(data)
       most = merge(5, 4, step%analysis == analysis_heat)
       if (comma > 0 .and. (size(data%fields) > most .or. .not. times_fit(data, step))) then
-         call report_decimal_comma(data, comma, report)
+         call report_decimal_comma(data, comma, deck)
          valid = .false.
       else
-         call check_extra(data, most, 'first increment, period, smallest, largest increment', &
-            report)
-         if (valid) call check_times(data, step, report, valid)
+         call check_extra(data, most, 'first increment, period, smallest, largest increment', deck)
+         if (valid) call check_times(data, step, deck, valid)
       end if
       if (.not. valid) then
          step%first_increment = 1.0_dp
@@ -420,21 +403,21 @@ contains
       else if (step%largest_increment < step%first_increment) then
          step%first_increment = step%largest_increment
          step%smallest_increment = min(step%smallest_increment, step%first_increment)
-         call report%warning(data%place(4), 'the first increment is longer than the largest, '// &
-            'and is shortened to it')
+         call deck%warning(data%place(4), 'the first increment is longer than the largest, and '// &
+            'is shortened to it')
       else if (step%smallest_increment < least_increment*step%period) then
          step%smallest_increment = least_increment*step%period
-         call context%note('smallest increment raised to '//to_text(step%smallest_increment)// &
+         call deck%note('smallest increment raised to '//to_text(step%smallest_increment)// &
             ': a smaller part of the period is lost in rounding')
       end if
    end subroutine build_increments
 
    !> Warns of the fifth field of *HEAT TRANSFER, with which Abaqus ends a step early.
-   subroutine check_rate(data, report)
+   subroutine check_rate(data, deck)
       type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
 
-      if (data%has(5)) call report%warning(data%place(5), 'the fifth field, the rate of '// &
+      if (data%has(5)) call deck%warning(data%place(5), 'the fifth field, the rate of '// &
          'temperature at which END=SS ends a step, is ignored: the step lasts its period')
    end subroutine check_rate
 
@@ -459,10 +442,10 @@ contains
          step%largest_increment] <= 0.0_dp .and. [(data%has(i), i=1, 4)]
    end function not_positive
 
-   subroutine check_times(data, step, report, valid)
+   subroutine check_times(data, step, deck, valid)
       type(data_card_type), intent(in) :: data
       type(step_type), intent(in) :: step
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       logical :: wrong(4)
       integer :: i
@@ -470,15 +453,15 @@ contains
       valid = times_fit(data, step)
       wrong = not_positive(data, step)
       do i = 1, 4
-         if (wrong(i)) call report%error(data%place(i), 'increments and periods must be positive')
+         if (wrong(i)) call deck%error(data%place(i), 'increments and periods must be positive')
       end do
       if (valid .or. any(wrong)) return
       if (step%first_increment > step%period) then
-         call report%error(data%place(1), 'the first increment is longer than the period; give '// &
-            'a shorter one')
+         call deck%error(data%place(1), 'the first increment is longer than the period; give a '// &
+            'shorter one')
       else
-         call report%error(data%place(3), 'the smallest increment is longer than the first; '// &
-            'give a shorter one')
+         call deck%error(data%place(3), 'the smallest increment is longer than the first; give '// &
+            'a shorter one')
       end if
    end subroutine check_times
 

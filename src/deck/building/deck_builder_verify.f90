@@ -6,8 +6,7 @@ module deck_builder_verify
    use cards, only: cards_type, data_card_type, keyword_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
-   use deck_context, only: deck_context_type, read_target, report_unknown
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count
    use kinds, only: dp
@@ -29,11 +28,10 @@ module deck_builder_verify
 contains
 
    !> Builds all checks.
-   subroutine build_verifications(cards, context, model, report)
+   subroutine build_verifications(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context       !! numbers of nodes
+      type(deck_type), intent(inout) :: deck   !! numbers of nodes; receives errors
       type(model_type), intent(inout) :: model             !! receives the checks
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: kind
       integer, allocatable :: places(:)
       integer :: k, j, n
@@ -43,24 +41,23 @@ contains
       places = cards_of(cards, 'VERIFY')
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
-            call need_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', report, &
-               kind)
+            call need_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', deck, kind)
             do j = 1, size(card%data)
                n = n + 1
                model%verifications(n)%kind = kind
                model%verifications(n)%source = card%text('SOURCE')
-               call build_check(card%data(j), context, model, report, model%verifications(n))
+               call build_check(card%data(j), deck, model, model%verifications(n))
             end do
          end associate
       end do
-      if (context%analyses_sound) call check_heat_quantities(context%verifiable, model, report)
+      if (deck%analyses_sound) call check_heat_quantities(deck%verifiable, model, deck)
    end subroutine build_verifications
 
    !> Reports quantities of heat in a deck none of whose steps solves heat.
-   subroutine check_heat_quantities(verifiable, model, report)
+   subroutine check_heat_quantities(verifiable, model, deck)
       type(quantity_type), intent(in) :: verifiable(:)     !! what *VERIFY may name
       type(model_type), intent(in) :: model                !! steps and checks
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       integer :: i, quantity
       logical :: convicted
 
@@ -70,22 +67,21 @@ contains
             quantity = find_quantity(verifiable, check%quantity)
             if (quantity == 0) cycle
             if (all(verifiable(quantity)%needs /= [needs_heat, needs_coupling])) cycle
-            call report%convict(heatless, convicted)
+            call deck%convict(heatless, convicted)
             if (convicted) return
-            call report%error(place_type(check%line, check%columns(1)), 'no step of this deck '// &
+            call deck%error(place_type(check%line, check%columns(1)), 'no step of this deck '// &
                'solves heat: there is no '//check%quantity//'; take *COUPLED '// &
                'TEMPERATURE-DISPLACEMENT or *HEAT TRANSFER', 'quantities of heat')
-            call report%lose('heat')
+            call deck%lose('heat')
          end associate
       end do
    end subroutine check_heat_quantities
 
    !> quantity, where, when, value, tolerance, REL|ABS.
-   subroutine build_check(data, context, model, report, check)
+   subroutine build_check(data, deck, model, check)
       type(data_card_type), intent(in) :: data
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(verify_type), intent(inout) :: check
       type(place_type) :: places(2)
       integer :: quantity
@@ -93,40 +89,40 @@ contains
 
       valid = .true.
       check%line = data%end%image
-      check%address = report%source%address_of(data%end)
+      check%address = deck%source%address_of(data%end)
       check%quantity = ''
       check%where = data%text(2)
       places = [data%place(1), data%place(2)]
       check%columns = places%column
-      call read_quantity(data, context%verifiable, '', report, quantity)
+      call read_quantity(data, deck%verifiable, '', deck, quantity)
       if (quantity > 0) then
-         check%quantity = trim(context%verifiable(quantity)%name)
-         call check_where(data, context%verifiable(quantity)%kind, context, model, report, check)
+         check%quantity = trim(deck%verifiable(quantity)%name)
+         call check_where(data, deck%verifiable(quantity)%kind, deck, model, check)
       end if
-      if (context%analyses_sound) call read_when(data, model, report, check)
-      call need_field(data, 4, 'value', report, check%value, valid)
-      call need_field(data, 5, 'tolerance', report, check%tolerance, valid)
-      call check_extra(data, 6, 'quantity, where, when, value, tolerance, REL or ABS', report)
+      if (deck%analyses_sound) call read_when(data, model, deck, check)
+      call need_field(data, 4, 'value', deck, check%value, valid)
+      call need_field(data, 5, 'tolerance', deck, check%tolerance, valid)
+      call check_extra(data, 6, 'quantity, where, when, value, tolerance, REL or ABS', deck)
       if (check%tolerance < 0.0_dp) then
-         call report%error(data%place(5), 'the tolerance must not be negative')
+         call deck%error(data%place(5), 'the tolerance must not be negative')
       end if
       select case (to_upper(data%text(6)))
       case ('ABS')
          check%relative = .false.
       case ('', 'REL')
-         if (valid .and. .not. abs(check%value) > 0.0_dp) call report%warning(data%place(4), &
+         if (valid .and. .not. abs(check%value) > 0.0_dp) call deck%warning(data%place(4), &
             'relative to 0 only 0 itself passes; give ABS')
       case default
-         call report%error(data%place(6), ''''//data%text(6)//''' is neither REL nor ABS')
+         call deck%error(data%place(6), ''''//data%text(6)//''' is neither REL nor ABS')
       end select
    end subroutine build_check
 
    !> The first field: index into known quantities, 0 after an error.
-   subroutine read_quantity(data, known, refusal, report, quantity)
+   subroutine read_quantity(data, known, refusal, deck, quantity)
       type(data_card_type), intent(in) :: data
       type(quantity_type), intent(in) :: known(:)
       character(*), intent(in) :: refusal   ! of others than these few; empty where they are many
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, intent(out) :: quantity
       character(:), allocatable :: name, hint
       type(string_type) :: names(size(known))
@@ -135,7 +131,7 @@ contains
 
       valid = .true.
       quantity = 0
-      call need_field(data, 1, 'quantity', report, name, valid)
+      call need_field(data, 1, 'quantity', deck, name, valid)
       if (.not. valid) return
       quantity = find_quantity(known, name)
       if (quantity > 0) return
@@ -143,63 +139,61 @@ contains
          names(i)%value = trim(known(i)%name)
       end do
       if (len(refusal) > 0) then
-         call report%error(data%place(1), refusal//known_choices(name, names))
+         call deck%error(data%place(1), refusal//known_choices(name, names))
          return
       end if
       hint = nearest_known(name, names)
       if (len(hint) == 0) hint = '; docs/deck.md lists those that are known'
-      call report%error(data%place(1), 'unknown quantity '//name//hint)
+      call deck%error(data%place(1), 'unknown quantity '//name//hint)
    end subroutine read_quantity
 
    !> Checks where a quantity is judged; the only interface of a deck need not be named.
-   subroutine check_where(data, kind, context, model, report, check)
+   subroutine check_where(data, kind, deck, model, check)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       type(verify_type), intent(inout) :: check
 
       if (kind == of_history) then
-         if (data%has(2)) call report%error(data%place(2), check%quantity//' has no location: '// &
+         if (data%has(2)) call deck%error(data%place(2), check%quantity//' has no location: '// &
             'leave this field empty')
          return
       end if
       if ((kind == of_interface .or. kind == of_contact_points) .and. size(model%contacts) == &
          0) then
-         call report%missing(data%place(1), 'the deck has no *CONTACT PAIR: there is no '// &
+         call deck%missing(data%place(1), 'the deck has no *CONTACT PAIR: there is no '// &
             check%quantity)
          return
       end if
       if (kind == of_sections .and. .not. any(model%couplings%is_section())) then
-         call report%missing(data%place(1), 'the deck has no *PRE-TENSION SECTION: there is no '// &
+         call deck%missing(data%place(1), 'the deck has no *PRE-TENSION SECTION: there is no '// &
             check%quantity, 'equation')
          return
       end if
       if (any(to_upper(check%where) == ['MIN', 'MAX'])) return
       if (kind == of_nodes .or. kind == of_sections) then
-         call check_nodes(data, kind, context, model, report)
+         call check_nodes(data, kind, deck, model)
       else if (kind == of_interface .and. check%where == '' .and. size(model%contacts) == 1) then
          check%where = model%contacts(1)%name
       else
-         call check_interface(data, kind, context, report)
+         call check_interface(data, kind, deck)
       end if
    end subroutine check_where
 
    !> A node or a node set, one of whose nodes at least has values.
-   subroutine check_nodes(data, kind, context, model, report)
+   subroutine check_nodes(data, kind, deck, model)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       logical :: used(0:size(model%mesh%node_number))
       type(target_type) :: target
       integer, allocatable :: nodes(:)
       logical :: valid
 
       valid = .true.
-      call read_target(data, 2, context%node_index, model%mesh%node_sets, report, target, valid)
+      call deck%need_nodes(data, 2, model%mesh%node_sets, target, valid)
       if (.not. valid) return
       used = .false.
       if (kind == of_sections) then
@@ -212,52 +206,50 @@ contains
       nodes = target%members(model%mesh%node_sets)
       nodes = pack(nodes, used(nodes))
       if (size(nodes) == 0 .and. kind == of_sections) then
-         call report%error(data%place(2), data%text(2)//' is not the reference node of a '// &
+         call deck%error(data%place(2), data%text(2)//' is not the reference node of a '// &
             '*PRE-TENSION SECTION')
-      else if (size(nodes) == 0 .and. .not. all(context%element_valid)) then
+      else if (size(nodes) == 0 .and. .not. all(deck%element_valid)) then
          return
       else if (size(nodes) == 0) then
-         call report%missing(data%place(2), 'no element has a node of '//data%text(2)//': it '// &
-            'has no values', 'element')
-      else if (all(context%dropped(nodes))) then
-         call report%error(data%place(2), 'ORDER=1 leaves no node of '//data%text(2)// &
-            ', because none is a corner: it has no values')
+         call deck%missing(data%place(2), 'no element has a node of '//data%text(2)//': it has '// &
+            'no values', 'element')
+      else if (all(deck%dropped(nodes))) then
+         call deck%error(data%place(2), 'ORDER=1 leaves no node of '//data%text(2)//', because '// &
+            'none is a corner: it has no values')
       end if
    end subroutine check_nodes
 
    !> name or, for a profile, name@s.
-   subroutine check_interface(data, kind, context, report)
+   subroutine check_interface(data, kind, deck)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
-      type(deck_context_type), intent(in) :: context
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: name
       real(dp) :: s
       integer :: at
       logical :: valid
 
       valid = .true.
-      call need_field(data, 2, 'contact pair', report, name, valid)
+      call need_field(data, 2, 'contact pair', deck, name, valid)
       if (.not. valid) return
       at = index(name, '@')
       if (at > 0) then
          call read_real(trim(adjustl(name(at + 1:))), s, valid)
          if (valid) valid = s >= 0.0_dp
          if (kind /= of_contact_points .or. .not. valid) then
-            call report%error(data%place(2), ''''//name//''' is not a location of this quantity')
+            call deck%error(data%place(2), ''''//name//''' is not a location of this quantity')
             return
          end if
          name = trim(name(:at - 1))
       end if
-      if (context%contacts%find(name) == 0) call report_unknown('contact pair', name, &
-         context%contacts%known(), data%place(2), report)
+      call deck%look_up('contact pair', name, data%place(2), at)
    end subroutine check_interface
 
    !> A total time that an increment meets, or LAST.
-   subroutine read_when(data, model, report, check)
+   subroutine read_when(data, model, deck, check)
       type(data_card_type), intent(in) :: data
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(verify_type), intent(inout) :: check
       real(dp) :: start, rest
       integer :: s
@@ -266,7 +258,7 @@ contains
       check%at_last = to_upper(data%text(3)) == 'LAST'
       if (check%at_last) return
       valid = .true.
-      call need_field(data, 3, 'time or LAST', report, check%when, valid)
+      call need_field(data, 3, 'time or LAST', deck, check%when, valid)
       if (.not. valid .or. size(model%steps) == 0) return
       start = 0.0_dp
       do s = 1, size(model%steps)
@@ -277,26 +269,24 @@ contains
          end associate
       end do
       if (check%when <= 0.0_dp .or. s > size(model%steps)) then
-         call report%error(data%place(3), 'no increment ends at this time; the steps end at '// &
+         call deck%error(data%place(3), 'no increment ends at this time; the steps end at '// &
             to_text(sum(model%steps%period)))
       else if (model%steps(s)%direct) then
          associate (n => (check%when - start)/model%steps(s)%first_increment)
             if (abs(n - anint(n)) > increment_rounding .and. &
                rest > increment_rounding*model%steps(s)%first_increment) then
-               call report%error(data%place(3), 'no increment of this DIRECT step ends at this '// &
-                  'time')
+               call deck%error(data%place(3), 'no increment of this DIRECT step ends at this time')
             end if
          end associate
       end if
    end subroutine read_when
 
    !> Reads the targets of all cards.
-   subroutine build_accuracy(cards, estimated, context, model, report)
+   subroutine build_accuracy(cards, estimated, deck, model)
       type(cards_type), intent(in) :: cards
       type(quantity_type), intent(in) :: estimated(:)      !! quantities whose errors are estimated
-      type(deck_context_type), intent(in) :: context       !! names of the contact pairs
+      type(deck_type), intent(inout) :: deck   !! names of the contact pairs; receives errors
       type(model_type), intent(inout) :: model             !! receives the targets
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: k, j
 
       do k = 1, size(cards%keywords)
@@ -304,78 +294,75 @@ contains
             if (card%name /= 'ACCURACY') cycle
             if (.not. allocated(model%accuracy%targets)) then
                allocate (model%accuracy%targets(0))
-               call check_deck(card, model, report)
+               call check_deck(card, model, deck)
             end if
-            call take_from(1, card, 'ROUNDS', report, model%accuracy%rounds)
+            call take_from(1, card, 'ROUNDS', deck, model%accuracy%rounds)
             do j = 1, size(card%data)
-               call build_target(card%data(j), estimated, context, model, report)
+               call build_target(card%data(j), estimated, deck, model)
             end do
          end associate
       end do
    end subroutine build_accuracy
 
    !> The targets need an interface and estimates.
-   subroutine check_deck(card, model, report)
+   subroutine check_deck(card, model, deck)
       type(keyword_card_type), intent(in) :: card
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
 
-      if (size(model%contacts) == 0) call report%missing(card%place, 'the deck has no *CONTACT '// &
+      if (size(model%contacts) == 0) call deck%missing(card%place, 'the deck has no *CONTACT '// &
          'PAIR: there is no quantity that *ACCURACY could name')
       if (reason_of_deck(model) /= no_reason) then
-         call report%error(card%place, '*ACCURACY needs bounds of errors, which do not know '// &
-            words_of_reason(reason_of_deck(model))// &
-            '; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
+         call deck%error(card%place, '*ACCURACY needs bounds of errors, which do not know '// &
+            words_of_reason(reason_of_deck(model))//'; refine by *REFINE and, where heat is '// &
+            'stored, LOCAL ERROR=')
          return
       end if
-      if (.not. model%estimates_errors) call report%error(card%place, '*ACCURACY needs '// &
-         'estimated errors; leave ERRORS=NO out of *OPTIONS')
+      if (.not. model%estimates_errors) call deck%error(card%place, '*ACCURACY needs estimated '// &
+         'errors; leave ERRORS=NO out of *OPTIONS')
    end subroutine check_deck
 
    !> quantity, target, REL|ABS, interface.
-   subroutine build_target(data, estimated, context, model, report)
+   subroutine build_target(data, estimated, deck, model)
       type(data_card_type), intent(in) :: data
       type(quantity_type), intent(in) :: estimated(:)
-      type(deck_context_type), intent(in) :: context
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model
-      type(deck_report_type), intent(inout) :: report
       type(accuracy_target_type) :: target
       integer :: errors, i
       logical :: valid
 
-      errors = report%error_count()
-      call read_quantity(data, estimated, 'no error of '//data%text(1)//' is estimated', report, i)
+      errors = deck%error_count()
+      call read_quantity(data, estimated, 'no error of '//data%text(1)//' is estimated', deck, i)
       target%quantity = ''
       if (i > 0) target%quantity = trim(estimated(i)%name)
       valid = .true.
-      call need_field(data, 2, 'target', report, target%bound, valid)
-      if (valid .and. target%bound <= 0.0_dp) call report%error(data%place(2), 'the target '// &
-         'must be above 0')
+      call need_field(data, 2, 'target', deck, target%bound, valid)
+      if (valid .and. target%bound <= 0.0_dp) call deck%error(data%place(2), 'the target must '// &
+         'be above 0')
       select case (to_upper(data%text(3)))
       case ('ABS')
          target%is_relative = .false.
       case ('', 'REL')
          target%is_relative = .true.
-         if (target%bound >= 1.0_dp) call report%error(data%place(2), 'a target relative to '// &
-            'the value must be below 1; 0.01 is 1 %')
+         if (target%bound >= 1.0_dp) call deck%error(data%place(2), 'a target relative to the '// &
+            'value must be below 1; 0.01 is 1 %')
       case default
-         call report%error(data%place(3), ''''//data%text(3)//''' is neither REL nor ABS')
+         call deck%error(data%place(3), ''''//data%text(3)//''' is neither REL nor ABS')
       end select
       target%interface = 0
       if (data%has(4) .and. size(model%contacts) > 0) then
-         target%interface = context%contacts%find(data%text(4))
-         if (target%interface == 0) call report_unknown('contact pair', data%text(4), &
-            context%contacts%known(), data%place(4), report)
+         call deck%look_up('contact pair', data%text(4), data%place(4), target%interface)
       end if
       do i = 1, size(model%accuracy%targets)
          associate (other => model%accuracy%targets(i))
             if (other%quantity == target%quantity .and. any(target%interface == [0, &
-               other%interface] .or. other%interface == 0)) call report%error(data%place(1), &
-               'an earlier card has a target of '//target%quantity//' already')
+               other%interface] .or. other%interface == 0)) call deck%error(data%place(1), 'an '// &
+               'earlier card has a target of '//target%quantity//' already')
          end associate
       end do
-      call check_extra(data, 4, 'quantity, target, REL or ABS, contact pair', report)
-      if (report%error_count() == errors) model%accuracy%targets = [model%accuracy%targets, target]
+      call check_extra(data, 4, 'quantity, target, REL or ABS, contact pair', deck)
+      if (deck%error_count() == errors) model%accuracy%targets = [model%accuracy%targets, target]
    end subroutine build_target
 
 end module deck_builder_verify

@@ -2,7 +2,7 @@
 !> proportional to the load factor.
 module continuation_checks
    use cards, only: cards_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use kinds, only: dp
    use model, only: follows_temperatures, model_type
    use steps, only: analysis_coupled, load_film_coefficient, step_type
@@ -14,10 +14,10 @@ module continuation_checks
 contains
 
    !> Reports what stands against the *CONTINUATION of each step.
-   subroutine check_continuations(cards, model, report)
+   subroutine check_continuations(cards, model, deck)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model               !! with its loads
-      type(deck_report_type), intent(inout) :: report     !! receives errors
+      type(deck_type), intent(inout) :: deck   !! receives errors
       character(:), allocatable :: obstacle
       integer :: k, n
 
@@ -28,7 +28,7 @@ contains
          obstacle = obstacle_of_analysis(model, model%steps(n))
          if (obstacle == '') obstacle = obstacle_of_loads(model, n)
          if (obstacle == '') obstacle = obstacle_of_start(model%steps(n))
-         if (obstacle /= '') call report%error(cards%keywords(k)%place, obstacle)
+         if (obstacle /= '') call deck%error(cards%keywords(k)%place, obstacle)
       end do
    end subroutine check_continuations
 

@@ -3,8 +3,7 @@
 module deck_checks
    use amplitudes, only: amplitude_type, amplitude_value
    use cards, only: cards_type, keyword_card_type
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
    use kinds, only: dp, long
@@ -35,107 +34,102 @@ module deck_checks
 contains
 
    !> Checks the model before it is refined.
-   subroutine check_model(context, model, report)
-      type(deck_context_type), intent(in) :: context       !! places for messages
+   subroutine check_model(deck, model)
+      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: uses(4, size(model%mesh%element_number))
       logical :: inverted(size(model%mesh%element_number))
       character(:), allocatable :: fault
 
       ! The mesh once it is refined.
-      fault = numbering_fault(model%mesh, size(model%mesh%element_number)*4_long**context%levels)
-      if (len(fault) > 0) call report%error(context%levels_place, fault)
-      call check_sections(context, model, report)
-      call check_materials(context, model, report)
-      call check_planes(context, model%mesh, report)
-      call check_orientations(context, model, report)
-      call check_jacobians(context, model%mesh, inverted, report)
-      call check_slenderness(context, model%mesh, report)
-      call check_sides(context, model%mesh, inverted, uses, report)
-      call check_loads(context, model, uses, report)
+      fault = numbering_fault(model%mesh, size(model%mesh%element_number)*4_long**deck%levels)
+      if (len(fault) > 0) call deck%error(deck%levels_place, fault)
+      call check_sections(deck, model)
+      call check_materials(deck, model)
+      call check_planes(deck, model%mesh)
+      call check_orientations(deck, model)
+      call check_jacobians(deck, model%mesh, inverted)
+      call check_slenderness(deck, model%mesh)
+      call check_sides(deck, model%mesh, inverted, uses)
+      call check_loads(deck, model, uses)
    end subroutine check_model
 
    !> Every element has a section.
-   subroutine check_sections(context, model, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_sections(deck, model)
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       integer :: without, e
 
       without = count(model%mesh%element_section == 0)
       if (size(model%sections) == 0 .or. without == 0) return
-      if (.not. (context%sections_sound .and. context%sets_sound)) return
+      if (.not. (deck%sections_sound .and. deck%sets_sound)) return
       e = findloc(model%mesh%element_section, 0, dim=1)
-      call report%error(context%element_place(e), 'no *SOLID SECTION for element '// &
+      call deck%error(deck%element_place(e), 'no *SOLID SECTION for element '// &
          to_text(model%mesh%element_number(e))//'; elements without one: '//to_text(without))
    end subroutine check_sections
 
    !> Every material in use has what the steps need.
-   subroutine check_materials(context, model, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_materials(deck, model)
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       logical :: mechanics, heat
       integer :: m
 
-      if (.not. context%analyses_sound) return
+      if (.not. deck%analyses_sound) return
       mechanics = any(solves_mechanics(model%steps%analysis))
       heat = any(solves_heat(model%steps%analysis))
       do m = 1, size(model%materials)
          if (.not. any(model%sections%material == m)) cycle
          associate (material => model%materials(m))
-            if (mechanics .and. .not. material%has_elasticity) call report%missing( &
-               context%material_place(m), 'material '//material%name// &
-               ' has no *ELASTIC, which a step with displacements needs', '*ELASTIC')
-            if (heat .and. .not. material%has_conductivity) call report%missing( &
-               context%material_place(m), 'material '//material%name// &
-               ' has no *CONDUCTIVITY, which a step with heat needs', '*CONDUCTIVITY')
+            if (mechanics .and. .not. material%has_elasticity) call deck%missing( &
+               deck%material_place(m), 'material '//material%name//' has no *ELASTIC, which a '// &
+               'step with displacements needs', '*ELASTIC')
+            if (heat .and. .not. material%has_conductivity) call deck%missing( &
+               deck%material_place(m), 'material '//material%name//' has no *CONDUCTIVITY, '// &
+               'which a step with heat needs', '*CONDUCTIVITY')
             if (.not. (mechanics .and. material%has_elasticity)) cycle
             if (maxval(abs(material%elasticity)) <= 0.0_dp) cycle
             if (equivalent_poisson(material%elasticity) <= most_compressible) cycle
             ! Elements with too many integration points lock; six-node triangles do not, but their
             ! mean stress scatters and does not converge.
-            call warn_of_kinds(context, model, m, [quad8, triangle3], 'elements such as ', &
-               ' are too stiff', report)
-            call warn_of_kinds(context, model, m, [triangle6], 'the stresses of elements such '// &
-               'as ', ' scatter', report)
+            call warn_of_kinds(deck, model, m, [quad8, triangle3], 'elements such as ', ' are '// &
+               'too stiff')
+            call warn_of_kinds(deck, model, m, [triangle6], 'the stresses of elements such as ', &
+               ' scatter')
          end associate
       end do
    end subroutine check_materials
 
    !> Warns of the first element of some kinds that has the material and is not in plane stress.
-   subroutine warn_of_kinds(context, model, m, kinds, subject, trouble, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine warn_of_kinds(deck, model, m, kinds, subject, trouble)
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
       integer, intent(in) :: m
       integer, intent(in) :: kinds(:)
       character(*), intent(in) :: subject, trouble
-      type(deck_report_type), intent(inout) :: report
       integer :: e, kind
 
       associate (mesh => model%mesh)
          do e = 1, size(mesh%element_number)
-            if (mesh%element_section(e) == 0 .or. .not. context%element_valid(e)) cycle
+            if (mesh%element_section(e) == 0 .or. .not. deck%element_valid(e)) cycle
             if (model%sections(mesh%element_section(e))%material /= m) cycle
             if (mesh%element_plane(e) == plane_stress) cycle
             kind = mesh%element_kind(e)
-            if (context%order == 1) kind = linear_kind(kind)
+            if (deck%order == 1) kind = linear_kind(kind)
             if (all(kind /= kinds)) cycle
-            call report%warning(context%material_place(m), 'material '//model%materials(m)%name// &
-               ' is nearly incompressible: '//subject//to_text(mesh%element_number(e))// &
-               trouble//' with it; take '//trim(merge('CAX8R', 'CPE8R', &
-               mesh%element_plane(e) == axisymmetric)))
+            call deck%warning(deck%material_place(m), 'material '//model%materials(m)%name// &
+               ' is nearly incompressible: '//subject//to_text(mesh%element_number(e))//trouble// &
+               ' with it; take '// &
+               trim(merge('CAX8R', 'CPE8R', mesh%element_plane(e) == axisymmetric)))
             return
          end do
       end associate
    end subroutine warn_of_kinds
 
    !> The axis of a cylindrical orientation is parallel to z, where an axisymmetric model has none.
-   subroutine check_orientations(context, model, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_orientations(deck, model)
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       integer :: e
 
       do e = 1, size(model%mesh%element_number)
@@ -144,7 +138,7 @@ contains
          associate (index => model%sections(model%mesh%element_section(e))%orientation)
             if (index == 0) cycle
             if (.not. model%orientations(index)%cylindrical) cycle
-            call report%error(context%element_place(e), 'element '// &
+            call deck%error(deck%element_place(e), 'element '// &
                to_text(model%mesh%element_number(e))//' is axisymmetric: the cylindrical '// &
                'orientation '//model%orientations(index)%name//' has its axis along z')
             return
@@ -154,29 +148,28 @@ contains
 
    !> Warns of definitions without use, and of amplitudes that end long before their step or begin
    !> after it. The deck has no errors, of which these may only be the consequence.
-   subroutine check_usage(cards, context, model, report)
+   subroutine check_usage(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_context_type), intent(in) :: context      !! requests
+      type(deck_type), intent(inout) :: deck   !! requests; receives warnings
       type(model_type), intent(in) :: model               !! amplitudes and steps
-      type(deck_report_type), intent(inout) :: report     !! receives warnings
       logical :: told(size(model%amplitudes))
 
-      call check_names(cards, 'MATERIAL', 'material', report)
-      call check_names(cards, 'SURFACE INTERACTION', 'surface interaction', report)
-      call check_names(cards, 'SURFACE', 'surface', report)
-      call check_names(cards, 'AMPLITUDE', 'amplitude', report)
+      call check_names(cards, 'MATERIAL', 'material', deck)
+      call check_names(cards, 'SURFACE INTERACTION', 'surface interaction', deck)
+      call check_names(cards, 'SURFACE', 'surface', deck)
+      call check_names(cards, 'AMPLITUDE', 'amplitude', deck)
       told = .false.
-      call check_amplitudes(cards, context%boundaries, model, told, report)
-      call check_amplitudes(cards, context%loads, model, told, report)
+      call check_amplitudes(cards, deck%boundaries, model, told, deck)
+      call check_amplitudes(cards, deck%loads, model, told, deck)
    end subroutine check_usage
 
    !> Warns once of the cards of a keyword whose names no card refers to. A library that a deck
    !> includes may well have more materials, interactions and amplitudes than it needs; a surface
    !> without use may be a pair that was forgotten.
-   subroutine check_names(cards, keyword, noun, report)
+   subroutine check_names(cards, keyword, noun, deck)
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: keyword, noun
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       type(name_index_type) :: used
       character(:), allocatable :: name, names
       integer :: count, first, k
@@ -190,7 +183,7 @@ contains
       count = 0
       do k = 1, size(cards%keywords)
          if (cards%keywords(k)%name /= keyword) cycle
-         if (from_library .and. report%source%file(cards%keywords(k)%place%image) > 1) cycle
+         if (from_library .and. deck%source%file(cards%keywords(k)%place%image) > 1) cycle
          name = to_upper(cards%keywords(k)%text('NAME'))
          if (used%find(name) > 0) cycle
          count = count + 1
@@ -199,7 +192,7 @@ contains
       end do
       if (count == 0) return
       if (count > most_names) names = names//' and '//to_text(count - most_names)//' more'
-      call report%warning(cards%keywords(first)%place, 'nothing uses the '//noun// &
+      call deck%warning(cards%keywords(first)%place, 'nothing uses the '//noun// &
          trim(merge(' ', 's', count == 1))//names(2:))
    end subroutine check_names
 
@@ -246,12 +239,12 @@ contains
 
    !> Warns of amplitudes that end long before the step in which a request begins to follow them,
    !> begin after it, or have peaks within fixed increments.
-   subroutine check_amplitudes(cards, requests, model, told, report)
+   subroutine check_amplitudes(cards, requests, model, told, deck)
       type(cards_type), intent(in) :: cards
       type(request_list_type), intent(in) :: requests
       type(model_type), intent(in) :: model
       logical, intent(inout) :: told(:)
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
       real(dp) :: start, last
       integer :: a, i, s
@@ -281,7 +274,7 @@ contains
                to_text(curve%values(size(curve%values)))//', is kept'
             if (message == '') cycle
             told(a) = .true.
-            call report%warning(cards%keywords(card_of(cards, a))%place, message)
+            call deck%warning(cards%keywords(card_of(cards, a))%place, message)
          end associate
       end do
    end subroutine check_amplitudes

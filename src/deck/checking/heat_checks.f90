@@ -3,8 +3,7 @@
 module heat_checks
    use cards, only: cards_type
    use conductance_laws, only: law_none
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use equations, only: facing_nodes
    use deck_source, only: place_type
    use kinds, only: dp
@@ -25,39 +24,38 @@ contains
 
    !> Warns of contact pairs that no heat crosses, and of materials whose expansion over the range
    !> of the temperatures of the deck is no small strain.
-   subroutine check_heat_paths(cards, model, report)
+   subroutine check_heat_paths(cards, model, deck)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model               !! with its loads and supports
-      type(deck_report_type), intent(inout) :: report     !! receives warnings
+      type(deck_type), intent(inout) :: deck   !! receives warnings
       integer :: i
 
-      call check_expansion(cards, model, report)
-      call check_secants(cards, model, report)
+      call check_expansion(cards, model, deck)
+      call check_secants(cards, model, deck)
       if (.not. any(solves_heat(model%steps%analysis))) return
       do i = 1, size(model%contacts)
          associate (contact => model%contacts(i), &
             interaction => model%interactions(model%contacts(i)%interaction))
             if (interaction%law%open_kind /= law_none) cycle
             if (interaction%law%closed_kind /= law_none) cycle
-            call report%warning(place_type(image=contact%card), 'no heat crosses '// &
-               contact%name//': its interaction '//interaction%name//' has no conductance '// &
-               'law; give it *GAP CONDUCTANCE or *GAP LAW')
+            call deck%warning(place_type(image=contact%card), 'no heat crosses '//contact%name// &
+               ': its interaction '//interaction%name//' has no conductance law; give it *GAP '// &
+               'CONDUCTANCE or *GAP LAW')
          end associate
       end do
    end subroutine check_heat_paths
 
    !> Warns of nodes of bodies without an initial temperature where others have one that is not 0.
    !> The mesh is not refined yet.
-   subroutine check_starts(context, model, report)
-      type(deck_context_type), intent(in) :: context      !! initial temperatures
+   subroutine check_starts(deck, model)
+      type(deck_type), intent(inout) :: deck   !! initial temperatures; receives the warning
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report     !! receives the warning
       logical :: starts_at_0(0:size(model%mesh%node_number))
       integer :: i
 
-      associate (given => context%temperatures, mesh => model%mesh)
+      associate (given => deck%temperatures, mesh => model%mesh)
          if (given%count == 0) then
-            call check_no_start(context, model, report)
+            call check_no_start(deck, model)
             return
          end if
          if (.not. any(abs(given%items(:given%count)%value) > 0.0_dp)) return
@@ -66,7 +64,7 @@ contains
          starts_at_0 = .false.
          starts_at_0([mesh%element_nodes]) = .true.
          starts_at_0(0) = .false.
-         where (context%dropped) starts_at_0(1:) = .false.
+         where (deck%dropped) starts_at_0(1:) = .false.
          do i = 1, given%count
             if (given%items(i)%set > 0) then
                starts_at_0(mesh%node_sets(given%items(i)%set)%members) = .false.
@@ -81,26 +79,24 @@ contains
             end associate
          end do
          if (.not. any(starts_at_0)) return
-         call report%warning(given%items(1)%place, 'these cards give no initial temperature to '// &
+         call deck%warning(given%items(1)%place, 'these cards give no initial temperature to '// &
             counted(count(starts_at_0), 'node')//' of the bodies, such as '// &
-            to_text(mesh%node_number(findloc(starts_at_0(1:), .true., dim=1)))// &
-            ': they start at 0')
+            to_text(mesh%node_number(findloc(starts_at_0(1:), .true., dim=1)))//': they start at 0')
       end associate
    end subroutine check_starts
 
    !> Warns where bodies that expand are heated and no initial temperature is given, unless a
    !> temperature of 0 or on either side of it shows that they count from 0.
-   subroutine check_no_start(context, model, report)
-      type(deck_context_type), intent(in) :: context      !! *BOUNDARY, loads
+   subroutine check_no_start(deck, model)
+      type(deck_type), intent(inout) :: deck   !! *BOUNDARY, loads; receives the warning
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report     !! receives the warning
       type(request_type), allocatable :: given(:)
       integer :: i
 
       if (.not. any(solves_mechanics(model%steps%analysis))) return
       if (.not. any([(maxval(abs(model%materials(model%sections(i)%material)%expansion)) > &
          0.0_dp, i=1, size(model%sections))])) return
-      associate (boundaries => context%boundaries, loads => context%loads)
+      associate (boundaries => deck%boundaries, loads => deck%loads)
          allocate (given(0))
          if (boundaries%count > 0) given = pack(boundaries%items(:boundaries%count), &
             boundaries%items(:boundaries%count)%component == dof_temperature)
@@ -110,16 +106,16 @@ contains
       end associate
       if (size(given) == 0) return
       if (minval(given%value) <= 0.0_dp .and. maxval(given%value) >= 0.0_dp) return
-      call report%warning(given(1)%place, 'temperatures are prescribed, but no initial one is '// &
+      call deck%warning(given(1)%place, 'temperatures are prescribed, but no initial one is '// &
          'given: bodies expand from 0; give *INITIAL CONDITIONS, TYPE=TEMPERATURE, with the '// &
          'value 0 where temperatures are rises')
    end subroutine check_no_start
 
    !> Warns of the first *EXPANSION that is too large for small strains.
-   subroutine check_expansion(cards, model, report)
+   subroutine check_expansion(cards, model, deck)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp) :: ends(2), range, strain
       integer :: k, m
 
@@ -132,20 +128,20 @@ contains
          if (.not. any(model%sections%material == m)) cycle
          strain = maxval(abs(model%materials(m)%expansion))*range
          if (strain <= small_strain) cycle
-         call report%warning(cards%keywords(k)%place, 'the expansion of '// &
-            model%materials(m)%name//' over the range of the temperatures, '//to_text(range)// &
-            ', is a strain of '//to_text(strain)//', but the theory assumes small strains; '// &
-            'check the unit of *EXPANSION, 1/temperature')
+         call deck%warning(cards%keywords(k)%place, 'the expansion of '//model%materials(m)%name// &
+            ' over the range of the temperatures, '//to_text(range)//', is a strain of '// &
+            to_text(strain)//', but the theory assumes small strains; check the unit of '// &
+            '*EXPANSION, 1/temperature')
          return
       end do
    end subroutine check_expansion
 
    !> Warns of tables of expansion coefficients whose secants begin far from the initial
    !> temperature: farther than a quarter of what the table spans.
-   subroutine check_secants(cards, model, report)
+   subroutine check_secants(cards, model, deck)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp) :: initial
       integer :: e, i, k, m
 
@@ -162,7 +158,7 @@ contains
             associate (rows => material%given(i)%temperature)
                if (abs(initial - material%no_strain) <= far*(rows(size(rows)) - rows(1))) cycle
             end associate
-            call report%warning(cards%keywords(k)%place, 'the coefficients of '//material%name// &
+            call deck%warning(cards%keywords(k)%place, 'the coefficients of '//material%name// &
                ' are secants from ZERO='//to_text(material%no_strain)//' on, far from the '// &
                'initial temperature '//to_text(initial)//'; give the ZERO= that they were '// &
                'measured from')

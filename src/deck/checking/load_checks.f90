@@ -2,8 +2,7 @@
 !> has use for them.
 module load_checks
    use equations, only: constrained_nodes, equation_nodes
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use element_kinds, only: axisymmetric
    use kinds, only: dp
    use load_requests, only: request_type
@@ -20,67 +19,64 @@ module load_checks
 contains
 
    !> Checks the requests before the model is refined.
-   subroutine check_loads(context, model, uses, report)
-      type(deck_context_type), intent(in) :: context       !! requests
+   subroutine check_loads(deck, model, uses)
+      type(deck_type), intent(inout) :: deck   !! requests; receives errors and warnings
       type(model_type), intent(in) :: model
       integer, intent(in) :: uses(:, :)  !! (4, elements) elements that meet at each side
-      type(deck_report_type), intent(inout) :: report      !! receives errors and warnings
       logical :: used(0:size(model%mesh%node_number))
       integer :: i, card
 
       ! Where an element is not known, no node is known to be without one.
-      used = report%has_lost('element') .or. .not. all(context%element_valid)
+      used = deck%has_lost('element') .or. .not. all(deck%element_valid)
       used([model%mesh%element_nodes]) = .true.
       used(1:) = used(1:) .or. constrained_nodes(model%equations, model%couplings, size(used) - 1) &
          .or. equation_nodes(model%bars%elongation, size(used) - 1)
       card = 0
-      do i = 1, context%loads%count
-         associate (request => context%loads%items(i))
+      do i = 1, deck%loads%count
+         associate (request => deck%loads%items(i))
             ! A data card may make several requests.
             if (request%card == card) cycle
             card = request%card
             select case (request%kind)
             case (load_force, load_nodal_heat)
-               if (.not. (report%has_lost('equation') .or. report%has_lost('element') .or. &
+               if (.not. (deck%has_lost('equation') .or. deck%has_lost('element') .or. &
                   all(used(request%members(model%mesh%node_sets))))) then
-                  call report%error(request%place, trim(merge('a force', 'heat   ', &
+                  call deck%error(request%place, trim(merge('a force', 'heat   ', &
                      request%kind == load_force))//' on a node that no element has')
                end if
             case (load_gravity)
-               call check_density(request, model, 'GRAV', report)
+               call check_density(request, model, 'GRAV', deck)
             case (load_centrifugal)
-               call check_density(request, model, 'CENTRIF', report)
-               call check_axis(request, model, report)
+               call check_density(request, model, 'CENTRIF', deck)
+               call check_axis(request, model, deck)
             case (load_temperature)
-               if (context%analyses_sound .and. model%steps(request%step)%analysis /= &
-                  analysis_static) call report%error( &
-                  request%place, 'the step solves for temperatures; *BOUNDARY with degree of '// &
-                  'freedom 11 prescribes them')
+               if (deck%analyses_sound .and. model%steps(request%step)%analysis /= &
+                  analysis_static) call deck%error(request%place, 'the step solves for '// &
+                  'temperatures; *BOUNDARY with degree of freedom 11 prescribes them')
             case (load_pressure, load_face_heat, load_film_coefficient)
-               call check_faces(request, model, uses, report)
+               call check_faces(request, model, uses, deck)
             case default
                continue
             end select
-            if (context%analyses_sound) call check_effect(request, model, report)
+            if (deck%analyses_sound) call check_effect(request, model, deck)
          end associate
       end do
-      call check_boundaries(context, model, used, report)
+      call check_boundaries(deck, model, used)
    end subroutine check_loads
 
    !> Loads of a step that add up at one location have the same time history.
-   subroutine check_amplitudes(context, model, report)
-      type(deck_context_type), intent(in) :: context       !! requests
+   subroutine check_amplitudes(deck, model)
+      type(deck_type), intent(inout) :: deck   !! requests; receives an error
       type(model_type), intent(in) :: model                !! its loads on the mesh of the deck
-      type(deck_report_type), intent(inout) :: report      !! receives an error
       integer :: i, s
 
       do s = 1, size(model%steps)
-         associate (loads => model%steps(s)%loads, requests => context%loads%items)
+         associate (loads => model%steps(s)%loads, requests => deck%loads%items)
             do i = 2, size(loads)
                if (loads(i)%kind /= loads(i - 1)%kind .or. loads(i)%item /= loads(i - 1)%item .or. &
                   loads(i)%component /= loads(i - 1)%component) cycle
                if (loads(i)%amplitude == loads(i - 1)%amplitude) cycle
-               call report%error(requests(findloc(requests%card, loads(i)%card, dim=1))%place, &
+               call deck%error(requests(findloc(requests%card, loads(i)%card, dim=1))%place, &
                   'two loads of one step at one location have different amplitudes')
                exit
             end do
@@ -90,20 +86,20 @@ contains
 
    !> Index of the first step in which heat is loaded or a temperature prescribed; that behind the
    !> last step when there is none.
-   pure integer function first_heat(context, model)
-      type(deck_context_type), intent(in) :: context   !! requests
+   pure integer function first_heat(deck, model)
+      type(deck_type), intent(in) :: deck   !! requests
       type(model_type), intent(in) :: model            !! steps
       integer :: i
 
       first_heat = size(model%steps) + 1
-      do i = 1, context%boundaries%count
-         if (context%boundaries%items(i)%component == dof_temperature) then
-            first_heat = min(first_heat, max(1, context%boundaries%items(i)%step))
+      do i = 1, deck%boundaries%count
+         if (deck%boundaries%items(i)%component == dof_temperature) then
+            first_heat = min(first_heat, max(1, deck%boundaries%items(i)%step))
          end if
       end do
-      do i = 1, context%loads%count
-         if (is_heat(context%loads%items(i)%kind)) then
-            first_heat = min(first_heat, context%loads%items(i)%step)
+      do i = 1, deck%loads%count
+         if (is_heat(deck%loads%items(i)%kind)) then
+            first_heat = min(first_heat, deck%loads%items(i)%step)
          end if
       end do
    end function first_heat
@@ -116,11 +112,11 @@ contains
    end function is_heat
 
    !> Every material of the loaded elements has a density.
-   subroutine check_density(request, model, label, report)
+   subroutine check_density(request, model, label, deck)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
       character(*), intent(in) :: label
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: elements(:)
       integer :: i, section, m
 
@@ -131,119 +127,116 @@ contains
          m = model%sections(section)%material
          if (m == 0) cycle
          if (model%materials(m)%has_density) cycle
-         call report%missing(request%place, 'material '//model%materials(m)%name// &
-            ' has no *DENSITY, which '//label//' needs', '*DENSITY')
+         call deck%missing(request%place, 'material '//model%materials(m)%name//' has no '// &
+            '*DENSITY, which '//label//' needs', '*DENSITY')
          return
       end do
    end subroutine check_density
 
    !> CENTRIF turns a body of revolution round its axis, and a plane round an axis along z.
-   subroutine check_axis(request, model, report)
+   subroutine check_axis(request, model, deck)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: planes(:)
 
       planes = model%mesh%element_plane(request%members(model%mesh%element_sets))
       if (request%component == centrifugal_round) then
-         if (any(planes /= axisymmetric)) call report%error(request%place, &
-            'plane elements turn round an axis along z: point x, y, 0, direction 0, 0, 1')
+         if (any(planes /= axisymmetric)) call deck%error(request%place, 'plane elements turn '// &
+            'round an axis along z: point x, y, 0, direction 0, 0, 1')
       else if (any(planes == axisymmetric)) then
-         call report%error(request%place, 'axisymmetric elements turn round the y axis: '// &
-            'point 0, 0, 0, direction 0, 1, 0')
+         call deck%error(request%place, 'axisymmetric elements turn round the y axis: point 0, '// &
+            '0, 0, direction 0, 1, 0')
       end if
    end subroutine check_axis
 
    !> Warns of what comes after the last step that solves for what it loads.
-   subroutine check_effect(request, model, report)
+   subroutine check_effect(request, model, deck)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
 
       associate (analyses => model%steps(request%step:)%analysis)
          if (is_heat(request%kind)) then
-            if (.not. any(solves_heat(analyses))) call report%warning(request%place, &
-               'a heat load without effect: no step from here on solves heat')
+            if (.not. any(solves_heat(analyses))) call deck%warning(request%place, 'a heat '// &
+               'load without effect: no step from here on solves heat')
          else if (request%kind /= load_temperature) then
-            if (.not. any(solves_mechanics(analyses))) call report%warning(request%place, &
+            if (.not. any(solves_mechanics(analyses))) call deck%warning(request%place, &
                'a load without effect: no step from here on solves mechanics')
          end if
       end associate
    end subroutine check_effect
 
    !> Warns of loads on sides between two elements.
-   subroutine check_faces(request, model, uses, report)
+   subroutine check_faces(request, model, uses, deck)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
       integer, intent(in) :: uses(:, :)
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: elements(:)
 
       elements = request%members(model%mesh%element_sets)
       elements = pack(elements, uses(request%component, elements) > 1)
       if (size(elements) == 0) return
-      call report%warning(request%place, 'side '//to_text(request%component)//' of element '// &
+      call deck%warning(request%place, 'side '//to_text(request%component)//' of element '// &
          to_text(model%mesh%element_number(elements(1)))//' lies inside a body; the load still '// &
          'acts there'//others(size(elements), '; elements with such a side: '))
    end subroutine check_faces
 
    !> Checks *BOUNDARY: whether it acts on something, in a step that has use for it, and says one
    !> thing only.
-   subroutine check_boundaries(context, model, used, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_boundaries(deck, model, used)
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
       logical, intent(in) :: used(0:)                      ! (0:nodes) whether elements have them
-      type(deck_report_type), intent(inout) :: report
       integer, allocatable :: nodes(:)
       integer :: i, card
       logical :: unknown   ! whether an element may have the nodes
 
-      unknown = report%has_lost('equation') .or. report%has_lost('element')
+      unknown = deck%has_lost('equation') .or. deck%has_lost('element')
       card = 0
-      do i = 1, context%boundaries%count
-         associate (request => context%boundaries%items(i))
-            if (context%analyses_sound) call check_support_effect(request, model, report)
+      do i = 1, deck%boundaries%count
+         associate (request => deck%boundaries%items(i))
+            if (deck%analyses_sound) call check_support_effect(request, model, deck)
             if (request%card == card) cycle
             card = request%card
             ! As CalculiX does.
             nodes = request%members(model%mesh%node_sets)
             nodes = pack(nodes, .not. used(nodes))
-            if (size(nodes) > 0 .and. .not. unknown) call report%warning(request%place, 'node '// &
+            if (size(nodes) > 0 .and. .not. unknown) call deck%warning(request%place, 'node '// &
                to_text(model%mesh%node_number(nodes(1)))//' belongs to no element: what is '// &
                'prescribed there has no effect'//others(size(nodes), '; nodes without one: '))
          end associate
       end do
-      if (any(context%dropped)) call check_dropped(context, model, report)
+      if (any(deck%dropped)) call check_dropped(deck, model)
       do i = 0, size(model%steps)
-         call check_conflicts(context, i, model, report)
+         call check_conflicts(deck, i, model)
       end do
    end subroutine check_boundaries
 
    !> Warns of values that come after the last step that solves for what they prescribe. Supports of
    !> 0 do no harm.
-   subroutine check_support_effect(request, model, report)
+   subroutine check_support_effect(request, model, deck)
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
 
       associate (analyses => model%steps(max(1, request%step):)%analysis)
          if (request%component == dof_temperature) then
-            if (.not. (any(solves_heat(analyses)) .or. report%has_lost('heat'))) call &
-               report%warning(request%place, 'a temperature without effect: no step from here '// &
-               'on solves heat; take *COUPLED TEMPERATURE-DISPLACEMENT', &
-               'temperature without effect')
+            if (.not. (any(solves_heat(analyses)) .or. deck%has_lost('heat'))) call deck%warning( &
+               request%place, 'a temperature without effect: no step from here on solves heat; '// &
+               'take *COUPLED TEMPERATURE-DISPLACEMENT', 'temperature without effect')
          else if (abs(request%value) > 0.0_dp) then
-            if (.not. any(solves_mechanics(analyses))) call report%warning(request%place, &
+            if (.not. any(solves_mechanics(analyses))) call deck%warning(request%place, &
                'a displacement without effect: no step from here on solves mechanics')
          end if
       end associate
    end subroutine check_support_effect
 
    !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
-   subroutine check_dropped(context, model, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_dropped(deck, model)
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       integer :: corners(2, size(model%mesh%node_number))
       integer :: first(3, size(model%mesh%node_number))   ! first step that gives a value
       integer, allocatable :: nodes(:)
@@ -251,26 +244,25 @@ contains
 
       corners = side_corners(model%mesh)
       first = huge(first)
-      do i = context%boundaries%count, 1, -1
-         associate (request => context%boundaries%items(i))
+      do i = deck%boundaries%count, 1, -1
+         associate (request => deck%boundaries%items(i))
             first(min(request%component, 3), request%members(model%mesh%node_sets)) = &
                max(1, request%step)
          end associate
       end do
       card = 0
-      do i = 1, context%boundaries%count
-         associate (request => context%boundaries%items(i))
+      do i = 1, deck%boundaries%count
+         associate (request => deck%boundaries%items(i))
             nodes = request%members(model%mesh%node_sets)
-            if (.not. all(context%dropped(nodes)) .or. request%card == card) cycle
+            if (.not. all(deck%dropped(nodes)) .or. request%card == card) cycle
             do j = 1, size(nodes)
                if (all(first(min(request%component, 3), corners(:, nodes(j))) <= &
                   max(1, request%step))) cycle
                card = request%card
-               call report%error(request%place, 'ORDER=1 drops midside node '// &
-                  to_text(model%mesh%node_number(nodes(j)))//' and what is prescribed there; '// &
-                  'prescribe it at the corners of its side, '// &
-                  to_text(model%mesh%node_number(corners(1, nodes(j))))//' and '// &
-                  to_text(model%mesh%node_number(corners(2, nodes(j)))))
+               call deck%error(request%place, 'ORDER=1 drops midside node '//to_text( &
+                  model%mesh%node_number(nodes(j)))//' and what is prescribed there; prescribe '// &
+                  'it at the corners of its side, '//to_text(model%mesh%node_number(corners(1, &
+                  nodes(j))))//' and '//to_text(model%mesh%node_number(corners(2, nodes(j)))))
                exit
             end do
          end associate
@@ -279,24 +271,23 @@ contains
 
    !> Warns where a data card replaces what another one of the same step prescribes. What is
    !> before the first step may be replaced in it.
-   subroutine check_conflicts(context, step, model, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_conflicts(deck, step, model)
+      type(deck_type), intent(inout) :: deck
       integer, intent(in) :: step                          ! 0 for what is before the first
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
       integer :: given(3, size(model%mesh%node_number)), i, j, dof, n, node
       integer, allocatable :: nodes(:)
 
       given = 0
-      do i = 1, context%boundaries%count
-         associate (request => context%boundaries%items(i))
+      do i = 1, deck%boundaries%count
+         associate (request => deck%boundaries%items(i))
             if (request%step /= step) cycle
             dof = min(request%component, 3)
             nodes = request%members(model%mesh%node_sets)
             n = 0
             do j = 1, size(nodes)
                if (given(dof, nodes(j)) > 0) then
-                  associate (other => context%boundaries%items(given(dof, nodes(j))))
+                  associate (other => deck%boundaries%items(given(dof, nodes(j))))
                      if (abs(request%value - other%value) > 0.0_dp .or. (request%amplitude /= &
                         other%amplitude .and. abs(request%value) > 0.0_dp)) then
                         n = n + 1
@@ -306,10 +297,10 @@ contains
                end if
                given(dof, nodes(j)) = i
             end do
-            if (n > 0) call report%warning(request%place, 'node '// &
+            if (n > 0) call deck%warning(request%place, 'node '// &
                to_text(model%mesh%node_number(node))//': another card of this step gives '// &
-               'degree of freedom '//to_text(request%component)// &
-               ' another value; the last value is used ('//counted(n, 'node')//')')
+               'degree of freedom '//to_text(request%component)//' another value; the last '// &
+               'value is used ('//counted(n, 'node')//')')
          end associate
       end do
    end subroutine check_conflicts

@@ -5,8 +5,7 @@
 !> known to rounding times the square of the ratio of the sides, in parts of an even load: nothing
 !> is left of the pressure at a contact point of such a side at 1e-8.
 module mesh_checks
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use element_kinds, only: axisymmetric, element_corner_count, element_node_count, linear_kind, &
       plane_strain, side_node_count, side_nodes
    use kinds, only: dp
@@ -43,19 +42,17 @@ module mesh_checks
 contains
 
    !> Beside axisymmetric elements there are none in plane strain; the radius is not negative.
-   subroutine check_planes(context, mesh, report)
-      type(deck_context_type), intent(in) :: context       !! places for messages
+   subroutine check_planes(deck, mesh)
+      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       integer :: e, q, round, strained
       logical :: turns(size(mesh%element_plane))
 
-      turns = mesh%element_plane == axisymmetric .and. context%element_valid
+      turns = mesh%element_plane == axisymmetric .and. deck%element_valid
       round = findloc(turns, .true., dim=1)
-      strained = findloc(mesh%element_plane == plane_strain .and. context%element_valid, .true., &
-         dim=1)
+      strained = findloc(mesh%element_plane == plane_strain .and. deck%element_valid, .true., dim=1)
       if (round > 0 .and. strained > 0) then
-         call report%error(context%element_place(max(round, strained)), 'element '// &
+         call deck%error(deck%element_place(max(round, strained)), 'element '// &
             to_text(mesh%element_number(round))//' is axisymmetric and element '// &
             to_text(mesh%element_number(strained))//' in plane strain: plane elements beside '// &
             'axisymmetric ones are in plane stress, such as CPS4')
@@ -65,8 +62,8 @@ contains
          if (.not. turns(e)) cycle
          do q = 1, element_node_count(mesh%element_kind(e))
             if (mesh%coordinates(1, mesh%element_nodes(q, e)) >= 0.0_dp) cycle
-            call report%error(context%element_place(e), 'element '// &
-               to_text(mesh%element_number(e))//' is axisymmetric: x is the radius, but node '// &
+            call deck%error(deck%element_place(e), 'element '//to_text(mesh%element_number(e))// &
+               ' is axisymmetric: x is the radius, but node '// &
                to_text(mesh%node_number(mesh%element_nodes(q, e)))//' has x < 0')
             exit
          end do
@@ -75,18 +72,17 @@ contains
 
    !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
    !> free.
-   subroutine check_sides(context, mesh, inverted, uses, report)
-      type(deck_context_type), intent(in) :: context       !! places for messages
+   subroutine check_sides(deck, mesh, inverted, uses)
+      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
       type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: inverted(:)   !! (elements) whether their sides may not be as meant
       !> (4, elements) elements that meet at each side; 0 where an error says that it is wrong
       integer, intent(out) :: uses(:, :)
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(element_side_type) :: sides(4*size(mesh%element_number))
       integer, allocatable :: order(:)
       integer :: first, last, n
 
-      call list_sides(context%element_valid .and. .not. inverted, mesh, sides, n)
+      call list_sides(deck%element_valid .and. .not. inverted, mesh, sides, n)
       order = sort_order(sides(:n)%high)
       order = order(sort_order(sides(order)%low))
       uses = 0
@@ -98,11 +94,11 @@ contains
             if (sides(order(last + 1))%high /= sides(order(first))%high) exit
             last = last + 1
          end do
-         call check_meeting(context, mesh, sides(order(first:last)), uses, report)
+         call check_meeting(deck, mesh, sides(order(first:last)), uses)
          first = last + 1
       end do
-      call check_middles(context, mesh, sides(:n), report)
-      call check_faces(context, mesh, uses, report)
+      call check_middles(deck, mesh, sides(:n))
+      call check_faces(deck, mesh, uses)
    end subroutine check_sides
 
    !> The sides of sound elements, in the order of the elements.
@@ -129,12 +125,11 @@ contains
    end subroutine list_sides
 
    !> Checks the elements that meet between two corners.
-   subroutine check_meeting(context, mesh, sides, uses, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_meeting(deck, mesh, sides, uses)
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
       type(element_side_type), intent(in) :: sides(:)
       integer, intent(inout) :: uses(:, :)
-      type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: fault
       integer :: i
 
@@ -153,19 +148,17 @@ contains
             fault = 'has a different midside node from its neighbour '// &
                to_text(mesh%element_number(sides(1)%element))//' on the side'
          end if
-         call report%error(context%element_place(sides(i)%element), 'element '// &
-            to_text(mesh%element_number(sides(i)%element))//' '//fault//' between nodes '// &
-            to_text(mesh%node_number(sides(i)%low))//' and '// &
-            to_text(mesh%node_number(sides(i)%high)))
+         call deck%error(deck%element_place(sides(i)%element), 'element '//to_text( &
+            mesh%element_number(sides(i)%element))//' '//fault//' between nodes '//to_text( &
+            mesh%node_number(sides(i)%low))//' and '//to_text(mesh%node_number(sides(i)%high)))
       end do
    end subroutine check_meeting
 
    !> A midside node is no corner, and belongs to one side.
-   subroutine check_middles(context, mesh, sides, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_middles(deck, mesh, sides)
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
       type(element_side_type), intent(in) :: sides(:)
-      type(deck_report_type), intent(inout) :: report
       logical :: corner(size(mesh%node_number))
       integer :: first(size(mesh%node_number)), i
 
@@ -179,21 +172,19 @@ contains
             if (first(node) == 0) first(node) = i
             if (.not. corner(node) .and. sides(first(node))%low == sides(i)%low .and. &
                sides(first(node))%high == sides(i)%high) cycle
-            call report%error(context%element_place(sides(i)%element), 'element '// &
-               to_text(mesh%element_number(sides(i)%element))// &
-               ' does not share the side with midside node '//to_text(mesh%node_number(node))// &
-               ' with its neighbour')
+            call deck%error(deck%element_place(sides(i)%element), 'element '// &
+               to_text(mesh%element_number(sides(i)%element))//' does not share the side with '// &
+               'midside node '//to_text(mesh%node_number(node))//' with its neighbour')
          end associate
       end do
    end subroutine check_middles
 
    !> Faces of surfaces are free: reported once a surface, where the first is named. What is loaded
    !> through such a face is not told again.
-   subroutine check_faces(context, mesh, uses, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine check_faces(deck, mesh, uses)
+      type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
       integer, intent(inout) :: uses(:, :)   !! (4, elements) elements that meet at each side
-      type(deck_report_type), intent(inout) :: report
       logical :: wrong(size(uses, 1), size(uses, 2))
       logical, allocatable :: inside(:)
       integer :: i, s
@@ -207,11 +198,11 @@ contains
                wrong(faces(2, i), faces(1, i)) = wrong(faces(2, i), faces(1, i)) .or. inside(i)
             end do
             i = findloc(inside, .true., dim=1)
-            if (i > 0) call report%error(context%face_places(s)%items(i), 'face S'// &
+            if (i > 0) call deck%error(deck%face_places(s)%items(i), 'face S'// &
                to_text(faces(2, i))//' of element '//to_text(mesh%element_number(faces(1, i)))// &
-               ' in surface '//mesh%surfaces(s)%name//' lies inside a body: another '// &
-               'element has its nodes; bodies that touch need nodes of their own there, in '// &
-               'gmsh without BooleanFragments and Coherence'// &
+               ' in surface '//mesh%surfaces(s)%name//' lies inside a body: another element '// &
+               'has its nodes; bodies that touch need nodes of their own there, in gmsh '// &
+               'without BooleanFragments and Coherence'// &
                others(count(inside), '; faces of the surface that do: '))
             deallocate(inside)
          end associate
@@ -221,11 +212,10 @@ contains
 
    !> The Jacobian is positive at the integration points of every element. Elements that go round
    !> clockwise are reported once.
-   subroutine check_jacobians(context, mesh, inverted, report)
-      type(deck_context_type), intent(in) :: context       !! places for messages
+   subroutine check_jacobians(deck, mesh, inverted)
+      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
       type(mesh_type), intent(in) :: mesh
       logical, intent(out) :: inverted(:)    !! (elements) whether its sides may be wrong
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       real(dp), allocatable :: jacobians(:)
       logical :: clockwise(size(inverted))
       real(dp) :: points(2, most_points), weights(most_points), x(2)
@@ -234,7 +224,7 @@ contains
       inverted = .false.
       clockwise = .false.
       do e = 1, size(inverted)
-         if (.not. context%element_valid(e)) cycle
+         if (.not. deck%element_valid(e)) cycle
          jacobians = point_jacobians(mesh, e)
          inverted(e) = any(jacobians <= 0.0_dp)
          clockwise(e) = all(jacobians < 0.0_dp)
@@ -243,12 +233,12 @@ contains
          call integration_rule(mesh%element_kind(e), points, weights)
          x = matmul(mesh%coordinates(:, mesh%element_nodes(:element_node_count( &
             mesh%element_kind(e)), e)), element_shape(mesh%element_kind(e), points(:, g)))
-         call report%error(context%element_place(e), inversion(mesh, e, 'integration point '// &
+         call deck%error(deck%element_place(e), inversion(mesh, e, 'integration point '// &
             to_text(g)//' at '//to_text(x(1))//', '//to_text(x(2))))
       end do
       e = findloc(clockwise, .true., dim=1)
-      if (e > 0) call report%error(context%element_place(e), inversion(mesh, e, &
-         everywhere)//others(count(clockwise), '; such elements: '))
+      if (e > 0) call deck%error(deck%element_place(e), inversion(mesh, e, everywhere)// &
+         others(count(clockwise), '; such elements: '))
    end subroutine check_jacobians
 
    !> Message on an element that is inverted somewhere.
@@ -295,16 +285,15 @@ contains
 
    !> Warns of elements that are folded at a node, although their Jacobian is positive at all
    !> integration points: their map is not one to one.
-   subroutine check_folds(context, mesh, report)
-      type(deck_context_type), intent(in) :: context       !! places for messages, order
+   subroutine check_folds(deck, mesh)
+      type(deck_type), intent(inout) :: deck   !! places for messages, order; receives a warning
       type(mesh_type), intent(in) :: mesh                  !! sound at the integration points
-      type(deck_report_type), intent(inout) :: report      !! receives a warning
       integer :: at, e, first, kind, n, node, number_folded
 
       number_folded = 0
       do e = 1, size(mesh%element_number)
          kind = mesh%element_kind(e)
-         if (context%order == 1) kind = linear_kind(kind)
+         if (deck%order == 1) kind = linear_kind(kind)
          n = element_node_count(kind)
          at = folded_node(kind, mesh%coordinates(:, mesh%element_nodes(:n, e)))
          if (at == 0) cycle
@@ -314,11 +303,10 @@ contains
          node = mesh%node_number(mesh%element_nodes(at, e))
       end do
       if (number_folded == 0) return
-      call report%warning(context%element_place(first), 'element '// &
-         to_text(mesh%element_number(first))//' is folded at node '//to_text(node)// &
-         ': its Jacobian is negative near it, where fields are wrong; move the midside nodes '// &
-         'towards the middle of their sides and make its corners convex'// &
-         others(number_folded, '; folded elements: '))
+      call deck%warning(deck%element_place(first), 'element '//to_text( &
+         mesh%element_number(first))//' is folded at node '//to_text(node)//': its Jacobian is '// &
+         'negative near it, where fields are wrong; move the midside nodes towards the middle '// &
+         'of their sides and make its corners convex'//others(number_folded, '; folded elements: '))
    end subroutine check_folds
 
    !> The node at which an element is folded, as its position in the element; 0 where there is none.
@@ -346,10 +334,9 @@ contains
 
    !> No side of an element is far shorter than the others. Corners in one place are left to the
    !> Jacobian.
-   subroutine check_slenderness(context, mesh, report)
-      type(deck_context_type), intent(in) :: context       !! places for messages
+   subroutine check_slenderness(deck, mesh)
+      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors and a warning
       type(mesh_type), intent(in) :: mesh
-      type(deck_report_type), intent(inout) :: report      !! receives errors and a warning
       real(dp) :: least, ratio
       integer :: e, worst, count_doubtful
 
@@ -357,19 +344,18 @@ contains
       count_doubtful = 0
       least = doubtful
       do e = 1, size(mesh%element_number)
-         if (.not. context%element_valid(e)) cycle
+         if (.not. deck%element_valid(e)) cycle
          ratio = side_ratio(mesh, e)
-         if (ratio < hopeless) call report%error(context%element_place(e), said(mesh, e, ratio)// &
+         if (ratio < hopeless) call deck%error(deck%element_place(e), said(mesh, e, ratio)// &
             ', and rounding would spoil the result')
          if (ratio < hopeless .or. ratio >= doubtful) cycle
          count_doubtful = count_doubtful + 1
          if (ratio < least) worst = e
          least = min(least, ratio)
       end do
-      if (worst > 0) call report%warning(context%element_place(worst), &
-         said(mesh, worst, least)//', and pressures there are accurate to '// &
-         to_text(epsilon(1.0_dp)/least**2)//' only (number of such elements: '// &
-         to_text(count_doubtful)//')')
+      if (worst > 0) call deck%warning(deck%element_place(worst), said(mesh, worst, least)// &
+         ', and pressures there are accurate to '//to_text(epsilon(1.0_dp)/least**2)//' only '// &
+         '(number of such elements: '//to_text(count_doubtful)//')')
    end subroutine check_slenderness
 
    !> The shortest side that has a length, over the longest; of corners alone.

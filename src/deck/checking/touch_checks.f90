@@ -3,8 +3,7 @@
 module touch_checks
    use mesh_bodies, only: body_name
    use contact_definitions, only: contact_definition_type
-   use deck_context, only: deck_context_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use element_sides, only: element_sides_type, find_sides
    use equations, only: coupled_nodes, equation_nodes
    use kinds, only: dp
@@ -41,10 +40,9 @@ contains
 
    !> Warns of faces that touch and are not related, once for two bodies, for the seams of a body
    !> and for hanging nodes.
-   subroutine check_touches(context, model, report)
-      type(deck_context_type), intent(in) :: context      !! places for messages
+   subroutine check_touches(deck, model)
+      type(deck_type), intent(inout) :: deck   !! places for messages; receives warnings
       type(model_type), intent(in) :: model               !! not refined, its bodies known
-      type(deck_report_type), intent(inout) :: report     !! receives warnings
       type(element_sides_type) :: sides
       type(touch_type), allocatable :: touches(:)
       integer, allocatable :: order(:), key(:, :)         ! (3, touches) as keys_of
@@ -66,7 +64,7 @@ contains
             if (any(key(:, order(last + 1)) /= key(:, order(first)))) exit
             last = last + 1
          end do
-         call warn(context, model, sides, touches(order(first:last)), key(:, order(first)), report)
+         call warn(deck, model, sides, touches(order(first:last)), key(:, order(first)))
          first = last + 1
       end do
    end subroutine check_touches
@@ -208,13 +206,12 @@ contains
    end function keys_of
 
    !> Warns of the touches of one key.
-   subroutine warn(context, model, sides, touches, key, report)
-      type(deck_context_type), intent(in) :: context
+   subroutine warn(deck, model, sides, touches, key)
+      type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
       type(element_sides_type), intent(in) :: sides
       type(touch_type), intent(in) :: touches(:)          ! by their nodes
       integer, intent(in) :: key(3)
-      type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: message, node, place
       integer :: before, i, places
 
@@ -255,7 +252,7 @@ contains
                'share their nodes'
          end if
       end associate
-      call report%warning(context%node_place(touches(1)%node), message)
+      call deck%warning(deck%node_place(touches(1)%node), message)
    end subroutine warn
 
    !> A side as messages name it, such as 'side 3 of element 1'.

@@ -1,7 +1,7 @@
 !> Constants in other units than *OPTIONS, UNITS= says.
 module unit_checks
    use cards, only: cards_type, keyword_card_type
-   use deck_report, only: deck_report_type
+   use deck_context, only: deck_type
    use heat_checks, only: temperature_range
    use kinds, only: dp
    use materials, only: property_keywords
@@ -55,10 +55,10 @@ contains
 
    !> Warns of constants in another unit than the deck says, and of temperatures below absolute
    !> zero.
-   subroutine check_units(cards, model, report)
+   subroutine check_units(cards, model, deck)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model               !! with its loads and supports
-      type(deck_report_type), intent(inout) :: report     !! receives warnings
+      type(deck_type), intent(inout) :: deck   !! receives warnings
       real(dp) :: degree, metre, pascal, watt
       integer :: k, m
 
@@ -70,17 +70,18 @@ contains
       do k = 1, size(cards%keywords)
          select case (cards%keywords(k)%name)
          case ('PHYSICAL CONSTANTS')
-            call check_zero(cards%keywords(k), model, report)
+            call check_zero(cards%keywords(k), model, deck)
             if (min(degree, metre) > 0.0_dp) call check_boltzmann(cards%keywords(k), &
-               watt/(metre**2*degree**4), model, report)
+               watt/(metre**2*degree**4), model, deck)
          case ('MATERIAL')
             m = m + 1
          case ('ELASTIC')
             if (any(solves_mechanics(model%steps%analysis))) call check_property( &
-               cards%keywords(k), model, m, pascal, report)
+               cards%keywords(k), model, m, pascal, deck)
          case ('CONDUCTIVITY')
-            if (min(degree, metre) > 0.0_dp .and. any(solves_heat(model%steps%analysis))) call &
-               check_property(cards%keywords(k), model, m, watt/(metre*degree), report)
+            if (min(degree, metre) > 0.0_dp .and. &
+               any(solves_heat(model%steps%analysis))) call check_property(cards%keywords(k), &
+               model, m, watt/(metre*degree), deck)
          case default
             cycle
          end select
@@ -88,12 +89,12 @@ contains
    end subroutine check_units
 
    !> Warns of a property whose first constant is none of a solid.
-   subroutine check_property(card, model, m, unit, report)
+   subroutine check_property(card, model, m, unit, deck)
       type(keyword_card_type), intent(in) :: card
       type(model_type), intent(in) :: model
       integer, intent(in) :: m                            ! index of its material, or 0
       real(dp), intent(in) :: unit                        ! [Pa] or [W/(m K)], 0 where not known
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: si_unit
       real(dp) :: ends(2), value
       integer :: i
@@ -109,19 +110,18 @@ contains
                if (value*unit <= ends(2)) value = minval(values)
             end associate
             if (value*unit >= ends(1) .and. value*unit <= ends(2)) cycle
-            call report%warning(card%place, trim(material%given(i)%names(1))//' '// &
-               to_text(value)//' of '//material%name//' is '//to_text(value*unit)//' '//si_unit// &
-               ' in the units of *OPTIONS, UNITS=, beyond the '//to_text(ends(1))//' to '// &
-               to_text(ends(2))//' '//si_unit//' of solids; give it in those units, or correct '// &
-               'UNITS=')
+            call deck%warning(card%place, trim(material%given(i)%names(1))//' '//to_text(value)// &
+               ' of '//material%name//' is '//to_text(value*unit)//' '//si_unit//' in the '// &
+               'units of *OPTIONS, UNITS=, beyond the '//to_text(ends(1))//' to '//to_text( &
+               ends(2))//' '//si_unit//' of solids; give it in those units, or correct UNITS=')
          end do
       end associate
    end subroutine check_property
 
-   subroutine check_zero(card, model, report)
+   subroutine check_zero(card, model, deck)
       type(keyword_card_type), intent(in) :: card
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
       type(unit_type) :: scale
       real(dp) :: least(2)
@@ -144,21 +144,21 @@ contains
             return
          end if
       end associate
-      call report%warning(card%place_of('ABSOLUTE ZERO'), message)
+      call deck%warning(card%place_of('ABSOLUTE ZERO'), message)
    end subroutine check_zero
 
-   subroutine check_boltzmann(card, unit, model, report)
+   subroutine check_boltzmann(card, unit, model, deck)
       type(keyword_card_type), intent(in) :: card
       real(dp), intent(in) :: unit                        ! [W/(m^2 K^4)], 0 where not known
       type(model_type), intent(in) :: model
-      type(deck_report_type), intent(inout) :: report
+      type(deck_type), intent(inout) :: deck
       real(dp) :: constant
 
       if (.not. card%has('STEFAN BOLTZMANN') .or. unit <= 0.0_dp) return
       constant = stefan_boltzmann/unit
       associate (given => model%constants%stefan_boltzmann, units => model%units)
          if (abs(given - constant) <= other_digits*constant) return
-         call report%warning(card%place_of('STEFAN BOLTZMANN'), 'the constant of Stefan and '// &
+         call deck%warning(card%place_of('STEFAN BOLTZMANN'), 'the constant of Stefan and '// &
             'Boltzmann is '//to_text(given)//', but '//to_text(constant)//' in the units of '// &
             '*OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '//units%temperature// &
             '^4); give that, or correct UNITS=')

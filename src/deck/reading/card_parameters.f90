@@ -28,7 +28,7 @@ contains
    subroutine need_parameter(card, name, report, value)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                        !! name as in the table of keywords
-      type(deck_report_type), intent(inout) :: report         !! receives the error
+      class(deck_report_type), intent(inout) :: report        !! receives the error
       character(:), allocatable, intent(out) :: value   !! value in upper case; empty after an error
 
       value = to_upper(card%text(name))
@@ -40,7 +40,7 @@ contains
    subroutine take_integer_parameter(card, name, report, value)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: value
       integer :: number
       logical :: valid
@@ -58,7 +58,7 @@ contains
    subroutine take_real_parameter(card, name, report, value)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       real(dp), intent(inout) :: value
       real(dp) :: number
       logical :: valid
@@ -77,7 +77,7 @@ contains
    subroutine take_positive(card, name, report, value)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
-      type(deck_report_type), intent(inout) :: report          !! receives the error
+      class(deck_report_type), intent(inout) :: report         !! receives the error
       real(dp), intent(inout) :: value                         !! > 0
       real(dp) :: given
 
@@ -96,7 +96,7 @@ contains
       integer, intent(in) :: least
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
-      type(deck_report_type), intent(inout) :: report          !! receives the error
+      class(deck_report_type), intent(inout) :: report         !! receives the error
       integer, intent(inout) :: value                          !! >= least
       integer :: given
 
@@ -147,7 +147,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
       character(*), intent(in) :: choices                      !! words, separated by slashes
-      type(deck_report_type), intent(inout) :: report          !! receives the error
+      class(deck_report_type), intent(inout) :: report         !! receives the error
       character(:), allocatable, intent(inout) :: choice   !! the word as in choices; else as it was
       character(:), allocatable :: wanted, word
 
@@ -167,7 +167,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
       character(*), intent(in) :: choices                      !! words, separated by slashes
-      type(deck_report_type), intent(inout) :: report          !! receives the error
+      class(deck_report_type), intent(inout) :: report         !! receives the error
       character(:), allocatable, intent(out) :: choice         !! the word as in choices
 
       call need_parameter(card, name, report, choice)
@@ -179,7 +179,7 @@ contains
    logical function is_on(card, name, report)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
-      type(deck_report_type), intent(inout) :: report          !! receives the error
+      class(deck_report_type), intent(inout) :: report         !! receives the error
       character(:), allocatable :: choice
 
       choice = 'NO'

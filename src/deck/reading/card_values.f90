@@ -35,7 +35,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: most                         !! most fields
       character(*), intent(in) :: layout                  !! what a card of its keyword holds
-      type(deck_report_type), intent(inout) :: report     !! receives the error
+      class(deck_report_type), intent(inout) :: report    !! receives the error
       integer :: comma
 
       if (size(data%fields) <= most) return
@@ -52,7 +52,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       character(:), allocatable, intent(inout) :: value
       logical, intent(inout) :: valid
 
@@ -64,7 +64,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: value
       logical, intent(inout) :: valid
 
@@ -76,7 +76,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
 
@@ -88,7 +88,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: valid
 
       valid = .false.
@@ -99,7 +99,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: value
       logical, intent(inout) :: valid
       integer :: number
@@ -121,7 +121,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
       real(dp) :: number
@@ -144,7 +144,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: first                         !! position of the first field
       character(*), intent(in) :: what                     !! what they are
-      type(deck_report_type), intent(inout) :: report      !! receives the error
+      class(deck_report_type), intent(inout) :: report     !! receives the error
       real(dp), intent(out) :: vector(3)                   !! their values, zero after an error
       logical, intent(inout) :: valid   !! becomes false after an error; then nothing more is read
       integer :: i
@@ -160,7 +160,7 @@ contains
    subroutine need_plane_vector(data, first, report, vector, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: first                         !! position of the magnitude
-      type(deck_report_type), intent(inout) :: report      !! receives errors
+      class(deck_report_type), intent(inout) :: report     !! receives errors
       real(dp), intent(out) :: vector(2)                   !! x and y, zero after an error
       logical, intent(inout) :: valid                      !! becomes false after an error
       real(dp) :: magnitude, direction(3)
@@ -238,7 +238,7 @@ contains
    subroutine report_decimal_comma(data, i, report)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! what decimal_comma found
-      type(deck_report_type), intent(inout) :: report     !! receives the error
+      class(deck_report_type), intent(inout) :: report    !! receives the error
 
       call report%explain(data%place(i), 'a '// &
          decimal_comma_words(data%fields(i)%text, data%fields(i + 1)%text))
@@ -277,7 +277,7 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! position of the field, from 2
       character(*), intent(in) :: what                    !! what the field is, with its article
-      type(deck_report_type), intent(inout) :: report     !! receives the warning
+      class(deck_report_type), intent(inout) :: report    !! receives the warning
       character(*), intent(in), optional :: group         !! by which it is convicted
       character(:), allocatable :: message
 
@@ -299,7 +299,7 @@ contains
    subroutine check_unneeded_temperature(data, i, report)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! position of the field, from 2
-      type(deck_report_type), intent(inout) :: report     !! receives the warning
+      class(deck_report_type), intent(inout) :: report    !! receives the warning
       real(dp) :: temperature
       logical :: is_number
 

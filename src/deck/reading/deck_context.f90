@@ -1,4 +1,4 @@
-!> State of the builder beyond the model itself: numbers -> indexes, places for
+!> A deck while its model is built: what is wrong with it, numbers and names -> indexes, places for
 !> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
 module deck_context
    use card_parameters, only: need_parameter
@@ -19,9 +19,7 @@ module deck_context
    use time_points, only: time_points_type
    implicit none
    private
-   public :: deck_context_type, item_index_type, place_list_type, plane_by_element
-   public :: take_name, need_named, take_named, need_element_set, read_surface, read_target
-   public :: report_unknown, look_up
+   public :: deck_type, item_index_type, place_list_type, plane_by_element, read_target, take_name
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
 
@@ -43,8 +41,8 @@ module deck_context
       type(set_names_type) :: sets
    end type item_index_type
 
-   !> State of the builder.
-   type :: deck_context_type
+   !> A deck and what is wrong with it.
+   type, extends(deck_report_type) :: deck_type
       type(quantity_type), allocatable :: verifiable(:)   !! what *VERIFY may name
       type(item_index_type) :: node_index                 !! numbers of nodes -> indexes
       type(item_index_type) :: element_index              !! numbers of elements -> indexes
@@ -88,13 +86,20 @@ module deck_context
       type(string_type), allocatable :: notes(:)          !! lines for the listing
    contains
       procedure :: note
-   end type deck_context_type
+      procedure :: need_named
+      procedure :: take_named
+      procedure :: need_surface
+      procedure :: need_element_set
+      procedure :: need_nodes
+      procedure :: need_elements
+      procedure :: look_up
+   end type deck_type
 
 contains
 
    !> Notes a default that was used or a card that is not needed.
    subroutine note(self, line)
-      class(deck_context_type), intent(inout) :: self
+      class(deck_type), intent(inout) :: self
       character(*), intent(in) :: line                  !! the note; each is kept once
 
       call add_note(self%notes, line)
@@ -102,13 +107,13 @@ contains
 
    !> Takes the name of an item, NAME= of its card. That it has none, or that of an earlier one, is
    !> an error; another name may have been meant.
-   subroutine take_name(cards, k, noun, names, name, report)
+   subroutine take_name(cards, k, noun, names, report, name)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k                          !! index of the card
       character(*), intent(in) :: noun                  !! such as material
       type(name_index_type), intent(inout) :: names     !! those of the cards before; receives it
+      class(deck_report_type), intent(inout) :: report  !! receives errors
       character(:), allocatable, intent(out) :: name
-      type(deck_report_type), intent(inout) :: report   !! receives errors
       logical :: repeated
 
       call need_parameter(cards%keywords(k), 'NAME', report, name)
@@ -119,67 +124,89 @@ contains
    end subroutine take_name
 
    !> Index of the item that a parameter names, which the card must have; 0 after an error.
-   subroutine need_named(card, parameter, noun, names, report, index)
+   subroutine need_named(self, card, parameter, noun, index)
+      class(deck_type), intent(inout) :: self           !! receives errors
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter             !! the parameter
       character(*), intent(in) :: noun                  !! what it names, such as material
-      class(name_index_type), intent(in) :: names
-      type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: index
       character(:), allocatable :: name
 
       index = 0
-      call need_parameter(card, parameter, report, name)
-      if (len(name) > 0) call look_up(noun, name, names, card%place_of(parameter), report, index)
+      call need_parameter(card, parameter, self, name)
+      if (len(name) > 0) call self%look_up(noun, name, card%place_of(parameter), index)
    end subroutine need_named
 
    !> Index of the item that a parameter names, where the card has it; else it stays as it is.
-   subroutine take_named(card, parameter, noun, names, report, index)
+   subroutine take_named(self, card, parameter, noun, index)
+      class(deck_type), intent(inout) :: self           !! receives errors
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter             !! the parameter
       character(*), intent(in) :: noun                  !! what it names, such as material
-      class(name_index_type), intent(in) :: names
-      type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(inout) :: index                   !! 0 after an error
 
-      if (card%has(parameter)) call look_up(noun, to_upper(card%text(parameter)), names, &
-         card%place_of(parameter), report, index)
+      if (card%has(parameter)) call self%need_named(card, parameter, noun, index)
    end subroutine take_named
 
    !> Index of the surface that a field of a data card names; 0 after an error.
-   subroutine read_surface(data, position, what, surfaces, report, surface)
+   subroutine need_surface(self, data, position, what, surface)
+      class(deck_type), intent(inout) :: self           !! receives errors
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! the field
       character(*), intent(in) :: what                  !! what the field holds
-      type(name_index_type), intent(in) :: surfaces
-      type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: surface
       character(:), allocatable :: name
       logical :: valid
 
       surface = 0
       valid = .true.
-      call need_field(data, position, what, report, name, valid)
-      if (valid) call look_up('surface', to_upper(name), surfaces, data%place(position), report, &
-         surface)
-   end subroutine read_surface
+      call need_field(data, position, what, self, name, valid)
+      if (valid) call self%look_up('surface', to_upper(name), data%place(position), surface)
+   end subroutine need_surface
 
    !> Index of the item that has a name; 0 after an error.
-   subroutine look_up(noun, name, names, place, report, index)
+   subroutine look_up(self, noun, name, place, index)
+      class(deck_type), intent(inout) :: self           !! receives errors
       character(*), intent(in) :: noun                  !! such as material
       character(*), intent(in) :: name
-      class(name_index_type), intent(in) :: names
       type(place_type), intent(in) :: place             !! where it is
-      type(deck_report_type), intent(inout) :: report   !! receives the error
       integer, intent(out) :: index
 
-      index = names%find(name)
-      if (index > 0) return
-      if (is_other_kind(names, name)) then
-         call report_other_kind(noun, name, place, report)
-      else
-         call report_unknown(noun, name, names%known(), place, report)
-      end if
+      index = 0
+      select case (noun)
+      case ('node set')
+         call look_in(self%node_index%sets, self%deck_report_type)
+      case ('element set')
+         call look_in(self%element_index%sets, self%deck_report_type)
+      case ('surface')
+         call look_in(self%surfaces, self%deck_report_type)
+      case ('material')
+         call look_in(self%materials, self%deck_report_type)
+      case ('orientation')
+         call look_in(self%orientations, self%deck_report_type)
+      case ('amplitude')
+         call look_in(self%amplitudes, self%deck_report_type)
+      case ('surface interaction')
+         call look_in(self%interactions, self%deck_report_type)
+      case ('contact pair')
+         call look_in(self%contacts, self%deck_report_type)
+      case ('time points')
+         call look_in(self%time_point_names, self%deck_report_type)
+      end select
+   contains
+      subroutine look_in(names, report)
+         class(name_index_type), intent(in) :: names
+         type(deck_report_type), intent(inout) :: report
+
+         index = names%find(name)
+         if (index > 0) return
+         if (is_other_kind(names, name)) then
+            call report_other_kind(noun, name, place, report)
+         else
+            call report%missing(place, 'unknown '//noun//' '//name// &
+               nearest_known(name, names%known()), noun, name)
+         end if
+      end subroutine look_in
    end subroutine look_up
 
    !> Whether a name is that of a set of elements where one of nodes is due, or the reverse.
@@ -198,7 +225,7 @@ contains
    subroutine report_other_kind(noun, name, place, report)
       character(*), intent(in) :: noun, name
       type(place_type), intent(in) :: place
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
 
       if (noun == 'node set') then
          call report%missing(place, name//' is an element set, and a node set is due here; '// &
@@ -209,39 +236,51 @@ contains
       end if
    end subroutine report_other_kind
 
-   !> Reports a name that nothing has.
-   subroutine report_unknown(noun, name, known, place, report)
-      character(*), intent(in) :: noun                  !! what is named, such as material
-      character(*), intent(in) :: name                  !! the name that is not known
-      type(string_type), intent(in) :: known(:)         !! those that are known
-      type(place_type), intent(in) :: place             !! where it is
-      type(deck_report_type), intent(inout) :: report   !! receives the error
-
-      call report%missing(place, 'unknown '//noun//' '//name//nearest_known(name, known), noun, &
-         name)
-   end subroutine report_unknown
-
    !> Index of the element set that ELSET= of a card names; 0 after an error.
-   subroutine need_element_set(card, names, sets, report, set)
+   subroutine need_element_set(self, card, sets, set)
+      class(deck_type), intent(inout) :: self           !! receives errors
       type(keyword_card_type), intent(in) :: card
-      class(name_index_type), intent(in) :: names       !! of the element sets
       type(set_type), intent(in) :: sets(:)             !! element sets
-      type(deck_report_type), intent(inout) :: report   !! receives errors
       integer, intent(out) :: set
       logical :: valid
 
-      call need_named(card, 'ELSET', 'element set', names, report, set)
+      call self%need_named(card, 'ELSET', 'element set', set)
       if (set == 0) return
       if (.not. sets(set)%of_lines) return
-      call report_lines(sets(set)%name, card%place_of('ELSET'), report, valid)
+      call report_lines(sets(set)%name, card%place_of('ELSET'), self, valid)
       set = 0
    end subroutine need_element_set
+
+   !> Reads the field of a card that names a node or a set of nodes.
+   subroutine need_nodes(self, data, position, sets, target, valid)
+      class(deck_type), intent(inout) :: self           !! receives errors
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position                   !! position of the field
+      type(set_type), intent(in) :: sets(:)             !! node sets
+      type(target_type), intent(out) :: target
+      logical, intent(inout) :: valid                   !! becomes false after an error
+
+      call read_target(data, position, self%node_index, sets, self%deck_report_type, target, valid)
+   end subroutine need_nodes
+
+   !> Reads the field of a card that names an element or a set of elements.
+   subroutine need_elements(self, data, position, sets, target, valid)
+      class(deck_type), intent(inout) :: self           !! receives errors
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position                   !! position of the field
+      type(set_type), intent(in) :: sets(:)             !! element sets
+      type(target_type), intent(out) :: target
+      logical, intent(inout) :: valid                   !! becomes false after an error
+
+      call read_target(data, position, self%element_index, sets, self%deck_report_type, target, &
+         valid)
+   end subroutine need_elements
 
    !> Reports an element set that has lines only where elements or their faces are due.
    subroutine report_lines(name, place, report, valid)
       character(*), intent(in) :: name                  !! the set
       type(place_type), intent(in) :: place             !! where it is
-      type(deck_report_type), intent(inout) :: report   !! receives the error
+      class(deck_report_type), intent(inout) :: report  !! receives the error
       logical, intent(inout) :: valid                   !! becomes false
 
       call report%error(place, 'element set '//name// &
@@ -255,7 +294,7 @@ contains
       integer, intent(in) :: position                   !! position of the field
       type(item_index_type), intent(in) :: numbers      !! numbers -> indexes
       type(set_type), intent(in) :: sets(:)             !! sets that are known, the first ones
-      type(deck_report_type), intent(inout) :: report   !! receives errors
+      class(deck_report_type), intent(inout) :: report  !! receives errors
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
       character(:), allocatable :: name
@@ -285,8 +324,9 @@ contains
          call report_other_kind(numbers%noun//' set', to_upper(name), data%place(position), report)
       else
          known = numbers%sets%known()
-         call report_unknown(numbers%noun//' set', to_upper(name), known(:size(sets)), &
-            data%place(position), report)
+         call report%missing(data%place(position), 'unknown '//numbers%noun//' set '// &
+            to_upper(name)//nearest_known(to_upper(name), known(:size(sets))), &
+            numbers%noun//' set', name)
       end if
    end subroutine read_target
 

@@ -61,6 +61,7 @@ module deck_report
       procedure :: warnings
       procedure :: first_error
       procedure :: print => print_report
+      procedure :: take_over
    end type deck_report_type
 
 contains
@@ -243,6 +244,23 @@ contains
 
       call add(self, severity_warning, place, message, group)
    end subroutine warning
+
+   !> Takes what another report has, which is empty then.
+   subroutine take_over(self, other)
+      class(deck_report_type), intent(inout) :: self
+      class(deck_report_type), intent(inout) :: other
+
+      self%count = other%count
+      self%errors = other%errors
+      self%source%count = other%source%count
+      call move_alloc(other%path, self%path)
+      call move_alloc(other%diagnostics, self%diagnostics)
+      call move_alloc(other%lost, self%lost)
+      call move_alloc(other%source%images, self%source%images)
+      call move_alloc(other%source%file, self%source%file)
+      call move_alloc(other%source%line, self%source%line)
+      call move_alloc(other%source%paths, self%source%paths)
+   end subroutine take_over
 
    !> Whether the deck has an error.
    pure logical function has_errors(self)

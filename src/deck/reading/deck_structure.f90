@@ -57,7 +57,7 @@ contains
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k                            !! index of the card
       character(*), intent(in) :: what                    !! such as material STEEL
-      type(deck_report_type), intent(inout) :: report     !! receives the error
+      class(deck_report_type), intent(inout) :: report    !! receives the error
       integer :: first
 
       associate (card => cards%keywords(k))
@@ -84,7 +84,7 @@ contains
    !> Checks the order of the cards, the number of data cards, and what must not be missing.
    subroutine check_structure(cards, report)
       type(cards_type), intent(in) :: cards
-      type(deck_report_type), intent(inout) :: report     !! receives errors
+      class(deck_report_type), intent(inout) :: report    !! receives errors
       type(place_type) :: place
       logical :: step_open, after_step, told
       integer :: k, step
@@ -127,7 +127,7 @@ contains
    !> Definitions of a card with an error in it may be missing elsewhere.
    subroutine lose_definitions(card, report)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
 
       if (.not. (card%flawed .or. card%data_lost)) return
       select case (card%name)
@@ -161,7 +161,7 @@ contains
    !> Follows *STEP and *END STEP.
    subroutine check_step_card(card, report, step_open)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       logical, intent(inout) :: step_open
 
       if (card%name == 'STEP') then
@@ -187,7 +187,7 @@ contains
    subroutine report_late(cards, first, report)
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: first
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       character(:), allocatable :: followers
       integer :: k
 
@@ -205,7 +205,7 @@ contains
    subroutine check_section(card, step_open, after_step, report)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: step_open, after_step
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
 
       if (len(card%meant) > 0) return
       select case (known_keywords(card%known)%section)
@@ -223,7 +223,7 @@ contains
 
    subroutine check_data_count(card, report)
       type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       type(keyword_type) :: known
       character(:), allocatable :: most
       integer :: n
@@ -253,7 +253,7 @@ contains
    !> Reports a deck without *STEP at the first card that belongs in one.
    subroutine need_step(cards, report)
       type(cards_type), intent(in) :: cards
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
       integer :: k
 
       do k = 1, size(cards%keywords)
@@ -274,7 +274,7 @@ contains
       type(cards_type), intent(in) :: cards
       character(*), intent(in) :: name
       type(place_type), intent(in) :: place              ! where it is missed
-      type(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report
 
       if (card_count(cards, name) > 0 .or. has_stand_in(cards, name)) return
       if (size(cards%keywords) > 0) call report%error(place, 'the deck has no *'//name)

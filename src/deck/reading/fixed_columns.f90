@@ -42,7 +42,7 @@ contains
          read (numbers, *, iostat=status) part
          written = '(I'//to_text(part(1))//','//to_text(part(2))//'F'//to_text(part(3))//'.'// &
             to_text(part(4))//')'
-         valid = any(part(2) == [2, 3])
+         valid = part(1) > 0 .and. any(part(2) == [2, 3])
       else
          read (numbers, *, iostat=status) part(2:3)
          written = '('//to_text(part(2))//'I'//to_text(part(3))//')'
