@@ -1,10 +1,10 @@
-!> Slips of the pen: names that are likely meant where an unknown one is written, and characters
+!> Misspellings: names that are likely meant where an unknown one is written, and characters
 !> that word processors put in place of quotes, blanks and minus signs.
 module spelling
-   use text, only: string_type, to_upper
+   use text, only: string_type, to_upper, without_blanks
    implicit none
    private
-   public :: nearest_name, nearest_known, known_choices, edit_distance, is_slip, &
+   public :: nearest_name, nearest_known, known_choices, edit_distance, full_word, is_slip, &
       find_look_alike
 
    integer, parameter :: most_listed = 16         !! choices that a message lists
@@ -93,6 +93,34 @@ contains
          hint = hint//', '//names(i)%value
       end do
    end function known_choices
+
+   !> The one of several words that a word is, or begins as in Abaqus, whatever the blanks; empty
+   !> where none of them does, or several do.
+   pure function full_word(short, words) result(word)
+      character(*), intent(in) :: short            !! in upper case
+      type(string_type), intent(in) :: words(:)
+      character(:), allocatable :: word            !! as in words
+      character(:), allocatable :: wanted
+      integer :: i
+
+      word = ''
+      wanted = without_blanks(short)
+      if (len(wanted) == 0) return
+      do i = 1, size(words)
+         word = words(i)%value
+         if (without_blanks(word) == wanted) return
+      end do
+      word = ''
+      do i = 1, size(words)
+         if (index(without_blanks(words(i)%value), wanted) /= 1) cycle
+         ! ISO is ISOTROPIC, which begins with it.
+         if (len(word) > 0 .and. index(words(i)%value, word//'') /= 1) then
+            word = ''
+            return
+         end if
+         if (len(word) == 0) word = words(i)%value
+      end do
+   end function full_word
 
    !> Whether a name is likely a misspelling of another one, whatever their cases: in a short one
    !> fewer letters may differ.

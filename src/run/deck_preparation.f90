@@ -8,9 +8,8 @@ module deck_preparation
    use contact_quantities, only: estimated
    use deck_builder, only: build_model
    use deck_origins, only: find_origin, reads_restart
-   use deck_builder_interactions, only: frictionless
    use deck_reader, only: read_deck
-   use deck_report, only: deck_report_type
+   use deck_report, only: deck_report_type, frictionless
    use deck_source, only: place_type
    use earlier_results, only: earlier_result_type, origin_type
    use errors, only: error_type, set_error, status_deck
@@ -226,15 +225,15 @@ contains
       integer, intent(in) :: step
       type(deck_report_type), intent(inout) :: report
       type(string_type), allocatable :: messages(:)
-      logical :: convicted
+      logical :: is_told
 
       associate (analysis => model%steps(step)%analysis, points => simulation%bodies%points)
          if (solves_mechanics(analysis)) then
             call report_redundant(model, simulation, laws, loads%displacement, step, report)
             call unconstrained_in_step(model, points, laws, loads%displacement%active, messages)
-            convicted = .false.
-            if (size(messages) > 0) call report%convict(frictionless, convicted)
-            if (.not. convicted) call report_all()
+            is_told = .false.
+            if (size(messages) > 0) call report%confirm_cause(frictionless, is_told)
+            if (.not. is_told) call report_all()
          end if
          if (solves_heat(analysis)) then
             call undetermined_in_step(model, points, laws, loads%temperature%active, step, messages)

@@ -89,11 +89,8 @@ contains
 
       times = [0.0_dp, step%period]
       if (step%direct) return
-      do i = 1, size(model%amplitudes)
-         associate (curve => model%amplitudes(i))
-            times = [times, curve%times - merge(step_start, 0.0_dp, curve%total_time)]
-         end associate
-      end do
+      times = [times, (model%amplitudes(i)%times - merge(step_start, 0.0_dp, &
+         model%amplitudes(i)%total_time), i=1, size(model%amplitudes))]
       output = pack(model%verifications%when, .not. model%verifications%at_last) - step_start
       call add_output(times, output, met_within(output + step_start, step%first_increment), step)
       output = [step%field_points%in_step(step_start), &

@@ -251,7 +251,7 @@ def test_the_error_of_a_locally_refined_mesh_is_bounded(tmp_path, cylinder):
     ("LEVELS=12, SURFACE=CORNER", "LEVELS= must lie between 0 and 11"),
     ("LEVELS=-1, ELSET=TIP", "LEVELS= must lie between 0 and 11"),
     ("SURFACE=CORNER", "*REFINE needs LEVELS="),
-    ("LEVELS=1, SURFACE=CORNER, DISTANCE=0.", "DISTANCE= must be above 0"),
+    ("LEVELS=1, SURFACE=CORNER, DISTANCE=0.", "DISTANCE= must be positive"),
     ("LEVELS=1, ELSET=TIP, DISTANCE=near", "'near'"),
     ("LEVELS=1\n*REFINE, LEVELS=1", "a second *REFINE of the whole model"),
     ("LEVELS=1, ELSET=", "ELSET"),

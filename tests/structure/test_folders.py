@@ -42,6 +42,18 @@ def forbidden_uses(root=SOURCES):
     return wrong
 
 
+def test_other_folders_use_the_doors_of_the_deck_alone():
+    """They are at most eight, and in the README."""
+    text = (SOURCES / "deck" / "README.md").read_text().split("Doors")[1]
+    doors = {name for row in re.findall(r"^\| (`.*?) \|", text, re.MULTILINE)
+             for name in re.findall(r"`(\w+)`", row)}
+    inside = {name for name, folder in modules().items() if folder.startswith("deck/")}
+    used = {name.lower() for path in SOURCES.rglob("*.f90") if not folder_of(path).startswith("deck/")
+            for name in USE.findall(path.read_text())}
+    assert used & inside == doors
+    assert len(doors) <= 8
+
+
 def test_every_folder_stands_in_the_order():
     assert set(modules().values()) | {"."} == set(RANK)
 

@@ -3,10 +3,9 @@
 module deck_builder
    use mesh_bodies, only: find_bodies
    use cards, only: cards_type
-   use continuation_checks, only: check_continuations
+   use step_checks, only: check_continuations, check_storage
    use controls, only: method_names
-   use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities, &
-      heatless
+   use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities
    use deck_builder_contact, only: build_contacts, build_ties
    use deck_builder_bars, only: build_bars
    use deck_builder_equations, only: build_couplings, build_equations, build_transforms
@@ -24,7 +23,7 @@ module deck_builder
    use deck_builder_steps, only: build_steps
    use deck_checks, only: check_model, check_usage
    use deck_context, only: deck_type
-   use deck_report, only: deck_report_type
+   use deck_report, only: deck_report_type, heatless
    use deck_structure, only: card_count, check_structure
    use heat_checks, only: check_heat_paths, check_starts
    use mesh_checks, only: check_folds
@@ -36,7 +35,6 @@ module deck_builder
    use quantity_types, only: quantity_type
    use order_reduction, only: side_corners
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
-   use storage_checks, only: check_storage
    use text, only: to_text
    use touch_checks, only: check_touches
    use unit_checks, only: check_units

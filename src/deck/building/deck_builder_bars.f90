@@ -1,7 +1,7 @@
 !> *SPRING, and *SOLID SECTION of trusses -> springs and trusses.
 module deck_builder_bars
    use bars, only: bar_type
-   use card_values, only: check_extra, need_field
+   use card_values, only: need_field, read_row
    use cards, only: cards_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
@@ -53,8 +53,8 @@ contains
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
       integer :: dof(2), i, k
-      real(dp) :: stiffness
-      logical :: has_dofs, valid
+      real(dp) :: stiffness(1)
+      logical :: has_dofs, sound, valid
 
       call take_lines(card, deck, members)
       if (.not. allocated(members)) return
@@ -83,19 +83,13 @@ contains
             'freedom for SPRING1 and SPRING2')
          return
       end if
-      associate (data => card%data(size(card%data)))
-         call need_field(data, 1, 'spring constant', deck, stiffness, valid)
-         call check_extra(data, 1, 'spring constant', deck)
-         if (.not. valid) return
-         if (stiffness <= 0.0_dp) then
-            call deck%error(data%place(1), 'the constant of a spring must be positive')
-            return
-         end if
-      end associate
+      stiffness = 0.0_dp
+      call read_row(card%data(size(card%data)), 'spring constant >0', deck, stiffness, sound)
+      if (.not. (valid .and. sound)) return
       do i = 1, size(members)
          associate (bar => of_line(members(i)), nodes => deck%line_nodes(:2, members(i)))
             if (any(nodes(:merge(1, 2, deck%line_kind(members(i)) == ground_spring)) == 0)) cycle
-            bar%stiffness = stiffness
+            bar%stiffness = stiffness(1)
             bar%follows_axes = has_dofs
             select case (deck%line_kind(members(i)))
             case (axial_spring)

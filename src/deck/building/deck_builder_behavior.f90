@@ -1,7 +1,7 @@
 !> *SURFACE BEHAVIOR: parameters of a penalty, which are ignored, and laws of faces that overlap.
 module deck_builder_behavior
-   use card_parameters, only: choose
-   use card_values, only: check_extra, need_field
+   use card_parameters, only: choice
+   use card_values, only: read_row, read_rows
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type
    use kinds, only: dp
@@ -26,7 +26,7 @@ contains
             ' is refused: tied faces do not open; take *TIE')
          return
       end if
-      call choose(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD/EXPONENTIAL/TABULAR', deck, kind)
+      kind = choice(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD/EXPONENTIAL/TABULAR', deck, '')
       select case (kind)
       case ('EXPONENTIAL', 'TABULAR')
          if (size(card%data) == 0) then
@@ -48,48 +48,30 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(overlap_law_type), intent(inout) :: law
+      real(dp) :: values(2)
       logical :: valid
 
-      valid = .true.
-      associate (data => card%data(1))
-         call need_positive(data, 1, 'clearance c0', deck, law%clearance, valid)
-         call need_positive(data, 2, 'pressure p0', deck, law%touching_pressure, valid)
-         call check_extra(data, 2, 'clearance c0, pressure p0', deck)
-      end associate
-      if (size(card%data) > 1) call deck%error(card%data(2)%place(1), 'an exponential law has '// &
-         'one card: c0, p0')
+      values = 1.0_dp
+      call read_row(card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)
+      law%clearance = values(1)
+      law%touching_pressure = values(2)
+      if (size(card%data) > 1) call deck%error(card%data(2)%place(1), &
+         'an exponential law has one card: c0, p0')
    end subroutine read_exponential
-
-   !> Reads a field that is above 0.
-   subroutine need_positive(data, position, name, deck, value, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position
-      character(*), intent(in) :: name
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(inout) :: value
-      logical, intent(inout) :: valid
-
-      call need_field(data, position, name, deck, value, valid)
-      if (.not. valid .or. value > 0.0_dp) return
-      call deck%error(data%place(position), 'the '//name//' must be positive')
-      valid = .false.
-   end subroutine need_positive
 
    !> Rows of pressure, from 0 on, and overlap; both rise.
    subroutine read_table(rows, deck, law)
       type(data_card_type), intent(in) :: rows(:)
       type(deck_type), intent(inout) :: deck
       type(overlap_law_type), intent(inout) :: law
+      real(dp) :: values(2, size(rows))
       integer :: i
       logical :: valid
 
-      allocate (law%pressure(size(rows)), law%overlap(size(rows)), source=0.0_dp)
-      valid = .true.
-      do i = 1, size(rows)
-         call need_field(rows(i), 1, 'pressure', deck, law%pressure(i), valid)
-         call need_field(rows(i), 2, 'overlap', deck, law%overlap(i), valid)
-         call check_extra(rows(i), 2, 'pressure, overlap', deck)
-      end do
+      values = 0.0_dp
+      call read_rows(rows, 'pressure/overlap', deck, values, valid)
+      law%pressure = values(1, :)
+      law%overlap = values(2, :)
       if (.not. valid) return
       if (abs(law%pressure(1)) > 0.0_dp) call deck%error(rows(1)%place(1), 'the first row must '// &
          'have pressure 0, and the overlap from which faces press')

@@ -1,7 +1,7 @@
 !> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied;
 !> *CHANGE FRICTION, *MODEL CHANGE and *CONTACT INTERFERENCE -> what a step changes of contact.
 module deck_builder_contact
-   use card_parameters, only: choose, need_parameter, take_parameter
+   use card_parameters, only: choice, need_parameter, take_parameter, take_within
    use card_values, only: check_extra, need_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
@@ -101,8 +101,8 @@ contains
       logical :: is_number
 
       call deck%need_named(card, 'INTERACTION', 'surface interaction', contact%interaction)
-      call choose(card, 'PAIRING', 'NODES/SURFACES', deck, pairing)
-      if (allocated(pairing)) contact%pairing = merge(pairing_nodes, pairing_surfaces, &
+      pairing = choice(card, 'PAIRING', 'NODES/SURFACES', deck, '')
+      if (pairing /= '') contact%pairing = merge(pairing_nodes, pairing_surfaces, &
          pairing == 'NODES')
       contact%adjusts = card%has('ADJUST')
       if (contact%adjusts) then   ! a distance, or a node set
@@ -198,9 +198,7 @@ contains
                   tie%faces%name = card%text('NAME')
                   tie%has_tolerance = card%has('POSITION TOLERANCE')
                   tie%faces%either_side = tie%has_tolerance
-                  call take_parameter(card, 'POSITION TOLERANCE', deck, tie%tolerance)
-                  if (tie%tolerance < 0.0_dp) call deck%error(card%place_of('POSITION TOLERANCE'), &
-                     'POSITION TOLERANCE is a distance, 0 or more')
+                  call take_within('>=0', card, 'POSITION TOLERANCE', deck, tie%tolerance)
                   call read_faces(card, card%data(i), deck, model%mesh, tie%faces)
                end associate
             end do
@@ -213,13 +211,10 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(tie_definition_type), intent(in) :: ties(:)     ! those of the cards before
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: adjust
       integer :: i
 
-      adjust = 'NO'
-      call choose(card, 'ADJUST', 'YES/NO', deck, adjust)
-      if (adjust == 'YES') call deck%note('*TIE, ADJUST=YES: nodes are not moved, an initial '// &
-         'gap is not closed')
+      if (choice(card, 'ADJUST', 'YES/NO', deck, 'NO') == 'YES') call deck%note('*TIE, '// &
+         'ADJUST=YES: nodes are not moved, an initial gap is not closed')
       if (.not. card%has('NAME')) return
       do i = 1, size(ties)
          if (to_upper(ties(i)%faces%name) /= to_upper(card%text('NAME'))) cycle
@@ -280,7 +275,7 @@ contains
             'same in all steps')
          return
       end if
-      call choose(card, 'TYPE', 'CONTACT PAIR', deck, kind)
+      kind = choice(card, 'TYPE', 'CONTACT PAIR', deck, '')
       change%removes = card%has('REMOVE')
       if ((change%removes .eqv. card%has('ADD')) .and. .not. card%flawed) then
          call deck%error(card%place, '*MODEL CHANGE needs either ADD or REMOVE')
@@ -301,14 +296,12 @@ contains
       type(deck_type), intent(inout) :: deck
       type(contact_changes_type), intent(inout) :: changes
       type(interference_type) :: given
-      character(:), allocatable :: kind, operation
+      character(:), allocatable :: kind
       integer :: j
       logical :: valid
 
-      call choose(card, 'TYPE', 'CONTACT PAIR', deck, kind)
-      operation = 'MOD'
-      call choose(card, 'OP', 'MOD/NEW', deck, operation)
-      if (operation == 'NEW') changes%ends_interferences = .true.
+      kind = choice(card, 'TYPE', 'CONTACT PAIR', deck, '')
+      if (choice(card, 'OP', 'MOD/NEW', deck, 'MOD') == 'NEW') changes%ends_interferences = .true.
       given%shrinks = card%has('SHRINK')
       if (given%shrinks .and. step > 1) call deck%error(card%place_of('SHRINK'), 'SHRINK is '// &
          'allowed in the first step only: it removes the initial overlaps')

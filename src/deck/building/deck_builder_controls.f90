@@ -1,8 +1,8 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choose, need_choice, take_from, take_parameter, take_positive
-   use card_values, only: check_extra, need_field
+   use card_parameters, only: choice, needed_choice, take_from, take_parameter, take_within
+   use card_values, only: need_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use controls, only: continuation_type, crank_nicolson_scheme, explicit_scheme, &
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
@@ -12,7 +12,6 @@ module deck_builder_controls
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use name_index, only: name_index_type
    use steps, only: step_controls_type
    use print_requests, only: print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
@@ -25,8 +24,6 @@ module deck_builder_controls
       build_start, build_print, read_frequency
 
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
-   character(2), parameter :: coefficient_names(8) = &
-      ['a1', 'a2', 'a3', 'b1', 'b2', 'b3', 'c1', 'c2']   !! of eq. (3.4), in the order of the card
 
    integer, parameter :: not_computed = 0   !! meaning of keys that only CalculiX has
 
@@ -59,20 +56,13 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck   !! receives errors
       type(fixed_point_type), intent(inout) :: fixed_point    !! receives the controls
-      type(fixed_point_type) :: before
       character(:), allocatable :: method
 
-      before = fixed_point
-      method = ''
-      call choose(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', deck, method)
+      method = choice(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', deck, '')
       if (method /= '') fixed_point%method = findloc(method_names == method, .true., dim=1)
-      call take_positive(card, 'TOL', deck, fixed_point%tolerance)
+      call take_within('>0', card, 'TOL', deck, fixed_point%tolerance)
       call take_from(1, card, 'MAXITER', deck, fixed_point%max_iterations)
-      call take_parameter(card, 'G', deck, fixed_point%g)
-      if (fixed_point%g <= 0.0_dp .or. fixed_point%g > 1.0_dp) then
-         call deck%error(card%place_of('G'), 'G= must be above 0 and at most 1')
-         fixed_point%g = before%g
-      end if
+      call take_within('>0 <=1', card, 'G', deck, fixed_point%g)
       call take_from(0, card, 'CONSTANT', deck, fixed_point%constant)
    end subroutine build_fixed_point
 
@@ -119,8 +109,8 @@ contains
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
       character(:), allocatable :: kind
 
-      call need_choice(card, 'TYPE', 'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', &
-         deck, kind)
+      kind = needed_choice(card, 'TYPE', &
+         'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', deck)
       if (kind == 'FREE') then
          if (size(card%data) == 0) then
             call deck%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
@@ -144,22 +134,10 @@ contains
       type(deck_type), intent(inout) :: deck
       type(thermal_scheme_type), intent(inout) :: scheme
       real(dp) :: given(8), sums(3)
-      integer :: i
       logical :: valid
 
-      valid = .true.
       given = 0.0_dp
-      do i = 1, 8
-         call need_field(data, i, coefficient_names(i), deck, given(i), valid)
-      end do
-      call check_extra(data, 8, 'a1, a2, a3, b1, b2, b3, c1, c2', deck)
-      if (.not. valid) return
-      do i = 1, 3
-         if (given(i) > 0.0_dp .or. (i > 1 .and. given(i) >= 0.0_dp)) cycle
-         call deck%error(data%place(i), coefficient_names(i)// &
-            trim(merge(' must be positive    ', ' must not be negative', i == 1)))
-         valid = .false.
-      end do
+      call read_row(data, 'a1 >0/a2 >=0/a3 >=0/b1/b2/b3/c1/c2', deck, given, valid)
       if (.not. valid) return
       sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
       if (given(2) + given(3) <= 0.0_dp) then
@@ -180,16 +158,13 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck   !! receives errors
       type(continuation_type), intent(out) :: continuation
-      character(:), allocatable :: direction
 
       continuation%is_on = .true.
       call take_from(2, card, 'POINTS', deck, continuation%most_points)
       call take_parameter(card, 'LOWEST', deck, continuation%range(1))
       call take_parameter(card, 'HIGHEST', deck, continuation%range(2))
-      call take_positive(card, 'ARC', deck, continuation%longest_step)
-      direction = 'UP'
-      call choose(card, 'DIRECTION', 'UP/DOWN', deck, direction)
-      continuation%rises = direction == 'UP'
+      call take_within('>0', card, 'ARC', deck, continuation%longest_step)
+      continuation%rises = choice(card, 'DIRECTION', 'UP/DOWN', deck, 'UP') == 'UP'
       if (continuation%range(1) < continuation%range(2)) return
       call deck%error(card%place_of('HIGHEST'), 'LOWEST='//to_text(continuation%range(1))// &
          ' must be below HIGHEST='//to_text(continuation%range(2))//': the range of load factors')
@@ -203,7 +178,7 @@ contains
       type(start_type), intent(inout) :: start           !! receives the start
       character(:), allocatable :: from
 
-      call need_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', deck, from)
+      from = needed_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', deck)
       if (from == 'GIVEN') then
          call build_given(card, deck, model, start)
       else if (size(card%data) > 0 .and. from /= '') then
@@ -222,29 +197,22 @@ contains
       type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
       type(start_type), intent(inout) :: start
-      real(dp) :: given(size(model%contacts)), value
+      real(dp) :: given(size(model%contacts)), value(2)
       character(:), allocatable :: name
       integer :: i, k
       logical :: sound, valid
 
       given = 0.0_dp
+      value = 0.0_dp
       sound = .true.
       do k = 1, size(card%data)
          associate (data => card%data(k))
-            valid = .true.
-            name = ''
+            call read_row(data, '@contact pair/conductance >0', deck, value, valid)
             call need_field(data, 1, 'contact pair', deck, name, valid)
             i = 0
-            if (valid) call deck%look_up('contact pair', name, data%place(1), i)
+            if (len(name) > 0) call deck%look_up('contact pair', name, data%place(1), i)
             valid = valid .and. i > 0
-            value = 0.0_dp
-            call need_field(data, 2, 'conductance', deck, value, valid)
-            call check_extra(data, 2, 'contact pair, conductance', deck)
-            if (valid .and. value <= 0.0_dp) then
-               call deck%error(data%place(2), 'the conductance must be positive')
-               valid = .false.
-            end if
-            if (valid) given(i) = value
+            if (valid) given(i) = value(2)
             sound = sound .and. valid
          end associate
       end do
@@ -267,28 +235,24 @@ contains
       type(mesh_type), intent(in) :: mesh                 !! has the sets
       type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
       type(print_request_type) :: request
-      character(:), allocatable :: choice
+      character(:), allocatable :: totals
       type(print_key_type), allocatable :: keys(:)
       integer :: i, j
       logical :: is_known     ! whether the set is
 
       if (is_first .and. allocated(requests)) deallocate(requests)
-      choice = 'NO'
       keys = element_keys
       if (card%name == 'NODE PRINT') then
          keys = node_keys
-         if (names_set(card, 'NSET', deck%node_index%sets, deck)) call deck%take_named(card, &
-            'NSET', 'node set', request%set)
-         is_known = request%set > 0 .or. card%lacks('NSET')
+         call take_set(card, 'NSET', 'node set', deck%node_index%sets%find(card%text('NSET')), &
+            deck, request%set, is_known)
          if (is_dropped(card, deck, mesh, request%set)) is_known = .false.
-         call choose(card, 'TOTALS', 'YES/NO/ONLY', deck, choice)
-         request%each_node = choice /= 'ONLY'
-         request%totals = choice /= 'NO'
-         choice = 'NO'
+         totals = choice(card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
+         request%each_node = totals /= 'ONLY'
+         request%totals = totals /= 'NO'
       else
-         if (names_set(card, 'ELSET', deck%element_index%sets, deck)) call deck%take_named(card, &
-            'ELSET', 'element set', request%set)
-         is_known = request%set > 0 .or. card%lacks('ELSET')
+         call take_set(card, 'ELSET', 'element set', deck%element_index%sets%find( &
+            card%text('ELSET')), deck, request%set, is_known)
          if (request%set > 0) then
             if (mesh%element_sets(request%set)%of_lines) then
                call deck%warning(card%place_of('ELSET'), 'element set '//mesh%element_sets( &
@@ -297,8 +261,7 @@ contains
             end if
          end if
       end if
-      call choose(card, 'GLOBAL', 'YES/NO', deck, choice)
-      request%local_axes = choice == 'NO'
+      request%local_axes = choice(card, 'GLOBAL', 'YES/NO', deck, 'NO') == 'NO'
       call read_frequency(card, deck, request%frequency, request%points)
       allocate(request%quantities(0))
       do j = 1, size(card%data)
@@ -313,15 +276,18 @@ contains
       requests = [requests, request]
    end subroutine build_print
 
-   !> Whether a set is known, or must be: not where the cards of sets have errors.
-   pure logical function names_set(card, parameter, sets, deck)
+   !> Takes the set of a table. One that is not known is no error where the cards of sets have some.
+   subroutine take_set(card, parameter, noun, found, deck, set, is_known)
       type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: parameter
-      class(name_index_type), intent(in) :: sets
-      type(deck_type), intent(in) :: deck
+      character(*), intent(in) :: parameter, noun
+      integer, intent(in) :: found                        ! its index, 0 for none
+      type(deck_type), intent(inout) :: deck
+      integer, intent(inout) :: set
+      logical, intent(out) :: is_known
 
-      names_set = deck%sets_sound .or. sets%find(card%text(parameter)) > 0
-   end function names_set
+      if (deck%sets_sound .or. found > 0) call deck%take_named(card, parameter, noun, set)
+      is_known = set > 0 .or. card%lacks(parameter)
+   end subroutine take_set
 
    !> Whether ORDER=1 leaves no node of a set, which is warned of: there is nothing to print.
    logical function is_dropped(card, deck, mesh, set)

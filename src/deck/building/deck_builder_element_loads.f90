@@ -1,7 +1,7 @@
 !> Data cards of loads on elements: *DLOAD, *DFLUX and *FILM with an element or a set, *DSLOAD,
 !> *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
 module deck_builder_element_loads
-   use card_values, only: check_extra, need_field, need_plane_vector, need_vector
+   use card_values, only: need_field, plane_vector, read_row
    use cards, only: data_card_type
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
@@ -32,14 +32,15 @@ contains
       type(model_type), intent(in) :: model                !! mesh and sets
       type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       character(:), allocatable :: label, labels
+      real(dp) :: values(9)
       integer :: surface
-      logical :: valid
+      logical :: known, valid
 
-      valid = .true.
+      known = .true.
       surface = named_surface(data, deck, model%mesh)
       if (surface == 0) call deck%need_elements(data, 1, model%mesh%element_sets, &
-         request%target_type, valid)
-      call need_field(data, 2, 'label of the load', deck, label, valid)
+         request%target_type, known)
+      call need_field(data, 2, 'label of the load', deck, label, known)
       if (len(label) == 0) return
       label = to_upper(label)
       select case (keyword)
@@ -51,24 +52,32 @@ contains
          labels = 'F1/F2/F3/F4'
       end select
       if (surface > 0) then
-         if (label(1:1) == labels(1:1) .and. len(label) <= 2) then
-            call build_on_faces(labels(1:2), model%mesh%surfaces(surface), data, request, &
-               film_amplitude, deck)
-         else
-            call report_label(keyword, label, labels(1:1), data, deck)
-         end if
-         return
-      else if (index('/'//labels//'/', '/'//label//'/') == 0) then
+         labels = labels(1:1)
+         ! As in CalculiX: a number in the label does not count.
+         if (len(label) == 2 .and. index('01234', label(2:)) > 0) label = label(1:1)
+      end if
+      if (index('/'//labels//'/', '/'//label//'/') == 0) then
          call report_label(keyword, label, labels, data, deck)
          return
       end if
       request%component = 1
       if (scan(label(2:), '1234') == 1) then
          request%component = index('1234', label(2:2))
-         call check_face(data, request, model, deck, valid)
+         call check_face(data, request, model, deck, known)
       end if
-      if (label == 'BR' .or. label == 'BZ') call check_axis(data, request, model%mesh, deck, valid)
-      call build_values(label, data, request, film_amplitude, deck, valid)
+      if (label == 'BR' .or. label == 'BZ') call check_axis(data, request, model%mesh, deck, known)
+      call read_values(data, '@element or set', label, deck, values, valid)
+      if (.not. (known .and. valid)) return
+      if (surface > 0) then
+         call add_on_faces(label, values, model%mesh%surfaces(surface), request, film_amplitude, &
+            deck)
+      else if (label == 'GRAV') then
+         call add_gravity(data, values, request, deck)
+      else if (label == 'CENTRIF') then
+         call add_rotation(data, values, request, deck)
+      else
+         call add_load(label, values, request, film_amplitude, deck)
+      end if
    end subroutine build_element_load
 
    !> Index of the surface that a card names in place of an element or a set; else 0.
@@ -85,48 +94,55 @@ contains
       if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
    end function named_surface
 
-   !> A load on the faces of a surface, as in CalculiX: a number in the label does not count.
-   subroutine build_on_faces(label, surface, data, request, film_amplitude, deck)
-      character(*), intent(in) :: label                    !! with any number
+   !> Loads of one kind on all faces of a surface.
+   subroutine add_on_faces(label, values, surface, request, film_amplitude, deck)
+      character(*), intent(in) :: label
+      real(dp), intent(in) :: values(:)
       type(surface_type), intent(in) :: surface            !! the faces
-      type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
-      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
-      integer :: i, errors
-      logical :: valid
+      type(deck_type), intent(inout) :: deck               !! receives the requests
+      integer :: i
 
-      errors = deck%error_count()
       request%set = 0
       do i = 1, size(surface%faces, 2)
          request%item = surface%faces(1, i)
          request%component = surface%faces(2, i)
-         valid = .true.
-         call build_values(label, data, request, film_amplitude, deck, valid)
-         if (deck%error_count() > errors) exit
+         call add_load(label, values, request, film_amplitude, deck)
       end do
-   end subroutine build_on_faces
+   end subroutine add_on_faces
 
    !> The values behind a label.
-   subroutine build_values(label, data, request, film_amplitude, deck, valid)
-      character(*), intent(in) :: label
+   subroutine read_values(data, target, label, deck, values, valid)
       type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request
-      integer, intent(in) :: film_amplitude
+      character(*), intent(in) :: target                   ! layout of the first field
+      character(*), intent(in) :: label
       type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
+      real(dp), intent(out) :: values(9)                   ! (fields)
+      logical, intent(out) :: valid
+      character(:), allocatable :: layout
 
       select case (label)
-      case ('GRAV')
-         call build_gravity(data, request, deck, valid)
+      case ('GRAV', 'TRVEC', 'TRSHR')
+         layout = 'magnitude/direction x/direction y/direction z?'
       case ('CENTRIF')
-         call build_rotation(data, request, deck, valid)
-      case ('F1', 'F2', 'F3', 'F4')
-         call build_film(data, request, film_amplitude, deck, valid)
+         layout = 'speed squared >=0/x of the axis/y of the axis/z of the axis/'// &
+            'direction x/direction y/direction z'
+      case ('BX', 'BY', 'BR', 'BZ')
+         layout = 'force per volume'
+      case ('BF')
+         layout = 'heat per volume'
       case default
-         call build_simple_load(label, data, request, deck, valid)
+         if (label(1:1) == 'P') layout = 'pressure'
+         if (label(1:1) == 'S') layout = 'heat flux'
+         if (label(1:1) == 'F') layout = 'sink temperature/film coefficient >0'
       end select
-   end subroutine build_values
+      values = 0.0_dp
+      valid = .false.
+      ! The coefficient of a *FILM PROPERTY, which is refused.
+      if (label(1:1) == 'F' .and. deck%has_lost('film property', data%text(4))) return
+      call read_row(data, target//'/@'//label//'/'//layout, deck, values, valid)
+   end subroutine read_values
 
    !> Reports a label that a keyword does not know.
    subroutine report_label(keyword, label, labels, data, deck)
@@ -189,74 +205,53 @@ contains
          'elements; those of a plane are BX and BY')
    end subroutine check_axis
 
-   !> A load with one value.
-   subroutine build_simple_load(label, data, request, deck, valid)
+   !> A load that is one number, or a film.
+   subroutine add_load(label, values, request, film_amplitude, deck)
       character(*), intent(in) :: label
-      type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request
-      type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
-      character(:), allocatable :: what
-
-      select case (label)
-      case ('BX', 'BY', 'BR', 'BZ')   ! the radius is x, the axis y
-         request%kind = load_body_force
-         request%component = mod(index('XYRZ', label(2:2)) - 1, 2) + 1
-         what = 'force per volume'
-      case ('BF')
-         request%kind = load_body_heat
-         what = 'heat per volume'
-      case ('P1', 'P2', 'P3', 'P4')
-         request%kind = load_pressure
-         what = 'pressure'
-      case default
-         request%kind = load_face_heat
-         what = 'heat flux'
-      end select
-      call need_field(data, 3, what, deck, request%value, valid)
-      call check_extra(data, 3, 'element or set, '//label//', '//what, deck)
-      if (valid) call deck%loads%add(request)
-   end subroutine build_simple_load
-
-   !> Sink temperature and film coefficient, each with its amplitude.
-   subroutine build_film(data, request, film_amplitude, deck, valid)
-      type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: values(:)                    ! (fields)
       type(request_type), intent(in) :: request
       integer, intent(in) :: film_amplitude
       type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
-      type(request_type) :: sink, film
+      type(request_type) :: load
 
-      sink = request
-      film = request
-      film%amplitude = film_amplitude
-      sink%kind = load_film_sink
-      film%kind = load_film_coefficient
-      call need_field(data, 3, 'sink temperature', deck, sink%value, valid)
-      if (deck%has_lost('film property', data%text(4))) return   ! a refused *FILM PROPERTY
-      call need_field(data, 4, 'film coefficient', deck, film%value, valid)
-      call check_extra(data, 4, 'element or set, face, sink temperature, film coefficient', deck)
-      if (.not. valid) return
-      if (film%value <= 0.0_dp) then
-         call deck%error(data%place(4), 'a film coefficient must be positive')
-         return
-      end if
-      call deck%loads%add(film)
-      call deck%loads%add(sink)
-   end subroutine build_film
+      load = request
+      load%value = values(3)
+      select case (label)
+      case ('BX', 'BY', 'BR', 'BZ')   ! the radius is x, the axis y
+         load%kind = load_body_force
+         load%component = mod(index('XYRZ', label(2:2)) - 1, 2) + 1
+      case ('BF')
+         load%kind = load_body_heat
+      case default
+         if (label(1:1) == 'P') load%kind = load_pressure
+         if (label(1:1) == 'S') load%kind = load_face_heat
+         if (label(1:1) == 'F') load%kind = load_film_sink
+      end select
+      if (load%kind == load_film_sink) call add_film(load)
+      call deck%loads%add(load)
+   contains
+      subroutine add_film(sink)
+         type(request_type), intent(in) :: sink
+         type(request_type) :: film
+
+         film = sink
+         film%kind = load_film_coefficient
+         film%amplitude = film_amplitude
+         film%value = values(4)
+         call deck%loads%add(film)
+      end subroutine add_film
+   end subroutine add_load
 
    !> Magnitude and direction; along x and along y the gravity is a load of its own.
-   subroutine build_gravity(data, request, deck, valid)
+   subroutine add_gravity(data, values, request, deck)
       type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: values(:)                    ! (fields)
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
-      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
-      logical, intent(inout) :: valid                      !! becomes false after an error
+      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
       real(dp) :: vector(2)
       integer :: i
 
-      call need_plane_vector(data, 3, deck, vector, valid)
-      call check_extra(data, 6, 'element or set, GRAV, magnitude, direction x, y, z', deck)
-      if (.not. valid) return
+      call plane_vector(data, 3, values(3:6), deck, vector)
       request%kind = load_gravity
       do i = 1, 2
          if (abs(vector(i)) <= 0.0_dp) cycle
@@ -264,36 +259,31 @@ contains
          request%value = vector(i)
          call deck%loads%add(request)
       end do
-   end subroutine build_gravity
+   end subroutine add_gravity
 
    !> Speed squared, a point and the direction of the axis: the y axis, or one along z, round which
    !> a plane turns. Round a point (x0, y0) the force is that round the origin less (x0, y0) times
    !> the density, which makes four loads of a place.
-   subroutine build_rotation(data, request, deck, valid)
+   subroutine add_rotation(data, values, request, deck)
       type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: values(:)                    ! (fields)
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
       type(deck_type), intent(inout) :: deck   !! receives the requests and errors
-      logical, intent(inout) :: valid                      !! becomes false after an error
-      real(dp) :: point(3), direction(3), values(4)
+      real(dp) :: point(3), direction(3), loads(4)
       integer :: i
 
-      call need_field(data, 3, 'speed squared', deck, request%value, valid)
-      call need_vector(data, 4, 'point of the axis', deck, point, valid)
-      call need_vector(data, 7, 'direction of the axis', deck, direction, valid)
-      call check_extra(data, 9, 'element or set, CENTRIF, speed squared, point x, y, z, '// &
-         'direction x, y, z', deck)
-      if (.not. valid) return
-      if (request%value < 0.0_dp) then
-         call deck%error(data%place(3), 'the square of a speed is not negative')
-      else if (norm2(direction) <= 0.0_dp) then
+      request%value = values(3)
+      point = values(4:6)
+      direction = values(7:)
+      if (norm2(direction) <= 0.0_dp) then
          call deck%error(data%place(7), 'the direction is zero')
       else if (norm2(direction(:2)) <= 0.0_dp) then
          request%kind = load_centrifugal
-         values(1:2) = request%value
-         values(3:4) = -request%value*point(:2)
+         loads(1:2) = request%value
+         loads(3:4) = -request%value*point(:2)
          do i = 1, 4
             request%component = i
-            request%value = values(i)
+            request%value = loads(i)
             call deck%loads%add(request)
          end do
       else if (norm2(direction([1, 3])) > 0.0_dp) then
@@ -305,7 +295,7 @@ contains
          request%component = centrifugal_round
          call deck%loads%add(request)
       end if
-   end subroutine build_rotation
+   end subroutine add_rotation
 
    !> Takes one data card.
    subroutine build_surface_load(keyword, data, request, film_amplitude, model, deck)
@@ -316,28 +306,19 @@ contains
       type(model_type), intent(in) :: model                !! surfaces
       type(deck_type), intent(inout) :: deck   !! receives the requests and errors
       character(:), allocatable :: advice, label, labels
-      real(dp) :: vector(2)
-      integer :: errors, i, surface
-      logical :: valid
+      real(dp) :: values(9), vector(2)
+      integer :: i, surface
+      logical :: known, valid
 
-      valid = .true.
-      errors = deck%error_count()
       advice = 'load its reference node by *CLOAD'
       if (keyword /= 'DSLOAD') advice = 'prescribe the temperature of its reference node'
       call deck%need_surface(data, 1, 'surface', surface)
       call need_faces(model%mesh, data%place(1), advice, deck, surface)
-      valid = surface > 0
-      select case (keyword)
-      case ('DSFLUX')
-         labels = 'S'
-         call check_extra(data, 3, 'surface, S, heat flux', deck)
-      case ('SFILM')
-         labels = 'F'
-         call check_extra(data, 4, 'surface, F, sink temperature, film coefficient', deck)
-      case default
-         labels = 'P/TRVEC/TRSHR'
-      end select
-      call need_field(data, 2, labels, deck, label, valid)
+      labels = 'P/TRVEC/TRSHR'
+      if (keyword == 'DSFLUX') labels = 'S'
+      if (keyword == 'SFILM') labels = 'F'
+      known = .true.
+      call need_field(data, 2, labels, deck, label, known)
       if (len(label) == 0) return
       label = to_upper(label)
       request%set = 0
@@ -345,30 +326,22 @@ contains
          call report_label(keyword, label, labels, data, deck)
          return
       end if
+      call read_values(data, '@surface', label, deck, values, valid)
+      if (surface == 0 .or. .not. valid) return
+      request%kind = load_traction
       select case (label)
-      case ('P')
-         call need_field(data, 3, 'pressure', deck, request%value, valid)
-         call check_extra(data, 3, 'surface, P, pressure', deck)
-         request%kind = load_pressure
-         if (valid) call add_faces(model%mesh%surfaces(surface), request, 1, 0, deck)
       case ('TRVEC')
-         call need_plane_vector(data, 3, deck, vector, valid)
-         call check_extra(data, 6, 'surface, TRVEC, magnitude, direction x, y, z', deck)
-         request%kind = load_traction
-         do i = 1, merge(2, 0, valid)
+         call plane_vector(data, 3, values(3:6), deck, vector)
+         do i = 1, 2
             request%value = vector(i)
             call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, deck)
          end do
       case ('TRSHR')
-         call need_plane_vector(data, 3, deck, vector, valid)
-         call check_extra(data, 6, 'surface, TRSHR, magnitude, direction x, y, z', deck)
-         request%kind = load_traction
-         if (valid) call add_shear(model%mesh, model%mesh%surfaces(surface), vector, data, &
-            request, deck)
+         call plane_vector(data, 3, values(3:6), deck, vector)
+         call add_shear(model%mesh, model%mesh%surfaces(surface), vector, data, request, deck)
       case default
-         if (surface == 0 .or. deck%error_count() > errors) return
-         call build_on_faces(label//'1', model%mesh%surfaces(surface), data, request, &
-            film_amplitude, deck)
+         call add_on_faces(label, values, model%mesh%surfaces(surface), request, film_amplitude, &
+            deck)
       end select
    end subroutine build_surface_load
 

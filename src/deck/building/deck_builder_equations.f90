@@ -1,8 +1,8 @@
 !> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom;
 !> *TRANSFORM -> nodes with axes of their own, and what cards say of them.
 module deck_builder_equations
-   use card_parameters, only: choose, need_parameter
-   use card_values, only: check_extra, need_field, take_field
+   use card_parameters, only: choice, need_parameter
+   use card_values, only: need_field, read_row
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use equations, only: coupling_type, equation_type
@@ -74,18 +74,14 @@ contains
       type(term_type), allocatable, intent(out) :: terms(:)   ! unallocated after an error
       type(term_type), allocatable :: found(:)
       type(place_type) :: place
+      real(dp) :: given(1)
       integer :: i, n
       logical :: valid
 
-      n = 0
-      valid = .true.
+      given = 0.0_dp
       place = card%data(data)%place(1)
-      call need_field(card%data(data), 1, 'number of terms', deck, n, valid)
-      call check_extra(card%data(data), 1, 'number of terms', deck)
-      if (valid .and. n < 1) then
-         call deck%error(place, 'an equation has at least one term')
-         valid = .false.
-      end if
+      call read_row(card%data(data), '#number of terms >0', deck, given, valid)
+      n = nint(given(1))
       data = data + 1
       allocate (found(0))
       do while (valid .and. size(found) < n .and. data <= size(card%data))
@@ -314,15 +310,15 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling
+      real(dp) :: range(2)
       integer :: dof, first, last
       logical :: valid
 
-      valid = .true.
-      first = 0
-      call need_field(data, 1, 'first degree of freedom', deck, first, valid)
+      range = 0.0_dp
+      call read_row(data, '#first degree of freedom/#last degree of freedom?', deck, range, valid)
+      first = nint(range(1))
       last = first
-      call take_field(data, 2, 'last degree of freedom', deck, last, valid)
-      call check_extra(data, 2, 'first and last degree of freedom', deck)
+      if (data%has(2)) last = nint(range(2))
       if (.not. valid) return
       if (last < first) then
          call deck%error(data%place(2), 'the last degree of freedom is below the first')
@@ -365,14 +361,11 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(transform_type), intent(out) :: transform
-      character(:), allocatable :: kind
 
       transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
       transform%card = card%place%image
       call deck%need_named(card, 'NSET', 'node set', transform%set)
-      kind = 'R'
-      call choose(card, 'TYPE', 'R/C', deck, kind)
-      transform%cylindrical = kind == 'C'
+      transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
       if (size(card%data) > 0) call read_points(card%data(1), deck, transform)
    end subroutine build_transform
 
@@ -381,21 +374,13 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       type(transform_type), intent(inout) :: transform
-      character(*), parameter :: names = 'xyz'
-      real(dp) :: x(3, 2)
-      integer :: i, j
+      real(dp) :: given(6), x(3, 2)
       logical :: valid
 
-      valid = .true.
-      x = 0.0_dp
-      do j = 1, 2
-         do i = 1, 3
-            if (i < 3) call need_field(data, 3*(j - 1) + i, names(i:i)//' of point '// &
-               'ab'(j:j), deck, x(i, j), valid)
-            if (i == 3) call take_field(data, 3*j, 'z of point '//'ab'(j:j), deck, x(3, j), valid)
-         end do
-      end do
-      call check_extra(data, 6, 'x, y and z of two points', deck)
+      given = 0.0_dp
+      call read_row(data, 'x of point a/y of point a/z of point a?/x of point b/y of point b/'// &
+         'z of point b?', deck, given, valid)
+      x = reshape(given, shape(x))
       if (.not. valid) return
       transform%point = x(:2, 1)
       if (transform%cylindrical) then

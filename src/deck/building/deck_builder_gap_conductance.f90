@@ -1,8 +1,8 @@
 !> *GAP CONDUCTANCE: a table of conductance over the pressure, or over the clearance, at one mean
 !> temperature of the faces or at several.
 module deck_builder_gap_conductance
-   use card_values, only: check_extra, check_unneeded_temperature, decimal_comma, need_field, &
-      report_decimal_comma, take_field
+   use card_values, only: check_unneeded_temperature, decimal_comma, need_field, &
+      read_row, report_decimal_comma, take_field
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
       line_value
@@ -208,35 +208,31 @@ contains
       type(deck_type), intent(inout) :: deck   !! receives errors
       type(gap_table_type), intent(out) :: table
       integer :: i, n
-      logical :: valid(2), valid_before
+      logical :: valid, valid_before
+      real(dp) :: values(3)
 
       n = size(card%data)
       allocate (table%abscissa(n), table%omega(n), source=0.0_dp)
       valid_before = .false.
+      values = 0.0_dp
       associate (abscissa => table%abscissa, omega => table%omega)
          do i = 1, n
             associate (data => card%data(i))
-               valid = .true.
-               call need_field(data, 1, 'conductance', deck, omega(i), valid(1))
-               call need_field(data, 2, noun, deck, abscissa(i), valid(2))
                if (card%name == 'GAP CONDUCTANCE') then
-                  call check_extra(data, 3, 'conductance, '//noun//', temperature', deck)
+                  call read_row(data, 'conductance >=0/'//noun//' >=0/@temperature', deck, values, &
+                     valid)
                else
-                  call check_extra(data, 2, 'conductance, '//noun, deck)
+                  call read_row(data, 'conductance >=0/'//noun//' >=0', deck, values(:2), valid)
                end if
-               if (valid(1) .and. omega(i) < 0.0_dp) then
-                  call deck%error(data%place(1), 'the conductance must not be negative')
-               end if
+               omega(i) = values(1)
+               abscissa(i) = values(2)
                if (i > 1) valid_before = valid_before .and. &
                   abs(temperature(i) - temperature(max(i - 1, 1))) <= 0.0_dp
-               if (valid(2) .and. abscissa(i) < 0.0_dp) then
-                  call deck%error(data%place(2), 'the '//noun//' must not be negative')
-               else if (valid(2) .and. valid_before) then
-                  if (abscissa(i) <= abscissa(i - 1)) then
-                     call deck%error(data%place(2), noun//'s must ascend')
-                  end if
+               if (valid .and. valid_before) then
+                  if (abscissa(i) <= abscissa(i - 1)) call deck%error(data%place(2), &
+                     noun//'s must ascend')
                end if
-               valid_before = valid(2)
+               valid_before = valid
             end associate
          end do
       end associate

@@ -1,8 +1,8 @@
 !> *GAP HEAT GENERATION -> the heat of friction of a surface interaction; *GAP RADIATION ->
 !> radiation in its gap.
 module deck_builder_gap_heat
-   use card_parameters, only: take_positive
-   use card_values, only: check_extra, need_field, take_field
+   use card_parameters, only: take_within
+   use card_values, only: read_row, read_rows
    use cards, only: cards_type, data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_gas, law_none
    use deck_context, only: deck_type
@@ -24,44 +24,31 @@ contains
       type(model_type), intent(in) :: model                !! with its mesh
       type(deck_type), intent(inout) :: deck   !! receives errors
       type(friction_heat_type), intent(out) :: heat
+      real(dp) :: values(3)
       logical :: valid
 
       heat%efficiency = 1.0_dp
       if (size(card%data) > 0) then
-         associate (data => card%data(1))
-            call take_part(data, 1, 'eta (heat per work of friction)', deck, heat%efficiency)
-            call take_part(data, 2, 'f (share of the slave)', deck, heat%slave_share)
-            valid = .true.
-            call take_field(data, 3, 'sliding speed', deck, heat%speed, valid)
-            call check_extra(data, 3, 'eta, f, sliding speed', deck)
-            if (card%has('ANGULAR VELOCITY') .and. data%has(3)) call deck%error(data%place(3), &
-               'a sliding speed and ANGULAR VELOCITY= exclude each other; give one of them')
-         end associate
+         values = [heat%efficiency, heat%slave_share, heat%speed]
+         call read_row(card%data(1), 'eta (heat per work of friction)? >=0 <=1/f (share of the '// &
+            'slave)? >=0 <=1/sliding speed?', deck, values, valid)
+         if (valid) then
+            heat%efficiency = values(1)
+            heat%slave_share = values(2)
+            heat%speed = values(3)
+         end if
+         if (card%has('ANGULAR VELOCITY') .and. card%data(1)%has(3)) call deck%error( &
+            card%data(1)%place(3), 'a sliding speed and ANGULAR VELOCITY= exclude each other; '// &
+            'give one of them')
       end if
       if (.not. card%has('ANGULAR VELOCITY')) return
       if (any(model%mesh%element_plane == axisymmetric)) then
-         call take_positive(card, 'ANGULAR VELOCITY', deck, heat%angular_velocity)
+         call take_within('>0', card, 'ANGULAR VELOCITY', deck, heat%angular_velocity)
       else
          call deck%error(card%place_of('ANGULAR VELOCITY'), 'ANGULAR VELOCITY= needs '// &
             'axisymmetric elements, which turn about their axis; give a sliding speed')
       end if
    end subroutine build_friction_heat
-
-   !> A part of a whole.
-   subroutine take_part(data, i, what, deck, part)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: i
-      character(*), intent(in) :: what
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(inout) :: part
-      logical :: valid
-
-      valid = .true.
-      call take_field(data, i, what, deck, part, valid)
-      if (part >= 0.0_dp .and. part <= 1.0_dp) return
-      call deck%error(data%place(i), what//' must be between 0 and 1')
-      part = 1.0_dp
-   end subroutine take_part
 
    !> Heat of friction needs friction that allows slip, and time. Checked with all steps read.
    subroutine check_friction_heat(cards, deck, model)
@@ -120,18 +107,10 @@ contains
       type(conductance_law_type), intent(inout) :: law     !! receives radiation in the open gap
       real(dp) :: emissivity(2)
       real(dp), allocatable :: gap(:), view_factor(:)
-      integer :: i
+      logical :: valid
 
-      associate (data => card%data(1))
-         do i = 1, 2
-            emissivity(i) = part_of(data, i, 'emissivity', deck)
-            if (emissivity(i) <= 0.0_dp) then
-               call deck%error(data%place(i), 'the emissivity must not be 0')
-               emissivity(i) = 1.0_dp
-            end if
-         end do
-         call check_extra(data, 2, 'two emissivities', deck)
-      end associate
+      emissivity = 1.0_dp
+      call read_row(card%data(1), 'emissivity >0 <=1/emissivity >0 <=1', deck, emissivity, valid)
       call read_view_factors(card%data(2:), deck, gap, view_factor)
       if (size(card%data) > 1 .and. view_factor(size(view_factor)) > 0.0_dp) call deck%note( &
          '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last view '// &
@@ -157,42 +136,23 @@ contains
       type(data_card_type), intent(in) :: rows(:)
       type(deck_type), intent(inout) :: deck
       real(dp), allocatable, intent(out) :: gap(:), view_factor(:)   ! (rows)
+      real(dp) :: values(2, max(size(rows), 1))
       integer :: i
       logical :: valid
 
-      allocate (gap(max(size(rows), 1)), source=0.0_dp)
-      allocate (view_factor(size(gap)), source=1.0_dp)
-      do i = 1, size(rows)
-         view_factor(i) = part_of(rows(i), 1, 'view factor', deck)
-         valid = .true.
-         call take_field(rows(i), 2, 'clearance', deck, gap(i), valid)
-         call check_extra(rows(i), 2, 'view factor, clearance', deck)
-         if (gap(i) < 0.0_dp) then
-            call deck%error(rows(i)%place(2), 'the clearance must not be negative')
-         else if (i > 1 .and. valid) then
-            if (gap(i) <= gap(i - 1)) call deck%error(rows(i)%place(2), 'clearances must ascend')
-         end if
+      values(1, :) = 1.0_dp
+      values(2, :) = 0.0_dp
+      call read_rows(rows, 'view factor >=0 <=1/clearance? >=0', deck, values, valid)
+      view_factor = values(1, :)
+      gap = values(2, :)
+      do i = 2, size(rows)
+         if (valid .and. gap(i) <= gap(i - 1)) call deck%error(rows(i)%place(2), &
+            'clearances must ascend')
       end do
       if (maxval(view_factor) > 0.0_dp) return
       call deck%error(rows(1)%place(1), 'all view factors are 0: the faces do not radiate; '// &
          'leave *GAP RADIATION out')
       view_factor = 1.0_dp
    end subroutine read_view_factors
-
-   !> A field of 0 to 1; 1 after an error.
-   real(dp) function part_of(data, i, what, deck) result(part)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: i
-      character(*), intent(in) :: what
-      type(deck_type), intent(inout) :: deck
-      logical :: valid
-
-      valid = .true.
-      part = 1.0_dp
-      call need_field(data, i, what, deck, part, valid)
-      if (part >= 0.0_dp .and. part <= 1.0_dp) return
-      call deck%error(data%place(i), 'the '//what//' must be between 0 and 1')
-      part = 1.0_dp
-   end function part_of
 
 end module deck_builder_gap_heat

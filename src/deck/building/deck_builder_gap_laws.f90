@@ -1,7 +1,7 @@
 !> *GAP LAW -> one side of the conductance of a surface interaction.
 module deck_builder_gap_laws
-   use card_parameters, only: need_choice, take_parameter
-   use card_values, only: check_extra, need_field, take_field
+   use card_parameters, only: needed_choice, take_within
+   use card_values, only: read_row
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
    use deck_builder_gap_conductance, only: gap_table_type, note_ends, read_table
@@ -36,7 +36,7 @@ contains
       character(:), allocatable :: kind
       integer :: i
 
-      call need_choice(card, 'TYPE', 'GAS/POWER/CLEARANCE/CMY/ROSS-STOUTE', deck, kind)
+      kind = needed_choice(card, 'TYPE', 'GAS/POWER/CLEARANCE/CMY/ROSS-STOUTE', deck)
       if (kind == '') return
       if (any(kind == ['GAS      ', 'CLEARANCE'])) then
          if (law%open_kind /= law_none) call deck%error(card%place, 'a second open law in one '// &
@@ -76,27 +76,16 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law
-      logical :: valid(3)
+      real(dp) :: values(3)
+      logical :: valid
 
-      valid = .true.
-      call need_field(data, 1, 'C0', deck, law%power_c0, valid(1))
-      call need_field(data, 2, 'C1', deck, law%power_c1, valid(2))
-      call need_field(data, 3, 'n', deck, law%power_n, valid(3))
-      call check_extra(data, 3, 'C0, C1, n of C0 + C1 pressure^n', deck)
-      if (valid(1) .and. law%power_c0 < 0.0_dp) then
-         call deck%error(data%place(1), 'C0 must not be negative')
-      end if
-      if (valid(2) .and. law%power_c1 < 0.0_dp) then
-         call deck%error(data%place(2), 'C1 must not be negative')
-      end if
-      if (valid(3) .and. law%power_n <= 0.0_dp) then
-         call deck%error(data%place(3), 'n must be positive')
-         law%power_n = 1.0_dp
-      else if (valid(3) .and. law%power_n > largest_exponent) then
-         call deck%error(data%place(3), 'n must not exceed '//to_text(largest_exponent)// &
-            '; for rough faces it is about 0.95')
-         law%power_n = 1.0_dp
-      end if
+      values = 1.0_dp
+      call read_row(data, 'C0 >=0/C1 >=0/n >0', deck, values, valid)
+      if (valid .and. values(3) > largest_exponent) call deck%error(data%place(3), &
+         'n must not exceed '//to_text(largest_exponent)//'; for rough faces it is about 0.95')
+      law%power_c0 = values(1)
+      law%power_c1 = values(2)
+      law%power_n = min(values(3), largest_exponent)
    end subroutine build_power_law
 
    !> Reads one data card. With ks = 2 k1 k2/(k1 + k2), CMY is 1.25 ks (m/sigma) (p/H)^0.95 and
@@ -106,32 +95,19 @@ contains
       character(*), intent(in) :: kind                     !! CMY or ROSS-STOUTE
       type(deck_type), intent(inout) :: deck   !! receives errors
       type(conductance_law_type), intent(inout) :: law     !! receives the closed side
-      character(12), parameter :: cmy(5) = [character(12) :: 'conductivity', 'conductivity', &
-         'slope', 'roughness', 'hardness']
-      character(12), parameter :: ross_stoute(5) = [character(12) :: 'conductivity', &
-         'conductivity', 'roughness', 'hardness', 'a0']
-      character(12) :: names(5)
       real(dp) :: value(5), magnitude
-      logical :: valid(5)
-      integer :: i
+      logical :: valid
 
-      names = cmy
-      if (kind == 'ROSS-STOUTE') names = ross_stoute
-      valid = .true.
       value = 1.0_dp
-      do i = 1, 5
-         call need_field(data, i, trim(names(i)), deck, value(i), valid(i))
-         if (.not. valid(i) .or. value(i) > 0.0_dp) cycle
-         call deck%error(data%place(i), trim(names(i))//' must be positive')
-         valid(i) = .false.
-      end do
       if (kind == 'CMY') then
-         call check_extra(data, 5, 'two conductivities, slope, roughness, hardness', deck)
+         call read_row(data, 'conductivity >0/conductivity >0/slope >0/roughness >0/hardness >0', &
+            deck, value, valid)
       else
-         call check_extra(data, 5, 'two conductivities, roughness, hardness, a0', deck)
+         call read_row(data, 'conductivity >0/conductivity >0/roughness >0/hardness >0/a0 >0', &
+            deck, value, valid)
       end if
       law%closed_adds = .true.
-      if (.not. all(valid)) return
+      if (.not. valid) return
       if (kind == 'CMY') then
          law%power_n = cmy_exponent
          magnitude = log(cmy_factor*harmonic_mean(value(1), value(2))) + log(value(3)) - &
@@ -159,97 +135,60 @@ contains
    end function harmonic_mean
 
    !> omega = A/(B + JUMP + ROUGHNESS + gamma) + radiation; A and B of one row, or of a row for each
-   !> mean temperature of the faces.
+   !> mean temperature of the faces. A is positive, or 0 where faces radiate.
    subroutine build_gas_law(card, name, constants, deck, law)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(physical_constants_type), intent(in) :: constants
       type(deck_type), intent(inout) :: deck   !! receives notes and errors
       type(conductance_law_type), intent(inout) :: law     !! receives the open side
-      real(dp), allocatable :: a(:), b(:), temperature(:)
-      integer :: i, n
+      character(:), allocatable :: layout
+      real(dp) :: added(2), values(3, size(card%data))
+      integer :: i
+      logical :: valid
 
-      law%added_length = length_of(card, 'JUMP', deck) + length_of(card, 'ROUGHNESS', deck)
+      added = 0.0_dp
+      call take_within('>=0', card, 'JUMP', deck, added(1))
+      call take_within('>=0', card, 'ROUGHNESS', deck, added(2))
+      law%added_length = sum(added)
       call take_emissivity(card, constants, deck, law)
-      n = size(card%data)
-      allocate (a(n), b(n), temperature(n))
-      do i = 1, n
-         call read_row(i, a(i), b(i), temperature(i))
+      layout = 'A >0/B >=0'
+      if (card%has('EMISSIVITY')) layout = 'A >=0/B >=0'
+      if (law%added_length > 0.0_dp) layout = layout(:index(layout, 'B'))//'? >=0'
+      layout = layout//'/temperature'
+      if (size(card%data) == 1) layout = layout//'?'
+      values = 0.0_dp
+      do i = 1, size(card%data)
+         call read_row(card%data(i), layout, deck, values(:, i), valid)
+         if (valid) call check_values(card%data(i), values(:2, i), law%added_length, deck)
+         if (values(2, i) + law%added_length <= 0.0_dp) values(2, i) = 1.0_dp
+         if (valid .and. any(values(3, :i - 1) >= values(3, i))) call deck%error( &
+            card%data(i)%place(3), 'temperatures must ascend')
       end do
-      law%gas_a = a(1)
-      law%gas_b = b(1)
-      if (n == 1) return
+      law%gas_a = values(1, 1)
+      law%gas_b = values(2, 1)
+      if (size(card%data) == 1) return
       if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%gas_temperature = temperature
-      law%by_temperature%gas_a = a
-      law%by_temperature%gas_b = b
-      call note_ends('*GAP LAW, TYPE=GAS', name, 'mean temperatures', temperature, deck)
-   contains
-      !> One row, with values that are sound where those of the deck are not.
-      subroutine read_row(i, a, b, at)
-         integer, intent(in) :: i
-         real(dp), intent(out) :: a, b, at
-         logical :: valid(3)
-
-         a = 0.0_dp
-         b = 0.0_dp
-         at = 0.0_dp
-         valid = .true.
-         associate (data => card%data(i))
-            call need_field(data, 1, 'A', deck, a, valid(1))
-            if (law%added_length > 0.0_dp) then
-               call take_field(data, 2, 'B', deck, b, valid(2))
-            else
-               call need_field(data, 2, 'B', deck, b, valid(2))
-            end if
-            if (n > 1) call need_field(data, 3, 'temperature', deck, at, valid(3))
-            if (n == 1) call take_field(data, 3, 'temperature', deck, at, valid(3))
-            call check_extra(data, 3, 'A, B of A/(B + gap), temperature', deck)
-            call check_values(data, a, b, law%added_length, card%has('EMISSIVITY'), valid(:2), deck)
-            if (.not. all(valid(2:)) .or. b + law%added_length <= 0.0_dp) b = 1.0_dp
-            if (i == 1 .or. .not. valid(3)) return
-            if (at <= temperature(i - 1)) call deck%error(data%place(3), 'temperatures must ascend')
-         end associate
-      end subroutine read_row
+      law%by_temperature%gas_temperature = values(3, :)
+      law%by_temperature%gas_a = values(1, :)
+      law%by_temperature%gas_b = values(2, :)
+      call note_ends('*GAP LAW, TYPE=GAS', name, 'mean temperatures', values(3, :), deck)
    end subroutine build_gas_law
 
-   !> A is positive, or 0 where faces radiate; B with the lengths that add to it is positive.
-   subroutine check_values(data, a, b, added, radiates, valid, deck)
+   !> B with the lengths that add to it is positive, and the conductance at gap 0 a number.
+   subroutine check_values(data, given, added, deck)
       type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: a, b
+      real(dp), intent(in) :: given(2)    ! A and B
       real(dp), intent(in) :: added       ! to B [length]
-      logical, intent(in) :: radiates
-      logical, intent(in) :: valid(2)     ! whether A and B were read
       type(deck_type), intent(inout) :: deck
 
-      if (valid(1) .and. a < 0.0_dp .and. radiates) then
-         call deck%error(data%place(1), 'A must not be negative')
-      else if (valid(1) .and. a <= 0.0_dp .and. .not. radiates) then
-         call deck%error(data%place(1), 'A must be positive')
-      end if
-      if (valid(2) .and. b < 0.0_dp) then
-         call deck%error(data%place(2), 'B must not be negative')
-      else if (valid(2) .and. b + added <= 0.0_dp) then
+      if (given(2) + added <= 0.0_dp) then
          call deck%error(data%place(2), 'B must be positive')
-      else if (all(valid) .and. a > largest_magnitude*(b + added)) then
+      else if (given(1) > largest_magnitude*(given(2) + added)) then
          call deck%error(data%place(1), 'the conductance A/B at gap 0 exceeds '// &
             to_text(largest_magnitude))
       end if
    end subroutine check_values
-
-   !> A length that adds to B.
-   function length_of(card, name, deck) result(length)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: length
-
-      length = 0.0_dp
-      call take_parameter(card, name, deck, length)
-      if (length >= 0.0_dp) return
-      call deck%error(card%place_of(name), name//'= must not be negative')
-      length = 0.0_dp
-   end function length_of
 
    !> sigma eps of the radiation between the faces.
    subroutine take_emissivity(card, constants, deck, law)
@@ -261,13 +200,11 @@ contains
 
       if (.not. card%has('EMISSIVITY')) return
       emissivity = 1.0_dp
-      call take_parameter(card, 'EMISSIVITY', deck, emissivity)
-      if (emissivity <= 0.0_dp .or. emissivity > 1.0_dp) call deck%error( &
-         card%place_of('EMISSIVITY'), 'EMISSIVITY= must be above 0 and at most 1')
+      call take_within('>0 <=1', card, 'EMISSIVITY', deck, emissivity)
       if (.not. constants%has_radiation) call deck%error(card%place_of('EMISSIVITY'), &
          'EMISSIVITY= needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
       if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%radiance = max(emissivity, 0.0_dp)*constants%stefan_boltzmann
+      law%by_temperature%radiance = emissivity*constants%stefan_boltzmann
       law%by_temperature%absolute_zero = constants%absolute_zero
    end subroutine take_emissivity
 

@@ -3,8 +3,8 @@
 !> points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choose, chosen, take_parameter, take_positive
-   use card_values, only: check_extra, decimal_comma, need_field, report_decimal_comma, take_field
+   use card_parameters, only: choice, chosen, take_parameter, take_within
+   use card_values, only: decimal_comma, need_field, read_row, report_decimal_comma
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_type, take_name
    use deck_structure, only: cards_of
@@ -55,7 +55,6 @@ contains
       type(cards_type), intent(in) :: cards
       type(deck_type), intent(inout) :: deck   !! receives them and errors
       integer, allocatable :: places(:)
-      character(:), allocatable :: kind
       integer :: i, j, n
       logical :: valid
       real(dp) :: values(3)
@@ -66,17 +65,14 @@ contains
          call take_name(cards, places(n), 'time points', deck%time_point_names, &
             deck%deck_report_type, deck%time_points(n)%name)
          associate (card => cards%keywords(places(n)), points => deck%time_points(n))
-            kind = 'STEP TIME'
-            call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, kind)
-            points%total_time = kind == 'TOTAL TIME'
+            points%total_time = &
+               choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
             allocate (points%times(0))
             do j = 1, size(card%data)
                valid = .true.
                if (card%has('GENERATE')) then
-                  call need_field(card%data(j), 1, 'start', deck, values(1), valid)
-                  call need_field(card%data(j), 2, 'end', deck, values(2), valid)
-                  call need_field(card%data(j), 3, 'interval', deck, values(3), valid)
-                  call check_extra(card%data(j), 3, 'start, end, interval', deck)
+                  values = 0.0_dp
+                  call read_row(card%data(j), 'start/end/interval', deck, values, valid)
                   if (valid .and. .not. (values(3) > 0.0_dp .and. &
                      values(2) >= values(1))) call deck%error(card%data(j)%place(3), 'time '// &
                      'points go up from the start to the end by a positive interval')
@@ -102,11 +98,9 @@ contains
       type(amplitude_type), intent(inout) :: amplitude
       character(:), allocatable :: kind
 
-      kind = 'STEP TIME'
-      call choose(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, kind)
-      amplitude%total_time = kind == 'TOTAL TIME'
-      kind = 'RELATIVE'
-      call choose(card, 'VALUE', 'RELATIVE', deck, kind)
+      amplitude%total_time = &
+         choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
+      kind = choice(card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
       kind = to_upper(card%text('DEFINITION'))
       select case (kind)
       case ('PERIODIC', 'MODULATED', 'DECAY', 'SOLUTION DEPENDENT', 'ACTUATOR', 'SPECTRUM', &
@@ -115,8 +109,7 @@ contains
             'times and values')
          kind = ''
       case default
-         kind = 'TABULAR'
-         call choose(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, kind)
+         kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
       end select
       amplitude%smooth = kind == 'SMOOTH STEP'
       if (len(kind) == 0) then
@@ -144,7 +137,7 @@ contains
       begin = 0.0_dp
       interval = 1.0_dp
       call take_parameter(card, 'BEGIN', deck, begin)
-      call take_positive(card, 'FIXED INTERVAL', deck, interval)
+      call take_within('>0', card, 'FIXED INTERVAL', deck, interval)
       if (card%lacks('FIXED INTERVAL')) call deck%error(card%place, 'DEFINITION=EQUALLY SPACED '// &
          'needs FIXED INTERVAL=')
       n = sum([(size(card%data(j)%fields), j=1, size(card%data))])
@@ -221,7 +214,9 @@ contains
       integer, allocatable :: places(:)
       integer :: k, j
       logical :: valid
+      real(dp) :: given(2)
 
+      given = 0.0_dp
       places = cards_of(cards, 'INITIAL CONDITIONS')
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
@@ -229,18 +224,16 @@ contains
                call deck%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE or '// &
                   'TYPE=STRESS')
             end if
-            kind = ''
-            call choose(card, 'TYPE', initial_kinds, deck, kind)
+            kind = choice(card, 'TYPE', initial_kinds, deck, '')
             if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) call deck%note( &
                '*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing depends on it')
             if (kind /= 'TEMPERATURE') cycle
             do j = 1, size(card%data)
-               valid = .true.
                request%place = card%data(j)%place(1)
+               call read_row(card%data(j), '@node or set/temperature', deck, given, valid)
                call deck%need_nodes(card%data(j), 1, model%mesh%node_sets, request%target_type, &
                   valid)
-               call need_field(card%data(j), 2, 'temperature', deck, request%value, valid)
-               call check_extra(card%data(j), 2, 'node or set, temperature', deck)
+               request%value = given(2)
                if (valid) call deck%temperatures%add(request)
             end do
          end associate
@@ -288,13 +281,14 @@ contains
       type(mesh_type), intent(inout) :: mesh
       type(target_type) :: target
       integer, allocatable :: members(:)
-      real(dp) :: stress(4)
+      real(dp) :: given(5), stress(4)
       integer :: i, number
       logical :: is_flat, valid
 
-      valid = .true.
+      given = 0.0_dp
+      call read_row(data, '@element or set/s11/s22?/s33?/s12?', deck, given, valid)
       call deck%need_elements(data, 1, mesh%element_sets, target, valid)
-      call read_stress(data, 2, 4, deck, stress, valid)
+      stress = given(2:)
       if (.not. valid) return
       members = target%members(mesh%element_sets)
       if (target%item > 0) then
@@ -327,17 +321,17 @@ contains
       integer, intent(inout) :: points(:)
       type(mesh_type), intent(inout) :: mesh
       type(target_type) :: target
-      real(dp) :: stress(6)
+      real(dp) :: given(8), stress(6)
       integer :: next, point
       logical :: valid
 
-      valid = .true.
-      point = 0
+      given = 0.0_dp
       next = 1
+      call read_row(data, '@element/#integration point/s11/s22?/s33?/s12?/s13?/s23?', deck, given, &
+         valid)
       call deck%need_elements(data, 1, mesh%element_sets, target, valid)
-      call need_field(data, 2, 'integration point', deck, point, valid)
-      call read_stress(data, 3, 6, deck, stress, valid)
-      call check_extra(data, 8, layout, deck)
+      point = nint(given(2))
+      stress = given(3:)
       associate (item => target%item)
          if (item > 0) then
             if (points(item) < 0) return
@@ -366,22 +360,5 @@ contains
          end if
       end associate
    end subroutine take_point
-
-   !> Components in a row; those that are left out are 0.
-   subroutine read_stress(data, first, components, deck, stress, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: first                    !! field of the first
-      integer, intent(in) :: components               !! how many there can be
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(out) :: stress(:)
-      logical, intent(inout) :: valid
-      integer :: i
-
-      stress = 0.0_dp
-      call need_field(data, first, 'stress', deck, stress(1), valid)
-      do i = 2, components
-         call take_field(data, first + i - 1, 'stress', deck, stress(i), valid)
-      end do
-   end subroutine read_stress
 
 end module deck_builder_histories

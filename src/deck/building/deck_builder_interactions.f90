@@ -1,7 +1,7 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
    use card_parameters, only: take_parameter
-   use card_values, only: check_extra, check_unneeded, need_field, take_field
+   use card_values, only: check_unneeded, read_row
    use cards, only: cards_type, data_card_type, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
@@ -12,6 +12,7 @@ module deck_builder_interactions
    use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
    use deck_builder_gap_laws, only: build_gap_law
    use deck_context, only: deck_type, take_name
+   use deck_report, only: frictionless
    use deck_source, only: place_type
    use deck_structure, only: card_count
    use friction_laws, only: friction_law_type, rough_coefficient
@@ -23,9 +24,6 @@ module deck_builder_interactions
    implicit none
    private
    public :: build_interactions, build_friction
-
-   !> Group of warnings that explain bodies which friction should hold.
-   character(*), parameter, public :: frictionless = 'friction'
 
    real(dp), parameter :: continuous = 1.0e-6_dp   !! a smaller jump is none, relative
    real(dp), parameter :: largest_usual = 5.0_dp   !! coefficient, of rubber and of rough joints
@@ -76,16 +74,12 @@ contains
    subroutine ignore_thickness(card, deck)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      real(dp) :: thickness
+      real(dp) :: thickness(1)
       logical :: valid
 
       if (size(card%data) == 0) return
-      valid = .true.
       thickness = 1.0_dp
-      call take_field(card%data(1), 1, 'thickness', deck, thickness, valid)
-      call check_extra(card%data(1), 1, 'thickness', deck)
-      if (thickness <= 0.0_dp) call deck%error(card%data(1)%place(1), 'the thickness must be '// &
-         'positive')
+      call read_row(card%data(1), 'thickness? >0', deck, thickness, valid)
       call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of *SOLID SECTION '// &
          'is taken')
    end subroutine ignore_thickness
@@ -197,16 +191,13 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       real(dp), intent(inout) :: coefficient
-      real(dp) :: slope
+      real(dp) :: values(2)
       logical :: valid
 
-      valid = .true.
-      call need_field(data, 1, 'coefficient of friction', deck, coefficient, valid)
-      call take_field(data, 2, 'stick slope', deck, slope, valid)
-      call check_extra(data, 2, 'coefficient of friction, stick slope', deck)
-      if (coefficient < 0.0_dp) then
-         call deck%error(data%place(1), 'the coefficient of friction must not be negative')
-      else if (coefficient > rough_coefficient) then
+      values = 0.0_dp
+      call read_row(data, 'coefficient of friction >=0/stick slope?', deck, values, valid)
+      coefficient = values(1)
+      if (coefficient > rough_coefficient) then
          call deck%error(data%place(1), 'the coefficient of friction must not exceed '// &
             to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
       else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then

@@ -1,7 +1,7 @@
 !> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
-   use card_parameters, only: choose
-   use card_values, only: check_extra, need_field, take_field
+   use card_parameters, only: choice
+   use card_values, only: check_extra, need_field, read_row, take_field
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_element_loads, only: build_element_load, build_surface_load
    use deck_context, only: deck_type
@@ -25,9 +25,12 @@ module deck_builder_loads
    character(*), parameter :: out_of_plane = &
       '*BOUNDARY: 0 on degrees of freedom 3 to 6 is ignored'
 
-   !> Supports that are known by a name.
+   !> Supports that are known by a name, and the degrees of freedom that each holds at 0, rotations
+   !> about x, y and z as 4 to 6 among them.
    character(8), parameter :: support_names(8) = [character(8) :: 'ENCASTRE', 'PINNED', &
       'XSYMM', 'YSYMM', 'ZSYMM', 'XASYMM', 'YASYMM', 'ZASYMM']
+   character(6), parameter :: support_degrees(8) = [character(6) :: '123456', '123', &
+      '156', '246', '345', '234', '135', '126']
 
 contains
 
@@ -45,8 +48,7 @@ contains
       errors = deck%error_count()
       request%step = step
       film_amplitude = 0
-      kind = 'DISPLACEMENT'
-      call choose(card, 'TYPE', 'DISPLACEMENT', deck, kind)
+      kind = choice(card, 'TYPE', 'DISPLACEMENT', deck, 'DISPLACEMENT')
       call read_operation(card, step, model, deck)
       call deck%take_named(card, 'AMPLITUDE', 'amplitude', request%amplitude)
       request%keeps = card%has('FIXED')
@@ -93,8 +95,7 @@ contains
       character(:), allocatable :: operation
       logical :: first
 
-      operation = 'MOD'
-      call choose(card, 'OP', 'MOD/NEW', deck, operation)
+      operation = choice(card, 'OP', 'MOD/NEW', deck, 'MOD')
       first = deck%load_step(card%known) < step
       deck%load_step(card%known) = step
       if (operation /= 'NEW' .or. step == 0) return
@@ -167,25 +168,28 @@ contains
       type(request_type), intent(inout) :: request
       type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
+      real(dp) :: given(3)
       integer :: dof
       logical :: valid
 
-      valid = .true.
-      dof = 1
-      call deck%need_nodes(data, 1, model%mesh%node_sets, request%target_type, valid)
-      if (keyword == 'TEMPERATURE') then
+      given = 0.0_dp
+      select case (keyword)
+      case ('TEMPERATURE')
          request%kind = load_temperature
-         call need_field(data, 2, 'temperature', deck, request%value, valid)
-         call check_extra(data, 2, 'node or set, temperature', deck)
-      else
+         call read_row(data, '@node or set/temperature', deck, given(:2), valid)
+         request%value = given(2)
+      case ('CLOAD')
          request%kind = load_force
-         if (keyword == 'CFLUX') request%kind = load_nodal_heat
-         call need_field(data, 2, 'degree of freedom', deck, dof, valid)
-         call need_field(data, 3, merge('force', 'power', keyword == 'CLOAD'), deck, &
-            request%value, valid)
-         call check_extra(data, 3, 'node or set, degree of freedom, '// &
-            merge('force', 'power', keyword == 'CLOAD'), deck)
-      end if
+         call read_row(data, '@node or set/#degree of freedom/force', deck, given, valid)
+         request%value = given(3)
+      case default
+         request%kind = load_nodal_heat
+         call read_row(data, '@node or set/#degree of freedom/power', deck, given, valid)
+         request%value = given(3)
+      end select
+      call deck%need_nodes(data, 1, model%mesh%node_sets, request%target_type, valid)
+      dof = 1
+      if (keyword /= 'TEMPERATURE') dof = nint(given(2))
       if (.not. valid) return
       request%component = dof
       if (keyword == 'CLOAD') request%component = place_in_plane(request, model, dof)
@@ -232,8 +236,7 @@ contains
       type(request_type), intent(inout) :: request         !! step, amplitude, place
       type(model_type), intent(in) :: model                !! mesh and its sets
       type(deck_type), intent(inout) :: deck   !! receives the requests and errors
-      integer :: first, last, dof
-      integer, allocatable :: held(:)
+      integer :: first, last, dof, support
       logical :: valid
 
       request%card = 1
@@ -249,10 +252,10 @@ contains
             return
          end if
       end if
-      held = held_degrees(to_upper(data%text(2)))
-      if (size(held) > 0) then
-         call check_extra(data, 2, 'node or set, '//to_upper(data%text(2)), deck)
-         if (valid) call hold(held, request, model, deck)
+      support = findloc(support_names == to_upper(data%text(2)), .true., dim=1)
+      if (support > 0) then
+         call check_extra(data, 2, 'node or set, '//trim(support_names(support)), deck)
+         if (valid) call hold(trim(support_degrees(support)), request, model, deck)
          return
       end if
       call check_name(data, deck, valid)
@@ -260,13 +263,12 @@ contains
       call read_degrees(data, deck, first, last, request%value, valid)
       if (.not. valid) return
       do dof = first, last
-         if (names_rotation(request, model)) then
-            if (dof == dof_turn) then
-               call add_rotations(request, model, deck)
-               call warn_of_turn(data, request%value, deck)
-            else
-               call deck%note(out_of_plane)
-            end if
+         if (is_rotation(dof, request, model)) then
+            call add_rotations(request, model, deck)
+            call warn_of_turn(data, request%value, deck)
+            cycle
+         else if (names_rotation(request, model)) then
+            call deck%note(out_of_plane)
             cycle
          end if
          request%component = place_in_plane(request, model, dof)
@@ -274,11 +276,6 @@ contains
          case (1, 2, dof_temperature)
             call deck%boundaries%add(request)
          case (3:6)
-            if (dof == dof_rotation .and. turns(request, model)) then
-               call add_rotations(request, model, deck)
-               call warn_of_turn(data, request%value, deck)
-               cycle
-            end if
             if (abs(request%value) > 0.0_dp) then
                call deck%error(data%place(4), 'degree of freedom '//to_text(dof)//' can only '// &
                   'be 0 in the plane')
@@ -348,49 +345,22 @@ contains
       end do
    end subroutine check_name
 
-   !> Degrees of freedom that a support known by a name holds at 0, rotations about x, y and z as 4
-   !> to 6 among them; empty for another word.
-   pure function held_degrees(name) result(degrees)
-      character(*), intent(in) :: name      ! in upper case
-      integer, allocatable :: degrees(:)
-
-      select case (name)
-      case ('ENCASTRE')
-         degrees = [1, 2, 3, 4, 5, 6]
-      case ('PINNED')
-         degrees = [1, 2, 3]
-      case ('XSYMM')
-         degrees = [1, 5, 6]
-      case ('YSYMM')
-         degrees = [2, 4, 6]
-      case ('ZSYMM')
-         degrees = [3, 4, 5]
-      case ('XASYMM')
-         degrees = [2, 3, 4]
-      case ('YASYMM')
-         degrees = [1, 3, 5]
-      case ('ZASYMM')
-         degrees = [1, 2, 6]
-      case default
-         allocate (degrees(0))
-      end select
-   end function held_degrees
-
    !> Requests those of some degrees of freedom at 0 that the plane has.
    subroutine hold(degrees, request, model, deck)
-      integer, intent(in) :: degrees(:)
+      character(*), intent(in) :: degrees                  ! a digit for each
       type(request_type), intent(inout) :: request
       type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
-      integer :: i
+      integer :: dof, i
 
-      do i = 1, size(degrees)
-         if (degrees(i) == dof_rotation .and. turns(request, model)) then
+      do i = 1, len(degrees)
+         dof = index('123456', degrees(i:i))
+         request%component = place_in_plane(request, model, dof)
+         if (dof == dof_rotation .and. turns(request, model)) then
             call add_rotations(request, model, deck)
-         else if (place_in_plane(request, model, degrees(i)) > 2) then
+         else if (request%component > 2) then
             call deck%note(out_of_plane)
          else
-            request%component = place_in_plane(request, model, degrees(i))
             call deck%boundaries%add(request)
          end if
       end do
@@ -414,6 +384,16 @@ contains
       turns = any(is_target(model%couplings%reference, request, model) .and. .not. &
          model%couplings%is_section())
    end function turns
+
+   !> Whether a degree of freedom of a request is the rotation of a coupling.
+   pure logical function is_rotation(dof, request, model)
+      integer, intent(in) :: dof
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+
+      is_rotation = dof == dof_rotation .and. turns(request, model)
+      if (names_rotation(request, model)) is_rotation = dof == dof_turn
+   end function is_rotation
 
    !> Whether a request is for the ROT NODE= of a rigid body.
    pure logical function names_rotation(request, model)

@@ -1,9 +1,9 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *ORIENTATION and
 !> *SOLID SECTION, which give elements their material, its axes and their thickness.
 module deck_builder_materials
-   use card_parameters, only: choose, take_parameter
+   use card_parameters, only: choice, take_parameter
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
-      take_field
+      read_row, take_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_type, take_name
    use deck_source, only: place_type
@@ -89,11 +89,9 @@ contains
          call build_elasticity(card, deck, property, valid)
       case ('EXPANSION')
          material%has_expansion = .true.
-         if (is_isotropic(card, deck)) then
-            property%names = [character(24) :: 'coefficient of expansion']
-         else
-            property%names = [character(24) :: 'alpha11', 'alpha22', 'alpha33']
-         end if
+         property%names = [character(24) :: 'alpha11', 'alpha22', 'alpha33']
+         if (is_isotropic(card, deck)) property%names = &
+            [character(24) :: 'coefficient of expansion']
          call read_rows(card, deck, property, valid)
          call take_parameter(card, 'ZERO', deck, material%no_strain)
          if (valid .and. card%has('ZERO')) then
@@ -102,20 +100,33 @@ contains
          end if
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
-         call build_conductivity(card, deck, property, valid)
+         if (is_isotropic(card, deck)) then
+            call build_positive('conductivity', card, deck, property, valid)
+         else
+            call build_conductivity(card, deck, property, valid)
+         end if
       case ('SPECIFIC HEAT')
          material%has_specific_heat = .true.
-         property%names = [character(24) :: 'specific heat']
-         call read_rows(card, deck, property, valid)
-         if (valid) call refuse_not_positive(card, property, [1], deck, valid)
+         call build_positive('specific heat', card, deck, property, valid)
       case default
          material%has_density = .true.
-         property%names = [character(24) :: 'density']
-         call read_rows(card, deck, property, valid)
-         if (valid) call refuse_not_positive(card, property, [1], deck, valid)
+         call build_positive('density', card, deck, property, valid)
       end select
       if (valid) call set_property(material, property)
    end subroutine build_property
+
+   !> A property that is one positive number.
+   subroutine build_positive(name, card, deck, property, valid)
+      character(*), intent(in) :: name
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(property_type), intent(inout) :: property
+      logical, intent(out) :: valid                       ! whether it has no errors
+
+      property%names = [character(24) :: name]
+      call read_rows(card, deck, property, valid)
+      if (valid) call refuse_not_positive(card, property, [1], deck, valid)
+   end subroutine build_positive
 
    !> TYPE= of expansion and conductivity. CalculiX reads the first letters only, so longer words
    !> are in decks for it.
@@ -124,8 +135,7 @@ contains
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: symmetry
 
-      symmetry = 'ISO'
-      call choose(card, 'TYPE', 'ISO/ORTHO/ISOTROPIC/ORTHOTROPIC', deck, symmetry)
+      symmetry = choice(card, 'TYPE', 'ISO/ORTHO/ISOTROPIC/ORTHOTROPIC', deck, 'ISO')
       is_isotropic = symmetry(:3) == 'ISO'
    end function is_isotropic
 
@@ -136,13 +146,11 @@ contains
       logical, intent(out) :: valid                       ! whether it has no errors
       integer, parameter :: moduli(6) = [1, 2, 3, 7, 8, 9]   ! of the engineering constants
       character(:), allocatable :: kind
-      integer :: errors, row
+      integer :: row
 
-      kind = 'ISO'
-      errors = deck%error_count()
-      call choose(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING '// &
-         'CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/ANISOTROPIC', deck, kind)
-      valid = deck%error_count() == errors
+      kind = choice(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING '// &
+         'CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/ANISOTROPIC', deck, '')
+      valid = len(kind) > 0 .or. .not. card%has('TYPE')
       if (.not. valid) return
       select case (kind)
       case ('ENGINEERING CONSTANTS')
@@ -213,12 +221,6 @@ contains
       logical, intent(out) :: valid                       ! whether it has no errors
       integer :: fields, n, row
 
-      if (is_isotropic(card, deck)) then
-         property%names = [character(24) :: 'conductivity']
-         call read_rows(card, deck, property, valid)
-         if (valid) call refuse_not_positive(card, property, [1], deck, valid)
-         return
-      end if
       fields = size(card%data(1)%fields)
       n = min(max(fields, 2), 3)
       property%names = [character(24) :: 'K11', 'K22', 'K33']
@@ -380,16 +382,15 @@ contains
       type(orientation_type), intent(inout) :: orientation
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: system
-      real(dp) :: a(3), b(3), turn
+      real(dp) :: a(3), b(3), given(6), turn
       logical :: valid
 
-      system = 'RECTANGULAR'
-      call choose(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, system)
-      valid = .true.
+      system = choice(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, 'RECTANGULAR')
       associate (data => card%data(1))
-         call read_point(data, 1, 'a', deck, a, valid)
-         call read_point(data, 4, 'b', deck, b, valid)
-         call check_extra(data, 6, 'a(1), a(2), a(3), b(1), b(2), b(3)', deck)
+         given = 0.0_dp
+         call read_row(data, 'x of a/y of a/z of a/x of b/y of b/z of b', deck, given, valid)
+         a = given(:3)
+         b = given(4:)
          if (.not. valid) return
          orientation%cylindrical = system == 'CYLINDRICAL'
          turn = a(1)*b(2) - a(2)*b(1)
@@ -414,43 +415,22 @@ contains
       end if
    end subroutine build_axes
 
-   subroutine read_point(data, first, name, deck, point, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: first
-      character(*), intent(in) :: name
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(out) :: point(3)
-      logical, intent(inout) :: valid
-      integer :: i
-
-      point = 0.0_dp
-      do i = 1, 3
-         call need_field(data, first + i - 1, 'component of '//name, deck, point(i), valid)
-         if (.not. data%has(first + i - 1)) exit
-      end do
-   end subroutine read_point
-
    !> The second card: a turn round axis 3, from axis 1 towards axis 2.
    subroutine turn_axes(data, orientation, deck)
       type(data_card_type), intent(in) :: data
       type(orientation_type), intent(inout) :: orientation
       type(deck_type), intent(inout) :: deck
-      real(dp) :: angle
-      integer :: axis
+      real(dp) :: angle, given(2)
       logical :: valid
 
-      valid = .true.
-      axis = 3
-      angle = 0.0_dp
-      call need_field(data, 1, 'axis', deck, axis, valid)
-      call take_field(data, 2, 'angle in degrees', deck, angle, valid)
-      call check_extra(data, 2, 'axis, angle', deck)
+      given = 0.0_dp
+      call read_row(data, '#axis/angle in degrees?', deck, given, valid)
       if (.not. valid) return
-      if (axis /= 3) then
+      if (nint(given(1)) /= 3) then
          call deck%error(data%place(1), 'a turn about axis 1 or 2 leaves the plane: only axis 3')
          return
       end if
-      angle = angle*degree
+      angle = given(2)*degree
       associate (first => orientation%direction, &
          second => orientation%hand*[-orientation%direction(2), orientation%direction(1)])
          orientation%direction = cos(angle)*first + sin(angle)*second
@@ -463,6 +443,7 @@ contains
       type(deck_type), intent(inout) :: deck   !! receives notes, whether all is sound and errors
       type(model_type), intent(inout) :: model             !! receives the sections
       integer, allocatable :: places(:)
+      real(dp) :: thickness(1)
       integer :: n, set
       logical :: valid
 
@@ -477,14 +458,13 @@ contains
             call deck%take_named(card, 'ORIENTATION', 'orientation', section%orientation)
             if (size(card%data) > 0) then
                associate (data => card%data(1))
-                  call take_field(data, 1, 'thickness', deck, section%thickness, valid)
+                  thickness = section%thickness
+                  call read_row(data, 'thickness? >0/@points', deck, thickness, valid)
+                  section%thickness = thickness(1)
                   if (size(data%fields) > 1) then
-                     call check_extra(data, 2, 'thickness, points', deck)
                      call check_unneeded(data, 2, 'a number of points', deck)
                      call deck%note('*SOLID SECTION: what is behind the thickness is ignored')
                   end if
-                  if (section%thickness <= 0.0_dp) call deck%error(data%place(1), 'the '// &
-                     'thickness must be positive')
                end associate
             end if
             call give_section(card, n, deck, model%mesh, set)

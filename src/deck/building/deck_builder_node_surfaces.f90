@@ -1,7 +1,7 @@
 !> *SURFACE, TYPE=NODE: the faces whose nodes the surface names.
 module deck_builder_node_surfaces
    use card_parameters, only: chosen, surface_kinds
-   use card_values, only: check_extra, take_field
+   use card_values, only: read_row
    use cards, only: cards_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
@@ -50,19 +50,16 @@ contains
       type(target_type) :: target
       integer :: j
       logical :: valid
-      real(dp) :: area
+      real(dp) :: area(2)
 
+      area = 0.0_dp
       allocate (named(size(mesh%node_number)), source=.false.)
       do j = 1, size(card%data)
          associate (data => card%data(j))
-            valid = .true.
+            call read_row(data, '@node or set/area?', deck, area, valid)
+            if (data%has(2)) call deck%note('*SURFACE, TYPE=NODE: areas are ignored: those of '// &
+               'the faces are taken')
             call deck%need_nodes(data, 1, mesh%node_sets, target, valid)
-            if (data%has(2)) then
-               call take_field(data, 2, 'area', deck, area, valid)
-               call deck%note('*SURFACE, TYPE=NODE: areas are ignored: those of the faces are '// &
-                  'taken')
-            end if
-            call check_extra(data, 2, 'node or set, area', deck)
             if (.not. valid) cycle
             named(target%members(mesh%node_sets)) = .true.
          end associate

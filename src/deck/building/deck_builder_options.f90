@@ -1,13 +1,12 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choose, need_choice, take_parameter, take_positive
+   use card_parameters, only: choice, needed_choice, take_parameter, take_within
    use cards, only: cards_type, keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
-   use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
    use refined_regions, only: refined_region_type
@@ -46,13 +45,13 @@ contains
                call build_option_card(card, deck, model)
             case ('PHYSICAL CONSTANTS')
                call take_parameter(card, 'ABSOLUTE ZERO', deck, model%constants%absolute_zero)
-               if (card%has('STEFAN BOLTZMANN')) call take_positive(card, 'STEFAN BOLTZMANN', &
-                  deck, model%constants%stefan_boltzmann)
+               if (card%has('STEFAN BOLTZMANN')) call take_within('>0', card, &
+                  'STEFAN BOLTZMANN', deck, model%constants%stefan_boltzmann)
                model%constants%has_absolute_zero = card%has('ABSOLUTE ZERO')
                model%constants%has_radiation = model%constants%has_absolute_zero .and. &
                   card%has('STEFAN BOLTZMANN')
             case ('SOLVER')
-               call need_choice(card, 'TYPE', 'SKYLINE/MUMPS', deck, solver)
+               solver = needed_choice(card, 'TYPE', 'SKYLINE/MUMPS', deck)
                if (solver == 'SKYLINE') model%solver = solver_skyline
                if (solver == 'MUMPS') model%solver = solver_mumps
             case ('REFINE')
@@ -70,17 +69,15 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model
-      character(:), allocatable :: errors, plane
+      character(:), allocatable :: plane
 
-      plane = ''
-      errors = 'YES'
-      call choose(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', deck, plane)
+      plane = choice(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', deck, '')
       if (plane == 'STRAIN') deck%plane = plane_strain
       if (plane == 'STRESS') deck%plane = plane_stress
       if (plane == 'AXISYMMETRIC') deck%plane = axisymmetric
       if (card%has('ORDER')) call build_order(card, deck, model)
-      call choose(card, 'ERRORS', 'YES/NO', deck, errors)
-      if (card%has('ERRORS')) model%estimates_errors = errors == 'YES'
+      if (card%has('ERRORS')) model%estimates_errors = choice(card, 'ERRORS', 'YES/NO', deck, &
+         'YES') == 'YES'
       if (card%has('UNITS')) call build_units(card, model, deck)
       if (.not. card%has('LOAD')) return
       deck%load_set = to_upper(card%text('LOAD'))
@@ -268,7 +265,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
       type(refined_region_type), intent(out) :: region
-      integer :: errors, surface
+      integer :: surface
 
       region%card = card%place%image
       call take_levels(card, deck, region%levels)
@@ -283,11 +280,7 @@ contains
       else
          call deck%need_element_set(card, mesh%element_sets, region%set)
       end if
-      if (.not. card%has('DISTANCE')) return
-      errors = deck%error_count()
-      call take_parameter(card, 'DISTANCE', deck, region%distance)
-      if (region%distance <= 0.0_dp .and. deck%error_count() == errors) call deck%error( &
-         card%place_of('DISTANCE'), 'DISTANCE= must be above 0')
+      if (card%has('DISTANCE')) call take_within('>0', card, 'DISTANCE', deck, region%distance)
    end subroutine build_region
 
 end module deck_builder_options

@@ -1,8 +1,8 @@
 !> *RIGID BODY -> what follows a reference node; where decks may name rigid surfaces.
 module deck_builder_rigid
-   use card_parameters, only: choose, is_on
+   use card_parameters, only: choice, is_on
    use cards, only: keyword_card_type
-   use deck_builder_rigid_lines, only: lines_of
+   use deck_builder_drawings, only: lines_of
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use equations, only: coupling_type
@@ -50,7 +50,7 @@ contains
             return
          end if
       end if
-      call choose(card, 'POSITION', 'INPUT', deck, position)
+      position = choice(card, 'POSITION', 'INPUT', deck, '')
       isothermal = is_on(card, 'ISOTHERMAL', deck)
       ! Lines conduct no heat: they have one temperature.
       coupling%is_warm = isothermal .or. (size(lines) > 0 .and. size(coupling%node_sets) == 0)

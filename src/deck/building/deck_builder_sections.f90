@@ -1,6 +1,6 @@
 !> *PRE-TENSION SECTION -> a body cut in two, and the section that joins its faces again.
 module deck_builder_sections
-   use card_values, only: check_extra, need_field, take_field
+   use card_values, only: read_row
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_builder_equations, only: find_reference
    use deck_builder_rigid, only: need_faces
@@ -103,17 +103,13 @@ contains
       type(deck_type), intent(inout) :: deck
       real(dp), intent(inout) :: normal(2)
       logical, intent(inout) :: valid
-      character(*), parameter :: names = 'xyz'
       real(dp) :: given(3)
-      integer :: i
+      logical :: sound
 
       given = 0.0_dp
-      do i = 1, 2
-         call need_field(data, i, names(i:i)//' of the normal', deck, given(i), valid)
-      end do
-      call take_field(data, 3, 'z of the normal', deck, given(3), valid)
-      call check_extra(data, 3, 'x, y and z of the normal', deck)
-      if (.not. valid) return
+      call read_row(data, 'x of the normal/y of the normal/z of the normal?', deck, given, sound)
+      valid = valid .and. sound
+      if (.not. sound) return
       normal = unit_vector(given(:2))
       if (norm2(normal) > 0.0_dp .and. abs(given(3)) <= 0.0_dp) return
       call deck%error(data%place(1), 'the normal of a section is a direction in the plane, '// &

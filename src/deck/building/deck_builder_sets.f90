@@ -1,15 +1,16 @@
 !> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets; *SURFACE -> sets of faces.
 module deck_builder_sets
-   use card_parameters, only: choose, need_parameter, surface_kinds
-   use card_values, only: check_extra, need_field, take_field
+   use card_parameters, only: choice, need_parameter, surface_kinds
+   use card_values, only: check_extra, need_field, read_row
    use cards, only: cards_type, data_card_type, keyword_card_type
-   use deck_builder_drawings, only: build_drawing
-   use deck_builder_lines, only: find_line_faces, is_line_card
+   use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side
+   use deck_builder_lines, only: is_line_card
    use deck_builder_rigid, only: need_faces
-   use deck_builder_rigid_lines, only: build_line_surface, is_rigid_side
    use deck_context, only: deck_type, item_index_type, place_list_type, read_target, take_name
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
+   use element_sides, only: element_sides_type, find_sides
+   use kinds, only: dp
    use load_requests, only: target_type
    use mesh, only: mesh_type, set_type, surface_type
    use number_lists, only: number_list_type
@@ -190,15 +191,15 @@ contains
       type(draft_type), intent(inout) :: draft
       integer, intent(in) :: set
       character(:), allocatable :: range
+      real(dp) :: given(3)
       integer :: first, last, step, number, count, found, first_missing, k
       logical :: valid
 
-      valid = .true.
-      step = 1
-      call need_field(data, 1, 'first number', deck, first, valid)
-      call need_field(data, 2, 'last number', deck, last, valid)
-      call take_field(data, 3, 'increment', deck, step, valid)
-      call check_extra(data, 3, 'first number, last number, increment', deck)
+      given = [0.0_dp, 0.0_dp, 1.0_dp]
+      call read_row(data, '#first number/#last number/#increment?', deck, given, valid)
+      first = nint(given(1))
+      last = nint(given(2))
+      step = nint(given(3))
       if (.not. valid .or. draft%numbers%is_empty()) return
       if (step < 1 .or. last < first) then
          call deck%error(data%place(1), 'the numbers must ascend from first to last')
@@ -259,10 +260,9 @@ contains
       integer :: face, i, j, errors
       logical :: valid
 
-      kind = 'ELEMENT'
       surface%card = card%place%image
       errors = deck%error_count()
-      call choose(card, 'TYPE', surface_kinds, deck, kind)
+      kind = choice(card, 'TYPE', surface_kinds, deck, 'ELEMENT')
       allocate(surface%faces(2, 0))
       ! The data of another type have other fields; node sets are made of surfaces, too.
       if (deck%error_count() > errors .or. kind == 'NODE') return
@@ -325,16 +325,26 @@ contains
       type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh
       type(number_list_type), intent(inout) :: found
-      integer, allocatable :: members(:), faces(:, :), uses(:)
+      type(element_sides_type) :: sides
+      integer, allocatable :: members(:), uses(:)
       character(:), allocatable :: fault
-      integer :: i, bad
+      integer :: i, bad, side
 
       call check_extra(data, 1, 'element set of lines', deck)
+      if (.not. all(deck%element_valid)) return
       members = deck%line_sets(deck%element_index%sets%find(data%text(1)))%members
-      allocate(faces(2, size(members)), uses(size(members)))
-      call find_line_faces(mesh, deck%element_valid, deck%line_nodes(:, members), faces, uses)
-      call found%add(pack(4*faces(1, :) + faces(2, :) - 1, uses == 1))
-      if (all(uses == 1) .or. .not. all(deck%element_valid)) return
+      allocate (uses(size(members)), source=0)
+      sides = find_sides(mesh)
+      do i = 1, size(members)
+         side = side_of_line(deck%line_nodes(:, members(i)), sides)
+         if (side == 0) cycle
+         associate (element => sides%elements(1, side))
+            uses(i) = count(sides%elements(:, side) > 0)
+            if (uses(i) == 1) call found%add([4*element + &
+               findloc(sides%of_element(:, element), side, dim=1) - 1])
+         end associate
+      end do
+      if (all(uses == 1)) return
       bad = findloc(uses == 1, .false., dim=1)
       fault = 'belongs to no side of an element'
       if (uses(bad) > 1) fault = 'lies inside a body, between two elements'
@@ -352,6 +362,18 @@ contains
             to_text(mesh%node_number(nodes(i)))//' '//fault)
       end associate
    end subroutine add_line_faces
+
+   !> The side that has the nodes of a line, whose midside node is its second or its third; 0 where
+   !> there is none.
+   pure integer function side_of_line(nodes, sides) result(side)
+      integer, intent(in) :: nodes(3)
+      type(element_sides_type), intent(in) :: sides
+
+      side = 0
+      if (any(nodes(:2) == 0)) return
+      side = sides%index_of(nodes([1, 3, 2]))
+      if (side == 0 .and. nodes(3) > 0) side = sides%index_of(nodes)
+   end function side_of_line
 
    !> Every element of a data card has the face.
    subroutine check_face(data, mesh, elements, face, deck, valid)

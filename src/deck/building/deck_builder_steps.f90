@@ -1,7 +1,7 @@
 !> *STEP to *END STEP -> steps with their increments; loads become requests.
 module deck_builder_steps
-   use card_parameters, only: choose, is_on, take_from, take_parameter
-   use card_values, only: check_extra, decimal_comma, report_decimal_comma, take_field
+   use card_parameters, only: choice, is_on, take_from, take_parameter
+   use card_values, only: decimal_comma, read_row, report_decimal_comma
    use cards, only: cards_type, data_card_type, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
    use deck_builder_contact, only: build_contact_change
@@ -184,7 +184,6 @@ contains
       type(step_type), intent(in) :: before
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
-      character(:), allocatable :: history
 
       call take_parameter(card, 'INC', deck, step%max_increments)
       if (step%max_increments < 1) then
@@ -193,9 +192,7 @@ contains
       if (.not. card%has('INC')) then
          call deck%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
       end if
-      history = 'RAMP'
-      call choose(card, 'AMPLITUDE', 'RAMP/STEP', deck, history)
-      step%ramped = history == 'RAMP'
+      step%ramped = choice(card, 'AMPLITUDE', 'RAMP/STEP', deck, 'RAMP') == 'RAMP'
       step%field_frequency = before%field_frequency
       step%field_points = before%field_points
       step%contact_print_frequency = before%contact_print_frequency
@@ -255,8 +252,7 @@ contains
       if (card%name == 'STATIC') step%analysis = analysis_static
       if (card%name == 'HEAT TRANSFER') step%analysis = analysis_heat
       step%is_transient = solves_heat(step%analysis) .and. card%lacks('STEADY STATE')
-      creep = 'NONE'
-      call choose(card, 'CREEP', 'NONE', deck, creep)
+      creep = choice(card, 'CREEP', 'NONE', deck, 'NONE')
       step%direct = is_on(card, 'DIRECT', deck)
       if (size(card%data) > 0) then
          call build_increments(card%data(1), deck, step)
@@ -372,16 +368,20 @@ contains
       type(data_card_type), intent(in) :: data             !! data card of the analysis
       type(deck_type), intent(inout) :: deck   !! receives notes and errors and warnings
       type(step_type), intent(inout) :: step               !! receives the times
+      real(dp) :: given(5)
       integer :: comma, most
       logical :: valid
 
-      valid = .true.
-      call take_field(data, 1, 'first increment', deck, step%first_increment, valid)
-      call take_field(data, 2, 'period', deck, step%period, valid)
+      most = merge(5, 4, step%analysis == analysis_heat)
+      given = [step%first_increment, step%period, 0.0_dp, 0.0_dp, 0.0_dp]
+      call read_row(data, 'first increment?/period?/smallest increment?/largest increment?'// &
+         trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
+      step%first_increment = given(1)
+      step%period = given(2)
       step%smallest_increment = min(smallest_part*step%period, step%first_increment)
       step%largest_increment = step%first_increment
-      call take_field(data, 3, 'smallest increment', deck, step%smallest_increment, valid)
-      call take_field(data, 4, 'largest increment', deck, step%largest_increment, valid)
+      if (data%has(3)) step%smallest_increment = given(3)
+      if (data%has(4)) step%largest_increment = given(4)
       if (.not. data%has(1)) call deck%note('first increment not given: 1')
       if (.not. data%has(2)) call deck%note('period not given: 1')
       if (step%direct .and. (data%has(3) .or. data%has(4))) call deck%note('smallest and '// &
@@ -389,13 +389,11 @@ contains
       if (.not. (step%direct .or. data%has(3))) call deck%note('smallest increment not given: '// &
          to_text(step%smallest_increment))
       comma = decimal_comma(data)
-      most = merge(5, 4, step%analysis == analysis_heat)
-      if (comma > 0 .and. (size(data%fields) > most .or. .not. times_fit(data, step))) then
+      if (comma > 0 .and. .not. times_fit(data, step)) then
          call report_decimal_comma(data, comma, deck)
          valid = .false.
-      else
-         call check_extra(data, most, 'first increment, period, smallest, largest increment', deck)
-         if (valid) call check_times(data, step, deck, valid)
+      else if (valid) then
+         call check_times(data, step, deck, valid)
       end if
       if (.not. valid) then
          step%first_increment = 1.0_dp

@@ -1,12 +1,13 @@
 !> *VERIFY -> checks of the results, *ACCURACY -> targets of the errors.
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
-   use card_parameters, only: need_choice, take_from
-   use card_values, only: check_extra, need_field
+   use card_parameters, only: needed_choice, take_from
+   use card_values, only: need_field, read_row
    use cards, only: cards_type, data_card_type, keyword_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_type
+   use deck_report, only: heatless
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count
    use kinds, only: dp
@@ -21,9 +22,6 @@ module deck_builder_verify
    implicit none
    private
    public :: build_verifications, check_heat_quantities, build_accuracy
-
-   !> Group of warnings that explain why a deck has no quantities of heat.
-   character(*), parameter, public :: heatless = 'heatless'
 
 contains
 
@@ -41,7 +39,7 @@ contains
       places = cards_of(cards, 'VERIFY')
       do k = 1, size(places)
          associate (card => cards%keywords(places(k)))
-            call need_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', deck, kind)
+            kind = needed_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', deck)
             do j = 1, size(card%data)
                n = n + 1
                model%verifications(n)%kind = kind
@@ -59,7 +57,7 @@ contains
       type(model_type), intent(in) :: model                !! steps and checks
       type(deck_type), intent(inout) :: deck   !! receives errors
       integer :: i, quantity
-      logical :: convicted
+      logical :: is_told
 
       if (size(model%steps) == 0 .or. any(model%steps%analysis /= analysis_static)) return
       do i = 1, size(model%verifications)
@@ -67,8 +65,8 @@ contains
             quantity = find_quantity(verifiable, check%quantity)
             if (quantity == 0) cycle
             if (all(verifiable(quantity)%needs /= [needs_heat, needs_coupling])) cycle
-            call deck%convict(heatless, convicted)
-            if (convicted) return
+            call deck%confirm_cause(heatless, is_told)
+            if (is_told) return
             call deck%error(place_type(check%line, check%columns(1)), 'no step of this deck '// &
                'solves heat: there is no '//check%quantity//'; take *COUPLED '// &
                'TEMPERATURE-DISPLACEMENT or *HEAT TRANSFER', 'quantities of heat')
@@ -84,10 +82,10 @@ contains
       type(model_type), intent(in) :: model
       type(verify_type), intent(inout) :: check
       type(place_type) :: places(2)
+      real(dp) :: values(6)
       integer :: quantity
       logical :: valid
 
-      valid = .true.
       check%line = data%end%image
       check%address = deck%source%address_of(data%end)
       check%quantity = ''
@@ -100,12 +98,11 @@ contains
          call check_where(data, deck%verifiable(quantity)%kind, deck, model, check)
       end if
       if (deck%analyses_sound) call read_when(data, model, deck, check)
-      call need_field(data, 4, 'value', deck, check%value, valid)
-      call need_field(data, 5, 'tolerance', deck, check%tolerance, valid)
-      call check_extra(data, 6, 'quantity, where, when, value, tolerance, REL or ABS', deck)
-      if (check%tolerance < 0.0_dp) then
-         call deck%error(data%place(5), 'the tolerance must not be negative')
-      end if
+      values = 0.0_dp
+      call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', deck, values, &
+         valid)
+      check%value = values(4)
+      check%tolerance = values(5)
       select case (to_upper(data%text(6)))
       case ('ABS')
          check%relative = .false.
@@ -329,6 +326,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model
       type(accuracy_target_type) :: target
+      real(dp) :: values(4)
       integer :: errors, i
       logical :: valid
 
@@ -336,10 +334,9 @@ contains
       call read_quantity(data, estimated, 'no error of '//data%text(1)//' is estimated', deck, i)
       target%quantity = ''
       if (i > 0) target%quantity = trim(estimated(i)%name)
-      valid = .true.
-      call need_field(data, 2, 'target', deck, target%bound, valid)
-      if (valid .and. target%bound <= 0.0_dp) call deck%error(data%place(2), 'the target must '// &
-         'be above 0')
+      values = 0.0_dp
+      call read_row(data, '@quantity/target >0/@REL or ABS/@contact pair', deck, values, valid)
+      target%bound = values(2)
       select case (to_upper(data%text(3)))
       case ('ABS')
          target%is_relative = .false.
@@ -361,7 +358,6 @@ contains
                'earlier card has a target of '//target%quantity//' already')
          end associate
       end do
-      call check_extra(data, 4, 'quantity, target, REL or ABS, contact pair', deck)
       if (deck%error_count() == errors) model%accuracy%targets = [model%accuracy%targets, target]
    end subroutine build_target
 

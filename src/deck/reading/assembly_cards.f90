@@ -5,7 +5,7 @@
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
    use card_parameters, only: chosen, surface_kinds
-   use card_values, only: check_extra, take_field
+   use card_values, only: read_row
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
       keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
@@ -288,28 +288,25 @@ contains
       type(keyword_card_type), intent(in) :: card           !! *INSTANCE
       type(deck_report_type), intent(inout) :: report       !! receives errors
       type(instance_type), intent(inout) :: instance        !! receives its motion
-      character(*), parameter :: layouts(2) = [character(60) :: 'translation along x, y and z', &
-         'two points of the axis, x, y and z of each, angle in degrees']
       real(dp) :: x(7, 2)
-      integer :: i, j, n
-      logical :: valid
+      integer :: n
+      logical :: sound, valid
 
       x = 0.0_dp
       valid = .true.
+      sound = .true.
       n = size(card%data)
       if (n > 2) then
          call report%error(card%data(3)%place(1), '*INSTANCE has a translation and a rotation, '// &
             'two data cards')
          return
       end if
-      do j = 1, n
-         associate (data => card%data(j))
-            do i = 1, merge(3, 7, j == 1)
-               call take_field(data, i, trim(layouts(j)), report, x(i, j), valid)
-            end do
-            call check_extra(data, merge(3, 7, j == 1), trim(layouts(j)), report)
-         end associate
-      end do
+      if (n > 0) call read_row(card%data(1), 'translation along x?/translation along '// &
+         'y?/translation along z?', report, x(:3, 1), valid)
+      if (n > 1) call read_row(card%data(2), 'x of point 1 of the axis?/y of point 1?/'// &
+         'z of point 1?/x of point 2 of the axis?/y of point 2?/z of point 2?/angle in degrees?', &
+         report, x(:, 2), sound)
+      valid = valid .and. sound
       instance%moves = n > 0
       if (.not. valid .or. n == 0) return
       instance%shift = x(:2, 1)

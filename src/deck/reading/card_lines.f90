@@ -113,7 +113,7 @@ contains
       call find_look_alike(line, position, words)
       if (position == 0) return
       if (index(to_upper(line(:position)), 'SOURCE=') > 0) return
-      call report%suspect(place_type(image, position), 'this character is '//words)
+      call report%possible_cause(place_type(image, position), 'this character is '//words)
    end subroutine suspect_look_alike
 
    !> Number of fields that are not empty.

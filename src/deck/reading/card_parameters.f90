@@ -4,14 +4,14 @@ module card_parameters
    use cards, only: keyword_card_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use spelling, only: known_choices
-   use text, only: integer_fault, read_integer, read_real, real_fault, split_words, string_type, &
-      to_text, to_upper, without_blanks
+   use spelling, only: full_word, known_choices
+   use text, only: integer_fault, read_integer, read_real, real_fault, split_words, to_text, &
+      to_upper, without_blanks
    implicit none
    private
    public :: surface_kinds
-   public :: need_parameter, take_parameter, choose, chosen, need_choice, is_on, take_positive, &
-      take_from
+   public :: need_parameter, take_parameter, choice, chosen, needed_choice, is_on, take_within, &
+      take_from, limit_fault
 
    !> TYPE= of *SURFACE.
    character(*), parameter :: surface_kinds = 'ELEMENT/NODE/SEGMENTS'
@@ -73,22 +73,52 @@ contains
       end if
    end subroutine take_real_parameter
 
-   !> Value of a parameter that must be positive; else, and after an error, it stays as it is.
-   subroutine take_positive(card, name, report, value)
+   !> Value of a parameter within a limit; else, and after an error, it stays as it is.
+   subroutine take_within(limit, card, name, report, value)
+      character(*), intent(in) :: limit                        !! as limit_fault has it
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
       class(deck_report_type), intent(inout) :: report         !! receives the error
-      real(dp), intent(inout) :: value                         !! > 0
+      real(dp), intent(inout) :: value
       real(dp) :: given
+      character(:), allocatable :: fault
+      integer :: errors
 
       given = value
+      errors = report%error_count()
       call take_parameter(card, name, report, given)
-      if (given > 0.0_dp) then
+      if (report%error_count() > errors) return
+      fault = limit_fault(given, limit)
+      if (len(fault) == 0) then
          value = given
-      else
-         call report%error(card%place_of(name), name//'= must be positive')
+      else if (card%has(name)) then
+         call report%error(card%place_of(name), name//'= '//fault)
       end if
-   end subroutine take_positive
+   end subroutine take_within
+
+   !> What is wrong with a number outside of a limit; empty within it.
+   pure function limit_fault(value, limit) result(fault)
+      real(dp), intent(in) :: value
+      character(*), intent(in) :: limit            !! >0, >=0, >0 <=1, >=0 <=1 or empty
+      character(:), allocatable :: fault           !! such as 'must be positive'
+      logical :: above, below
+
+      fault = ''
+      above = value >= 0.0_dp
+      if (index(limit, '>0') > 0) above = value > 0.0_dp
+      below = value <= 1.0_dp .or. index(limit, '<=1') == 0
+      if ((above .and. below) .or. len(limit) == 0) return
+      select case (limit)
+      case ('>0')
+         fault = 'must be positive'
+      case ('>=0')
+         fault = 'must not be negative'
+      case ('>0 <=1')
+         fault = 'must be above 0 and at most 1'
+      case default
+         fault = 'must be between 0 and 1'
+      end select
+   end function limit_fault
 
    !> Value of a parameter that must not be below the least one; else, and after an error, it stays
    !> as it is.
@@ -118,74 +148,51 @@ contains
       character(*), intent(in) :: name                         !! parameter
       character(*), intent(in) :: choices                      !! words, separated by slashes
       character(:), allocatable :: word                        !! as in choices
-      type(string_type), allocatable :: words(:)
-      character(:), allocatable :: short
-      integer :: i
 
-      word = ''
-      short = to_upper(without_blanks(card%text(name)))
-      if (len(short) == 0) return
-      words = split_words(choices)
-      do i = 1, size(words)
-         word = words(i)%value
-         if (without_blanks(word) == short) return
-      end do
-      word = ''
-      do i = 1, size(words)
-         if (index(without_blanks(words(i)%value), short) /= 1) cycle
-         ! ISO is ISOTROPIC, which begins with it.
-         if (len(word) > 0 .and. index(words(i)%value, word//'') /= 1) then
-            word = ''
-            return
-         end if
-         if (len(word) == 0) word = words(i)%value
-      end do
+      word = full_word(to_upper(card%text(name)), split_words(choices))
    end function chosen
 
-   !> Takes one of several words.
-   subroutine choose(card, name, choices, report, choice)
+   !> The one of several words that the value of a parameter is; the default where the card does not
+   !> have it, and after an error.
+   function choice(card, name, choices, report, default) result(word)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
       character(*), intent(in) :: choices                      !! words, separated by slashes
       class(deck_report_type), intent(inout) :: report         !! receives the error
-      character(:), allocatable, intent(inout) :: choice   !! the word as in choices; else as it was
-      character(:), allocatable :: wanted, word
+      character(*), intent(in) :: default
+      character(:), allocatable :: word                        !! as in choices
+      character(:), allocatable :: wanted
 
+      word = default
       if (.not. card%has(name)) return
       word = chosen(card, name, choices)
-      if (len(word) > 0) then
-         choice = word
-         return
-      end if
+      if (len(word) > 0) return
+      word = default
       wanted = to_upper(without_blanks(card%text(name)))
       call report%error(card%place_of(name), 'unknown '//name//'='//wanted//' of *'//card%name// &
          known_choices(wanted, split_words(choices)))
-   end subroutine choose
+   end function choice
 
-   !> Takes one of several words of a parameter that the card must have; empty after an error.
-   subroutine need_choice(card, name, choices, report, choice)
+   !> The one of several words that a parameter is which the card must have; empty after an error.
+   function needed_choice(card, name, choices, report) result(word)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
       character(*), intent(in) :: choices                      !! words, separated by slashes
       class(deck_report_type), intent(inout) :: report         !! receives the error
-      character(:), allocatable, intent(out) :: choice         !! the word as in choices
+      character(:), allocatable :: word                        !! as in choices
 
-      call need_parameter(card, name, report, choice)
-      choice = ''
-      call choose(card, name, choices, report, choice)
-   end subroutine need_choice
+      call need_parameter(card, name, report, word)
+      word = choice(card, name, choices, report, '')
+   end function needed_choice
 
    !> Whether a card has a parameter that needs no value, or YES; not after an error.
    logical function is_on(card, name, report)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                         !! parameter
       class(deck_report_type), intent(inout) :: report         !! receives the error
-      character(:), allocatable :: choice
 
-      choice = 'NO'
-      if (card%has(name)) choice = 'YES'
-      if (len(card%text(name)) > 0) call choose(card, name, 'YES/NO', report, choice)
-      is_on = choice == 'YES'
+      is_on = card%has(name)
+      if (len(card%text(name)) > 0) is_on = choice(card, name, 'YES/NO', report, 'NO') == 'YES'
    end function is_on
 
 end module card_parameters

@@ -1,6 +1,6 @@
-!> Typing errors in a card that hide how it is meant: a keyword without its asterisk, and commas that
-!> are missing behind the keyword, between parameters or between fields. Each is reported where it
-!> is.
+!> Typing errors in a card that hide how it is meant: a keyword without its asterisk, and commas
+!> that are missing behind the keyword, between parameters or between fields. Each is reported where
+!> it is.
 module card_typos
    use card_fields, only: first_text, last_text
    use cards, only: cards_type, field_type

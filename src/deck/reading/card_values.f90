@@ -4,12 +4,14 @@ module card_values
    use cards, only: data_card_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use text, only: integer_fault, is_whole, read_integer, read_real, real_fault
+   use card_parameters, only: limit_fault
+   use text, only: integer_fault, is_whole, read_integer, read_real, real_fault, split_words, &
+      string_type
    implicit none
    private
-   public :: need_field, take_field, check_extra, need_vector, need_plane_vector, decimal_comma, &
-      surplus_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, &
-      check_unneeded_temperature
+   public :: need_field, take_field, check_extra, read_row, read_rows, plane_vector, &
+      decimal_comma, surplus_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, &
+      check_unneeded, check_unneeded_temperature
 
    !> Value of a field; an error where it is missing.
    interface need_field
@@ -23,6 +25,13 @@ module card_values
       module procedure take_integer_field
       module procedure take_real_field
    end interface take_field
+
+   !> A field of a layout.
+   type :: field_rule_type
+      character(:), allocatable :: name    !! what it holds
+      character(:), allocatable :: limit   !! as limit_fault has it
+      logical :: is_needed, is_whole, is_text
+   end type field_rule_type
 
    !> Freezing point of water in kelvin. A whole number below it behind a property may well be
    !> decimals; one above it is rather the temperature that the property was measured at.
@@ -43,8 +52,8 @@ contains
       if (comma == 0) then
          call report%error(data%place(most + 1), 'extra field; the card is '//layout)
       else
-         call report%explain(data%place(comma), 'extra field; the card is '//layout//'; or a '// &
-            decimal_comma_words(data%fields(comma)%text, data%fields(comma + 1)%text))
+         call report%root_cause(data%place(comma), 'extra field; the card is '//layout//'; or '// &
+            'a '//decimal_comma_words(data%fields(comma)%text, data%fields(comma + 1)%text))
       end if
    end subroutine check_extra
 
@@ -139,52 +148,118 @@ contains
       end if
    end subroutine take_real_field
 
-   !> Takes three fields in a row; of fields that are missing the first is reported.
-   subroutine need_vector(data, first, what, report, vector, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: first                         !! position of the first field
-      character(*), intent(in) :: what                     !! what they are
-      class(deck_report_type), intent(inout) :: report     !! receives the error
-      real(dp), intent(out) :: vector(3)                   !! their values, zero after an error
-      logical, intent(inout) :: valid   !! becomes false after an error; then nothing more is read
+   !> Reads the numbers of a data card by its layout: its fields, separated by slashes, such as
+   !> `@node or set/#degree of freedom/force`. Before a field stands `#` where it is a whole number
+   !> and `@` where it is none and is read elsewhere; behind it `?` where it may be missing, and its
+   !> limit: >0, >=0, >0 <=1 or >=0 <=1. A value that is not given, or wrong, stays as it is. Of
+   !> fields that are missing the first is reported, as is the first one too many.
+   subroutine read_row(data, layout, report, values, valid)
+      class(data_card_type), intent(in) :: data
+      character(*), intent(in) :: layout
+      class(deck_report_type), intent(inout) :: report    !! receives errors
+      real(dp), intent(inout) :: values(:)                !! (fields) those that are numbers
+      logical, intent(out) :: valid                       !! false after an error
+      type(string_type), allocatable :: fields(:)
+      type(field_rule_type) :: rule
+      character(:), allocatable :: names
       integer :: i
+      logical :: lacks, sound
 
-      vector = 0.0_dp
-      do i = 1, 3
-         if (valid) call need_field(data, first + i - 1, what//' '//'xyz'(i:i), report, vector(i), &
-            valid)
+      valid = .true.
+      lacks = .false.
+      names = ''
+      fields = split_words(layout)
+      do i = 1, size(fields)
+         rule = rule_of(fields(i)%value)
+         names = names//', '//rule%name
+         if (rule%is_text) cycle
+         sound = .true.
+         if (data%has(i) .or. data%is_undefined(i)) then
+            call read_number(data, i, rule, report, values(i), sound)
+         else if (rule%is_needed) then
+            if (.not. lacks) call report_missing(data, i, rule%name, report, sound)
+            lacks = .true.
+         end if
+         valid = valid .and. sound
       end do
-   end subroutine need_vector
+      call check_extra(data, size(fields), names(3:), report)
+   end subroutine read_row
 
-   !> Reads a magnitude and the components of a direction, of which z may be left out and must be 0.
-   subroutine need_plane_vector(data, first, report, vector, valid)
+   !> Reads data cards of one layout.
+   subroutine read_rows(rows, layout, report, values, valid)
+      type(data_card_type), intent(in) :: rows(:)
+      character(*), intent(in) :: layout                  !! as read_row
+      class(deck_report_type), intent(inout) :: report    !! receives errors
+      real(dp), intent(inout) :: values(:, :)             !! (fields, rows)
+      logical, intent(out) :: valid                       !! false after an error
+      integer :: i
+      logical :: sound
+
+      valid = .true.
+      do i = 1, size(rows)
+         call read_row(rows(i), layout, report, values(:, i), sound)
+         valid = valid .and. sound
+      end do
+   end subroutine read_rows
+
+   !> The rule of one field of a layout.
+   pure type(field_rule_type) function rule_of(field) result(rule)
+      character(*), intent(in) :: field
+      integer :: last
+
+      last = index(field//' >', ' >') - 1
+      rule%limit = adjustl(field(last + 1:))
+      rule%is_needed = field(last:last) /= '?'
+      if (.not. rule%is_needed) last = last - 1
+      rule%is_whole = field(1:1) == '#'
+      rule%is_text = field(1:1) == '@'
+      rule%name = field(merge(2, 1, rule%is_whole .or. rule%is_text):last)
+   end function rule_of
+
+   !> Reads a number by its rule.
+   subroutine read_number(data, i, rule, report, value, valid)
+      class(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      type(field_rule_type), intent(in) :: rule
+      class(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: value
+      logical, intent(inout) :: valid
+      character(:), allocatable :: fault
+      real(dp) :: given
+      integer :: number
+
+      if (rule%is_whole) then
+         number = 0
+         call take_field(data, i, rule%name, report, number, valid)
+         given = number
+      else
+         given = 0.0_dp
+         call take_field(data, i, rule%name, report, given, valid)
+      end if
+      if (.not. valid) return
+      fault = limit_fault(given, rule%limit)
+      valid = len(fault) == 0
+      if (valid) value = given
+      if (.not. valid) call report%error(data%place(i), rule%name//' '//fault)
+   end subroutine read_number
+
+   !> A vector of the plane by its magnitude and the components of its direction.
+   subroutine plane_vector(data, first, given, report, vector)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: first                         !! position of the magnitude
+      real(dp), intent(in) :: given(4)                     !! magnitude, direction x, y and z
       class(deck_report_type), intent(inout) :: report     !! receives errors
       real(dp), intent(out) :: vector(2)                   !! x and y, zero after an error
-      logical, intent(inout) :: valid                      !! becomes false after an error
-      real(dp) :: magnitude, direction(3)
-      integer :: i
 
       vector = 0.0_dp
-      direction = 0.0_dp
-      call need_field(data, first, 'magnitude', report, magnitude, valid)
-      do i = 1, 2
-         if (valid) call need_field(data, first + i, 'direction '//'xy'(i:i), report, &
-            direction(i), valid)
-      end do
-      if (valid) call take_field(data, first + 3, 'direction z', report, direction(3), valid)
-      if (.not. valid) return
-      if (abs(direction(3)) > 0.0_dp) then
+      if (abs(given(4)) > 0.0_dp) then
          call report%error(data%place(first + 3), 'the direction lies in the plane: z must be 0')
-         valid = .false.
-      else if (norm2(direction) <= 0.0_dp) then
+      else if (norm2(given(2:3)) <= 0.0_dp) then
          call report%error(data%place(first + 1), 'the direction is zero')
-         valid = .false.
       else
-         vector = magnitude*direction(:2)/norm2(direction)
+         vector = given(1)*given(2:3)/norm2(given(2:3))
       end if
-   end subroutine need_plane_vector
+   end subroutine plane_vector
 
    !> Position of the first field whose decimals, be they 0, the next one may be: the comma has no
    !> blank behind it, and other commas of the card have one, or no field of the card has a point. 0
@@ -240,7 +315,7 @@ contains
       integer, intent(in) :: i                            !! what decimal_comma found
       class(deck_report_type), intent(inout) :: report    !! receives the error
 
-      call report%explain(data%place(i), 'a '// &
+      call report%root_cause(data%place(i), 'a '// &
          decimal_comma_words(data%fields(i)%text, data%fields(i + 1)%text))
    end subroutine report_decimal_comma
 
@@ -278,7 +353,7 @@ contains
       integer, intent(in) :: i                            !! position of the field, from 2
       character(*), intent(in) :: what                    !! what the field is, with its article
       class(deck_report_type), intent(inout) :: report    !! receives the warning
-      character(*), intent(in), optional :: group         !! by which it is convicted
+      character(*), intent(in), optional :: group         !! by which it is is_told
       character(:), allocatable :: message
 
       if (.not. may_be_decimals(data, i)) return
@@ -290,7 +365,7 @@ contains
       if (present(group)) then
          call report%warning(data%place(i - 1), message, group)
       else
-         call report%suspect(data%place(i - 1), message)
+         call report%possible_cause(data%place(i - 1), message)
       end if
    end subroutine check_unneeded
 

@@ -1,8 +1,8 @@
 !> *NFILL, *NCOPY and *ELCOPY of Abaqus -> the *NODE and *ELEMENT cards that they stand for: nodes
 !> between two sets, and copies of sets.
 module copied_cards
-   use card_parameters, only: choose, need_parameter, take_from, take_parameter, take_positive
-   use card_values, only: check_extra, need_field, take_field
+   use card_parameters, only: choice, need_parameter, take_from, take_parameter, take_within
+   use card_values, only: read_row
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
@@ -14,6 +14,9 @@ module copied_cards
    public :: fill_nodes, copy_nodes, copy_elements
 
    integer, parameter :: most_intervals = 10000   !! of *NFILL
+
+   character(*), parameter :: axis_layout = 'x of point 1?/y of point 1?/z of point 1?/'// &
+      'x of point 2?/y of point 2?/z of point 2?'
 
    real(dp), parameter :: same_place = 1.0e-6_dp   !! distance, by the largest coordinate
    real(dp), parameter :: degree = acos(-1.0_dp)/180.0_dp
@@ -31,7 +34,7 @@ contains
       integer :: j
 
       bias = 1.0_dp
-      call take_positive(card, 'BIAS', report, bias)
+      call take_within('>0', card, 'BIAS', report, bias)
       do j = 1, size(card%data)
          call fill_line(card, card%data(j), bias, nodes, report, all)
       end do
@@ -46,22 +49,21 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
       integer, allocatable :: from(:), to(:)
-      real(dp) :: x(2, 2)
+      real(dp) :: given(4), x(2, 2)
       real(dp), allocatable :: parts(:)
       integer :: i, intervals, k, step
       logical :: valid
 
-      valid = .true.
-      step = 1
-      intervals = 1
+      given = 1.0_dp
+      call read_row(data, '@set or node/@set or node/#number of intervals >0/#increment? >0', &
+         report, given, valid)
+      intervals = nint(given(3))
+      step = nint(given(4))
       call end_of_fill(data, 1, nodes, all, report, from, valid)
       call end_of_fill(data, 2, nodes, all, report, to, valid)
-      call need_field(data, 3, 'number of intervals', report, intervals, valid)
-      call take_field(data, 4, 'increment', report, step, valid)
-      call check_extra(data, 4, 'two sets or nodes, number of intervals, increment', report)
-      if (valid .and. (intervals < 1 .or. intervals > most_intervals .or. step < 1)) then
+      if (valid .and. intervals > most_intervals) then
          call report%error(data%place(3), 'the number of intervals is from 1 to '// &
-            to_text(most_intervals)//', the increment from 1')
+            to_text(most_intervals))
          valid = .false.
       else if (valid .and. size(from) /= size(to)) then
          call report%error(data%place(2), 'the two ends have '//to_text(size(from))//' and '// &
@@ -166,19 +168,20 @@ contains
       real(dp), intent(out) :: center(2), shift(2), turn(2, 2)
       logical, intent(inout) :: valid
       character(:), allocatable :: kind
-      real(dp) :: angle, points(3, 2)
+      real(dp) :: angle, moved(3), points(7)
       integer :: times
+      logical :: sound
 
-      kind = ''
-      call choose(card, 'REFLECT', 'LINE', report, kind)
+      kind = choice(card, 'REFLECT', 'LINE', report, '')
       valid = valid .and. (kind == 'LINE' .or. .not. card%has('REFLECT'))
       if (.not. valid) return
       shift = 0.0_dp
       angle = 0.0_dp
-      points = reshape([0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [3, 2])
+      moved = 0.0_dp
+      points = [0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp, 0.0_dp]
       if (kind == 'LINE') then
-         call read_points(rows(1), report, points, valid)
-         associate (along => points(:2, 2) - points(:2, 1))
+         call read_row(rows(1), axis_layout, report, points, valid)
+         associate (along => points(4:5) - points(1:2))
             if (valid .and. norm2(along) <= 0.0_dp) then
                call report%error(rows(1)%place(1), 'the two points of the line coincide')
                valid = .false.
@@ -191,40 +194,23 @@ contains
             call report%error(card%place, '*NCOPY needs SHIFT or REFLECT=LINE')
             valid = .false.
          end if
-         call take_field(rows(1), 1, 'shift along x', report, shift(1), valid)
-         call take_field(rows(1), 2, 'shift along y', report, shift(2), valid)
-         call check_extra(rows(1), 3, 'shift along x, y and z', report)
+         call read_row(rows(1), 'shift along x?/shift along y?/shift along z?', report, moved, &
+            sound)
+         shift = moved(:2)
+         valid = valid .and. sound
          if (size(rows) > 1) then
-            call read_points(rows(2), report, points, valid)
-            call take_field(rows(2), 7, 'angle', report, angle, valid)
-            call check_extra(rows(2), 7, 'two points of the axis, angle', report)
-            if (valid .and. norm2(points(:2, 2) - points(:2, 1)) > 0.0_dp) call report%error( &
+            call read_row(rows(2), axis_layout//'/angle?', report, points, sound)
+            valid = valid .and. sound
+            if (valid .and. norm2(points(4:5) - points(1:2)) > 0.0_dp) call report%error( &
                rows(2)%place(4), 'the axis of the turn must be parallel to z')
             times = 1
             call take_from(1, card, 'MULTIPLE', report, times)
-            angle = sign(1.0_dp, points(3, 2) - points(3, 1))*angle*times*degree
+            angle = sign(1.0_dp, points(6) - points(3))*points(7)*times*degree
          end if
          turn = rotation(angle)
       end if
-      center = points(:2, 1)
+      center = points(:2)
    end subroutine read_motion
-
-   !> Two points with three coordinates each.
-   subroutine read_points(data, report, points, valid)
-      type(data_card_type), intent(in) :: data
-      type(deck_report_type), intent(inout) :: report
-      real(dp), intent(inout) :: points(3, 2)
-      logical, intent(inout) :: valid
-      character(*), parameter :: names = 'xyz'
-      integer :: i, k
-
-      do k = 1, 2
-         do i = 1, 3
-            call take_field(data, 3*(k - 1) + i, names(i:i)//' of point '//to_text(k), report, &
-               points(i, k), valid)
-         end do
-      end do
-   end subroutine read_points
 
    !> *ELCOPY: copies of the elements of a set; with REFLECT their nodes go round the other way.
    subroutine copy_elements(card, elements, report, all)

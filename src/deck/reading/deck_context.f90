@@ -190,7 +190,7 @@ contains
          call look_in(self%interactions, self%deck_report_type)
       case ('contact pair')
          call look_in(self%contacts, self%deck_report_type)
-      case ('time points')
+      case default
          call look_in(self%time_point_names, self%deck_report_type)
       end select
    contains

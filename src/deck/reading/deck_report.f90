@@ -7,7 +7,11 @@ module deck_report
    use text, only: counted, string_type, to_text, to_upper
    implicit none
    private
-   public :: deck_report_type
+   public :: deck_report_type, frictionless, heatless
+
+   !> Groups of warnings that may be a root cause: of bodies which friction should hold, and of a
+   !> deck without quantities of heat.
+   character(*), parameter :: frictionless = 'friction', heatless = 'heatless'
 
    integer, parameter :: severity_error = 1     !! the deck cannot be solved
    integer, parameter :: severity_warning = 2   !! the deck can be solved, perhaps not as meant
@@ -21,7 +25,7 @@ module deck_report
       character(:), allocatable :: message   !! what, in plain words
       character(:), allocatable :: group     !! what it has in common with others; empty for none
       integer :: places = 1                  !! places of its group, of which the first is told
-      logical :: explains = .false.          !! whether it explains what else is wrong on its card
+      logical :: is_root_cause = .false.     !! of what else is wrong on its card
    end type diagnostic_type
 
    !> Something whose definition a reported error may hide.
@@ -32,11 +36,11 @@ module deck_report
 
    !> A message in the order of the deck. Where it is one mistake on many lines of a card, the first
    !> of them tells it for all.
-   type :: told_type
+   type :: printed_diagnostic_type
       integer :: index = 0        !! of the diagnostic
       integer :: more_lines = 0   !! further lines with the mistake, which are not told
       integer :: last = 0         !! image of the last of these
-   end type told_type
+   end type printed_diagnostic_type
 
    !> The errors and warnings of one deck, and the card images to which they point.
    type :: deck_report_type
@@ -48,9 +52,9 @@ module deck_report
       type(lost_type), allocatable, private :: lost(:)   !! what reported errors may hide
    contains
       procedure :: error
-      procedure :: explain
-      procedure :: suspect
-      procedure :: convict
+      procedure :: root_cause
+      procedure :: possible_cause
+      procedure :: confirm_cause
       procedure :: twice
       procedure :: missing
       procedure :: warning
@@ -74,7 +78,7 @@ contains
       character(*), intent(in), optional :: group     !! the group, such as node 6
       integer :: i
 
-      i = explanation_of(self, place)
+      i = root_cause_of(self, place)
       if (i > 0) then
          call make_error(self, i)
       else
@@ -94,24 +98,24 @@ contains
 
    !> Reports an error from which all others of its card image follow: it takes the place of the
    !> first one that is reported already, and those to come are dropped.
-   subroutine explain(self, place, message)
+   subroutine root_cause(self, place, message)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
 
-      call self%suspect(place, message)
+      call self%possible_cause(place, message)
       call self%error(place, message)
-   end subroutine explain
+   end subroutine root_cause
 
    !> Warns of what is hardly meant. An error on its card image follows from it and is replaced by
    !> this message.
-   subroutine suspect(self, place, message)
+   subroutine possible_cause(self, place, message)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
       integer :: i
 
-      if (explanation_of(self, place) > 0) return
+      if (root_cause_of(self, place) > 0) return
       i = first_error_of(self, place)
       if (i == 0) then
          call add(self, severity_warning, place, message)
@@ -121,11 +125,11 @@ contains
       self%diagnostics(i)%message = message
       self%diagnostics(i)%group = ''
       self%diagnostics(i)%places = 1
-      self%diagnostics(i)%explains = .true.
-   end subroutine suspect
+      self%diagnostics(i)%is_root_cause = .true.
+   end subroutine possible_cause
 
    !> Makes the warnings of a group errors, in place of the one that follows from them.
-   subroutine convict(self, group, found)
+   subroutine confirm_cause(self, group, found)
       class(deck_report_type), intent(inout) :: self
       character(*), intent(in) :: group               !! the group, such as friction
       logical, intent(out) :: found                   !! whether there are any
@@ -137,7 +141,7 @@ contains
          found = .true.
          call make_error(self, i)
       end do
-   end subroutine convict
+   end subroutine confirm_cause
 
    subroutine make_error(self, i)
       class(deck_report_type), intent(inout) :: self
@@ -149,15 +153,15 @@ contains
    end subroutine make_error
 
    !> Index of the message that explains what is wrong at a place; 0 where there is none.
-   pure integer function explanation_of(self, place)
+   pure integer function root_cause_of(self, place)
       class(deck_report_type), intent(in) :: self
       type(place_type), intent(in) :: place
 
-      do explanation_of = self%count, 1, -1
-         if (self%diagnostics(explanation_of)%explains .and. &
-            self%diagnostics(explanation_of)%place%image == place%image) return
+      do root_cause_of = self%count, 1, -1
+         if (self%diagnostics(root_cause_of)%is_root_cause .and. &
+            self%diagnostics(root_cause_of)%place%image == place%image) return
       end do
-   end function explanation_of
+   end function root_cause_of
 
    !> Index of the first error of a card image; 0 where there is none.
    pure integer function first_error_of(self, place)
@@ -280,7 +284,7 @@ contains
    function warnings(self) result(lines)
       class(deck_report_type), intent(in) :: self
       type(string_type), allocatable :: lines(:)      !! one a warning
-      type(told_type), allocatable :: told(:)
+      type(printed_diagnostic_type), allocatable :: told(:)
       integer :: i
 
       told = told_by(self)
@@ -313,7 +317,7 @@ contains
    subroutine print_report(self, unit)
       class(deck_report_type), intent(in) :: self
       integer, intent(in) :: unit                     !! open for formatted output
-      type(told_type), allocatable :: told(:)
+      type(printed_diagnostic_type), allocatable :: told(:)
       integer :: i, errors
 
       told = told_by(self)
@@ -337,7 +341,7 @@ contains
    !> `path:line:column: severity: message`, or `path: severity: message` for the deck as a whole.
    function first_line(self, told) result(line)
       class(deck_report_type), intent(in) :: self
-      type(told_type), intent(in) :: told
+      type(printed_diagnostic_type), intent(in) :: told
       character(:), allocatable :: line
       character(:), allocatable :: severity
 
@@ -363,11 +367,11 @@ contains
    !> The messages in the order of the deck, one mistake on more than a few lines of a card once.
    function told_by(self) result(told)
       class(deck_report_type), intent(in) :: self
-      type(told_type), allocatable :: told(:)
+      type(printed_diagnostic_type), allocatable :: told(:)
       type(string_type) :: messages(self%count)
       integer :: first(self%count), card(self%count), cards(self%source%count), i, last
 
-      told = [(told_type(i), i=1, self%count)]
+      told = [(printed_diagnostic_type(i), i=1, self%count)]
       told%index = order_of(self)
       cards = 0
       last = 0

@@ -88,7 +88,8 @@ contains
       end do
       valid = len(fault) == 0
       fields%undefined = .not. valid
-      if (.not. valid) call report%error(place_type(image, bad), fault//': are the columns shifted?')
+      if (.not. valid) call report%error(place_type(image, bad), fault//': are the columns '// &
+         'shifted?')
    end subroutine split_columns
 
    !> Text behind the last column of a format, and tabs.

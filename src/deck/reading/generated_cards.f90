@@ -1,7 +1,7 @@
 !> *NGEN, *NFILL, *NCOPY, *ELGEN and *ELCOPY -> the *NODE and *ELEMENT cards that they stand for.
 module generated_cards
-   use card_parameters, only: choose
-   use card_values, only: check_extra, need_field, take_field
+   use card_parameters, only: choice
+   use card_values, only: read_row
    use cards, only: add_data, add_keyword, cards_type, data_card_type, keyword_card_type, &
       replace_cards
    use copied_cards, only: copy_elements, copy_nodes, fill_nodes
@@ -93,22 +93,27 @@ contains
       type(cards_type), intent(inout) :: all
       type(given_point_type) :: ends(2)
       type(given_circle_type) :: circle
-      real(dp) :: from(2)
+      real(dp) :: from(2), given(10)
       integer :: step, i, n
       logical :: valid
 
-      step = 1
-      do i = 1, 2
-         call need_given_node(data, i, trim(merge('first node', 'last node ', i == 1)), nodes, &
-            all, report, ends(i))
-      end do
-      valid = ends(1)%valid .and. ends(2)%valid
-      call take_field(data, 3, 'increment', report, step, valid)
+      given = 0.0_dp
+      given(3) = 1.0_dp
       if (card%has('LINE')) then
-         call read_circle(card, data, ends, nodes, all, report, circle)
-         valid = valid .and. circle%valid
+         call read_row(data, '#first node/#last node/#increment?/#center?/x of the center?/'// &
+            'y of the center?/z of the center?/x of the normal?/y of the normal?/z of the '// &
+            'normal?', report, given, valid)
       else
-         call check_extra(data, 3, 'first node, last node, increment', report)
+         call read_row(data, '#first node/#last node/#increment?', report, given, valid)
+      end if
+      step = nint(given(3))
+      do i = 1, 2
+         if (valid) call find_given_node(data, i, nint(given(i)), nodes, all, report, ends(i))
+      end do
+      valid = valid .and. ends(1)%valid .and. ends(2)%valid
+      if (valid .and. card%has('LINE')) then
+         call make_circle(card, data, given, ends, nodes, all, report, circle)
+         valid = circle%valid
       end if
       if (valid) call check_range(data, ends%number, step, report, valid)
       if (.not. valid) then
@@ -130,69 +135,57 @@ contains
    end subroutine generate_nodes
 
    !> A node of the cards so far, and its place.
-   subroutine need_given_node(data, i, what, nodes, all, report, node)
+   subroutine find_given_node(data, i, number, nodes, all, report, node)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                ! position of the field
-      character(*), intent(in) :: what
+      integer, intent(in) :: number
       type(given_type), intent(in) :: nodes
       type(cards_type), intent(in) :: all
       type(deck_report_type), intent(inout) :: report
       type(given_point_type), intent(out) :: node
       integer :: at
 
-      node%valid = .true.
-      call need_field(data, i, what, report, node%number, node%valid)
-      if (.not. node%valid) return
-      at = position_of(node%number, nodes)
+      node%number = number
+      at = position_of(number, nodes)
       node%valid = at > 0
       if (node%valid) then
          node%x = node_place(all, nodes, at)
       else
-         call report%error(data%place(i), 'no *NODE before this card has node '// &
-            to_text(node%number))
+         call report%error(data%place(i), 'no *NODE before this card has node '//to_text(number))
       end if
-   end subroutine need_given_node
+   end subroutine find_given_node
 
    !> Center of the circle of *NGEN, LINE=C, a node or a place, and the angle from the first node to
    !> the last: the smaller one, or the one anticlockwise about the normal that the card gives.
-   subroutine read_circle(card, data, ends, nodes, all, report, circle)
+   subroutine make_circle(card, data, given, ends, nodes, all, report, circle)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: given(10)       ! (fields)
       type(given_point_type), intent(in) :: ends(2)
       type(given_type), intent(in) :: nodes
       type(cards_type), intent(in) :: all
       type(deck_report_type), intent(inout) :: report
       type(given_circle_type), intent(out) :: circle
       real(dp), parameter :: whole = 2*acos(-1.0_dp)
-      character(:), allocatable :: kind
-      real(dp) :: normal, radii(2, 2)
+      real(dp) :: radii(2, 2)
 
-      normal = 0.0_dp
-      kind = ''
-      call choose(card, 'LINE', 'C', report, kind)
-      circle%valid = kind == 'C' .and. ends(1)%valid .and. ends(2)%valid
+      circle%valid = choice(card, 'LINE', 'C', report, '') == 'C'
+      circle%x = given(5:6)
+      if (circle%valid .and. data%has(4)) call find_given_node(data, 4, nint(given(4)), nodes, &
+         all, report, circle%given_point_type)
       if (.not. circle%valid) return
-      if (data%has(4)) then
-         call need_given_node(data, 4, 'center', nodes, all, report, circle%given_point_type)
-      else
-         call take_field(data, 5, 'x of the center', report, circle%x(1), circle%valid)
-         call take_field(data, 6, 'y of the center', report, circle%x(2), circle%valid)
-      end if
-      call take_field(data, 10, 'z of the normal', report, normal, circle%valid)
-      call check_extra(data, 10, 'first node, last node, increment, center: node or x, y, z, '// &
-         'normal: x, y, z', report)
       radii(:, 1) = ends(1)%x - circle%x
       radii(:, 2) = ends(2)%x - circle%x
       associate (angle => circle%angle)
          angle = atan2(radii(1, 1)*radii(2, 2) - radii(2, 1)*radii(1, 2), &
             dot_product(radii(:, 1), radii(:, 2)))
-         if (normal > 0.0_dp) angle = modulo(angle, whole)
-         if (normal < 0.0_dp) angle = -modulo(-angle, whole)
+         if (given(10) > 0.0_dp) angle = modulo(angle, whole)
+         if (given(10) < 0.0_dp) angle = -modulo(-angle, whole)
       end associate
-      if (.not. circle%valid .or. minval(norm2(radii, dim=1)) > 0.0_dp) return
+      if (minval(norm2(radii, dim=1)) > 0.0_dp) return
       call report%error(data%place(4), 'the center of the circle is one of its nodes')
       circle%valid = .false.
-   end subroutine read_circle
+   end subroutine make_circle
 
    !> The increment leads from the first number to the last.
    subroutine check_range(data, ends, step, report, valid)
@@ -221,12 +214,23 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(cards_type), intent(inout) :: all
       integer, allocatable :: corners(:)
-      integer :: master, at, counts(2), steps(2, 2), i, j
+      real(dp) :: given(7)
+      integer :: master, at, i, j
+      integer :: counts(2)      ! elements of a row, and rows
+      integer :: steps(2, 2)    ! increments of nodes and elements, of both
       logical :: valid
 
-      valid = .true.
-      call need_field(data, 1, 'master element', report, master, valid)
-      call read_rows(data, counts, steps, report, valid)
+      given = 1.0_dp
+      call read_row(data, '#master element/#number of elements? >0/#increment of nodes?/'// &
+         '#increment of elements?/#number of rows? >0/#increment of nodes?/'// &
+         '#increment of elements?', report, given, valid)
+      master = nint(given(1))
+      counts = nint(given([2, 5]))
+      steps = nint(reshape(given([3, 4, 6, 7]), [2, 2]))
+      if (valid .and. product(given([2, 5])) > most_generated) then
+         call report%error(data%place(2), too_many)
+         valid = .false.
+      end if
       at = 0
       if (valid) at = position_of(master, elements)
       if (valid .and. at == 0) call report%error(data%place(1), 'no *ELEMENT before this card '// &
@@ -248,32 +252,5 @@ contains
          end do
       end do
    end subroutine generate_elements
-
-   subroutine read_rows(data, counts, steps, report, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(out) :: counts(2)      ! elements of a row, and rows
-      integer, intent(out) :: steps(2, 2)    ! increments of nodes and elements, of both
-      type(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: valid
-      character(*), parameter :: nouns(2) = [character(8) :: 'elements', 'rows']
-      integer :: i
-
-      counts = 1
-      steps = 1
-      do i = 1, 2
-         call take_field(data, 3*i - 1, 'number of '//trim(nouns(i)), report, counts(i), valid)
-         call take_field(data, 3*i, 'increment of nodes', report, steps(1, i), valid)
-         call take_field(data, 3*i + 1, 'increment of elements', report, steps(2, i), valid)
-         if (.not. valid .or. counts(i) > 0) cycle
-         call report%error(data%place(3*i - 1), 'the number of '//trim(nouns(i))//' must be '// &
-            'positive')
-         valid = .false.
-      end do
-      call check_extra(data, 7, 'master element, elements of a row, increments of nodes and '// &
-         'elements, rows, increments of nodes and elements', report)
-      if (.not. valid .or. real(counts(1), dp)*counts(2) <= most_generated) return
-      call report%error(data%place(2), too_many)
-      valid = .false.
-   end subroutine read_rows
 
 end module generated_cards

@@ -114,7 +114,8 @@ contains
 
       x = 0.0_dp
       do i = 1, 2
-         call read_real(all%keywords(nodes%keyword(at))%data(nodes%card(at))%text(i + 1), x(i), is_number)
+         call read_real(all%keywords(nodes%keyword(at))%data(nodes%card(at))%text(i + 1), x(i), &
+            is_number)
       end do
    end function node_place
 

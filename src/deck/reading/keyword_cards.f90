@@ -212,7 +212,7 @@ contains
       if (i > 1) before = fields(i - 1)%text
       if (is_whole(trim(adjustl(before(index(before, '=') + 1:)))) .and. is_whole( &
          fields(i)%text) .and. verify(fields(i)%text, '0123456789') == 0) then
-         call report%explain(fields(i - 1)%place, 'a '//decimal_comma_words(before, &
+         call report%root_cause(fields(i - 1)%place, 'a '//decimal_comma_words(before, &
             fields(i)%text))
          return
       end if
@@ -220,8 +220,8 @@ contains
       do k = i + 1, size(fields)
          list = list//', '//fields(k)%text
       end do
-      call report%explain(fields(i)%place, 'a number is not a parameter; put data on a card of '// &
-         'their own: write '//list//' below the keyword')
+      call report%root_cause(fields(i)%place, 'a number is not a parameter; put data on a card '// &
+         'of their own: write '//list//' below the keyword')
    end subroutine report_number
 
    !> Takes one parameter and checks it against the table. A misspelt one is taken as the one that

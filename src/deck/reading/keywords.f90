@@ -1,6 +1,7 @@
 !> The keywords of the dialect with their limits and parameters, and what to write in place of
 !> others, as one table.
 module keywords
+   use spelling, only: full_word
    use text, only: append, is_same_name, split_words, string_type, to_upper, without_blanks
    implicit none
    private
@@ -422,21 +423,11 @@ contains
       character(*), intent(in) :: name          !! name as written
       type(known_parameter_type) :: parameter   !! what the table says of it
       type(string_type), allocatable :: names(:)
-      character(:), allocatable :: found, full, short
-      integer :: i
+      character(:), allocatable :: found
 
-      short = to_upper(without_blanks(name))
       parameter%name = ''
-      if (len(short) == 0) return
-      found = ''
       names = parameter_names(known)
-      do i = 1, size(names)
-         full = without_blanks(names(i)%value)
-         if (index(full, short) /= 1) cycle
-         ! FREQ is FREQUENCY, with which FREQUENCYF begins.
-         if (len(found) > 0 .and. index(full, found//'') /= 1) return
-         if (len(found) == 0) found = full
-      end do
+      found = full_word(to_upper(name), names)
       if (len(found) > 0) parameter = find_parameter(known, found)
    end function find_abbreviated
 
