@@ -1,8 +1,7 @@
 !> *GAP CONDUCTANCE: a table of conductance over the pressure, or over the clearance, at one mean
 !> temperature of the faces or at several.
 module deck_builder_gap_conductance
-   use card_values, only: check_unneeded_temperature, decimal_comma, need_field, &
-      read_row, report_decimal_comma, take_field
+   use card_values, only: check_unneeded_temperature, decimal_comma, read_rows, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
       line_value
@@ -36,7 +35,6 @@ contains
       type(conductance_law_type), intent(inout) :: law     !! receives the open or the closed side
       type(gap_table_type) :: table
       character(:), allocatable :: title
-      real(dp), allocatable :: temperature(:)
       integer :: errors
 
       errors = deck%error_count()
@@ -50,12 +48,9 @@ contains
       else if (law%closed_kind /= law_none) then
          call deck%error(card%place, 'a second *GAP CONDUCTANCE in one surface interaction')
       end if
-      call read_temperatures(card, deck, temperature)
-      call read_table(card, trim(merge('gap     ', 'pressure', is_open)), temperature, deck, table)
+      call read_table(card, trim(merge('gap     ', 'pressure', is_open)), deck, table)
       if (deck%error_count() == errors) call check_columns(card, name, is_open, table, deck)
       if (allocated(table%temperature)) then
-         if (is_open .and. deck%error_count() == errors) call check_last_gaps(card, temperature, &
-            deck)
          call note_ends(title, name, 'mean temperatures', table%temperature, deck)
          if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
       end if
@@ -152,27 +147,18 @@ contains
 
    !> Refuses a table that ends at other gaps at other temperatures: between them it would end at
    !> none.
-   subroutine check_last_gaps(card, temperature, deck)
-      type(keyword_card_type), intent(in) :: card
-      real(dp), intent(in) :: temperature(:)
+   subroutine check_last_gaps(rows, gap, temperature, deck)
+      type(data_card_type), intent(in) :: rows(:)
+      real(dp), intent(in) :: gap(:), temperature(:)       ! (rows)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: first, gap
-      integer :: i, n
-      logical :: valid
+      integer :: i
 
-      n = size(temperature)
-      valid = .true.
-      do i = 1, n
-         if (i < n) then
-            if (temperature(i + 1) <= temperature(i)) cycle
-         end if
-         associate (data => card%data(i))
-            call need_field(data, 2, 'gap', deck, gap, valid)
-            if (temperature(i) <= temperature(1)) first = gap
-            if (abs(gap - first) > 0.0_dp) call deck%error(data%place(2), 'the table ends at a '// &
-               'different gap than at the first temperature; no heat crosses beyond the end, '// &
-               'which must be the same at all temperatures')
-         end associate
+      do i = 1, size(rows)
+         if (any(temperature(i + 1:) <= temperature(i))) cycle
+         if (abs(gap(i) - maxval(gap, mask=temperature <= temperature(1))) > 0.0_dp) call &
+            deck%error(rows(i)%place(2), 'the table ends at a different gap than at the first '// &
+            'temperature; no heat crosses beyond the end, which must be the same at all '// &
+            'temperatures')
       end do
    end subroutine check_last_gaps
 
@@ -201,67 +187,53 @@ contains
 
    !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
    !> it and are in groups of one temperature.
-   subroutine read_table(card, noun, temperature, deck, table)
+   subroutine read_table(card, noun, deck, table)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
-      real(dp), intent(in) :: temperature(:)               !! (rows) equal for one temperature
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives notes and errors
       type(gap_table_type), intent(out) :: table
-      integer :: i, n
-      logical :: valid, valid_before
-      real(dp) :: values(3)
+      character(:), allocatable :: layout
+      real(dp) :: values(3, size(card%data))
+      integer :: i
+      logical :: valid
 
-      n = size(card%data)
-      allocate (table%abscissa(n), table%omega(n), source=0.0_dp)
-      valid_before = .false.
+      layout = 'conductance >=0/'//noun//' >=0'
+      if (card%name == 'GAP CONDUCTANCE') layout = layout//'/temperature?'
       values = 0.0_dp
-      associate (abscissa => table%abscissa, omega => table%omega)
-         do i = 1, n
-            associate (data => card%data(i))
-               if (card%name == 'GAP CONDUCTANCE') then
-                  call read_row(data, 'conductance >=0/'//noun//' >=0/@temperature', deck, values, &
-                     valid)
-               else
-                  call read_row(data, 'conductance >=0/'//noun//' >=0', deck, values(:2), valid)
-               end if
-               omega(i) = values(1)
-               abscissa(i) = values(2)
-               if (i > 1) valid_before = valid_before .and. &
-                  abs(temperature(i) - temperature(max(i - 1, 1))) <= 0.0_dp
-               if (valid .and. valid_before) then
-                  if (abscissa(i) <= abscissa(i - 1)) call deck%error(data%place(2), &
-                     noun//'s must ascend')
-               end if
-               valid_before = valid
-            end associate
+      call read_rows(card%data, layout, deck, values, valid)
+      table%omega = values(1, :)
+      table%abscissa = values(2, :)
+      associate (temperature => values(3, :))
+         call check_temperatures(card%data, temperature, deck, valid)
+         do i = 2, size(temperature)
+            ! A gap that is not known is 0.
+            if (abs(temperature(i) - temperature(i - 1)) > 0.0_dp .or. .not. (valid .or. &
+               table%abscissa(i) > 0.0_dp)) cycle
+            if (table%abscissa(i) <= table%abscissa(i - 1)) call deck%error( &
+               card%data(i)%place(2), noun//'s must ascend')
          end do
-      end associate
-      if (any(abs(temperature - temperature(1)) > 0.0_dp)) then
+         if (all(temperature <= temperature(1)) .or. .not. valid) then
+            table%columns = reshape(table%omega, [size(table%omega), 1])
+            return
+         end if
+         if (noun == 'gap') call check_last_gaps(card%data, table%abscissa, temperature, deck)
          call make_columns(temperature, table)
-      else
-         table%columns = reshape(table%omega, [n, 1])
-      end if
+      end associate
    end subroutine read_table
 
    !> Temperatures behind the rows of a *GAP CONDUCTANCE: one for all of them means nothing, several
    !> ascend.
-   subroutine read_temperatures(card, deck, temperature)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors
-      real(dp), allocatable, intent(out) :: temperature(:) !! (rows) 0 for none
+   subroutine check_temperatures(rows, temperature, deck, valid)
+      type(data_card_type), intent(in) :: rows(:)
+      real(dp), intent(in) :: temperature(:)               ! (rows) 0 for none
+      type(deck_type), intent(inout) :: deck
+      logical, intent(inout) :: valid
       integer :: comma, i
-      logical :: valid
+      logical :: differ
 
-      associate (rows => card%data)
-         allocate (temperature(size(rows)), source=0.0_dp)
-         valid = .true.
-         do i = 1, size(rows)
-            call take_field(rows(i), 3, 'temperature', deck, temperature(i), valid)
-         end do
-         if (.not. valid) temperature = 0.0_dp
-         do i = 2, size(rows)
-            if (.not. (rows(i)%has(3) .neqv. rows(i - 1)%has(3))) cycle
-            if (all(abs(temperature - temperature(1)) <= 0.0_dp)) exit
+      differ = any(abs(temperature - temperature(1)) > 0.0_dp)
+      do i = 2, size(rows)
+         if (differ .and. (rows(i)%has(3) .neqv. rows(i - 1)%has(3))) then
             comma = decimal_comma(rows(i))
             if (comma > 0 .and. size(rows(i)%fields) > size(rows(1)%fields)) then
                call report_decimal_comma(rows(i), comma, deck)
@@ -269,22 +241,20 @@ contains
                call deck%error(rows(i)%place(3), 'a temperature in some rows only; give one in '// &
                   'each row or in none')
             end if
-            return
-         end do
-         do i = 2, size(rows)
-            if (temperature(i) >= temperature(i - 1)) cycle
+         else if (temperature(i) < temperature(i - 1)) then
             call deck%error(rows(i)%place(3), 'temperatures must ascend, and the rows of each '// &
                'temperature must be consecutive')
-            return
-         end do
-         if (any(temperature > temperature(1)) .or. .not. valid) return
-         call check_unneeded_temperature(rows(1), 3, deck)
-         do i = 1, size(rows)
-            if (rows(i)%has(3)) call deck%note('*GAP CONDUCTANCE: the temperature, the same in '// &
-               'every row, is ignored')
-         end do
-      end associate
-   end subroutine read_temperatures
+         else
+            cycle
+         end if
+         valid = .false.
+         return
+      end do
+      if (differ .or. .not. valid) return
+      call check_unneeded_temperature(rows(1), 3, deck)
+      if (any([(rows(i)%has(3), i=1, size(rows))])) call deck%note('*GAP CONDUCTANCE: the '// &
+         'temperature, the same in every row, is ignored')
+   end subroutine check_temperatures
 
    !> One column for each temperature.
    subroutine make_columns(temperature, table)

@@ -55,7 +55,7 @@ contains
       end do
       if (kind == 'CLEARANCE') then
          law%open_kind = law_clearance
-         call read_table(card, 'gap', spread(0.0_dp, 1, size(card%data)), deck, table)
+         call read_table(card, 'gap', deck, table)
          call move_alloc(table%abscissa, law%table_gap)
          call move_alloc(table%omega, law%open_omega)
          call note_ends('*GAP LAW, TYPE=CLEARANCE', name, 'gaps', law%table_gap, deck)
