@@ -22,7 +22,7 @@ contains
    !> Builds all springs and trusses; sections are known.
    subroutine build_bars(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! the lines of the deck; receives errors
+      type(deck_type), intent(inout) :: deck               !! the lines of the deck; receives errors
       type(model_type), intent(inout) :: model             !! receives the bars
       type(bar_type) :: of_line(size(deck%line_number))
       integer :: i

@@ -25,7 +25,7 @@ contains
    !> Builds all interfaces, one for each data card, and their clearances.
    subroutine build_contacts(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors
+      type(deck_type), intent(inout) :: deck               !! receives notes and errors
       type(model_type), intent(inout) :: model             !! receives the interfaces
       integer, allocatable :: places(:)
       type(contact_definition_type) :: common
@@ -81,7 +81,7 @@ contains
       type(contact_definition_type), intent(in) :: contacts(:)
       type(mesh_type), intent(in) :: mesh
       type(place_type), intent(in) :: place                  !! where they are named
-      type(deck_type), intent(inout) :: deck   !! receives the error
+      type(deck_type), intent(inout) :: deck                 !! receives the error
       integer, intent(out) :: contact
 
       contact = 0
@@ -179,7 +179,7 @@ contains
    !> Builds all ties, one for each data card.
    subroutine build_ties(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors
+      type(deck_type), intent(inout) :: deck               !! receives notes and errors
       type(model_type), intent(inout) :: model             !! receives the ties
       integer, allocatable :: places(:)
       integer :: i, k, n
@@ -229,7 +229,7 @@ contains
       integer, intent(in) :: k                             !! the keyword card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
       type(model_type), intent(inout) :: model             !! receives the change
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors
+      type(deck_type), intent(inout) :: deck               !! receives notes and errors
       type(contact_changes_type) :: changes
       type(friction_change_type) :: change
 

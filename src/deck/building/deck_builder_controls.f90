@@ -54,7 +54,7 @@ contains
    !> Reads one *FIXED POINT; what it does not say stays as it was.
    subroutine build_fixed_point(card, deck, fixed_point)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck                  !! receives errors
       type(fixed_point_type), intent(inout) :: fixed_point    !! receives the controls
       character(:), allocatable :: method
 
@@ -69,7 +69,7 @@ contains
    !> Reads what one *RESTART says of writing; where to go on from is read before the steps are.
    subroutine build_restart(card, deck, controls)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck                  !! receives errors
       type(step_controls_type), intent(inout) :: controls     !! receives when they are written
       integer :: place
 
@@ -105,7 +105,7 @@ contains
    !> Reads one *THERMAL SCHEME; after an error the scheme stays as it was.
    subroutine build_thermal_scheme(card, deck, scheme)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck                  !! receives errors
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
       character(:), allocatable :: kind
 
@@ -173,7 +173,7 @@ contains
    !> Reads one *START; after an error the start stays as it was.
    subroutine build_start(card, deck, model, start)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! names of the interfaces; receives errors
+      type(deck_type), intent(inout) :: deck             !! names of the interfaces; receives errors
       type(model_type), intent(in) :: model              !! its interfaces
       type(start_type), intent(inout) :: start           !! receives the start
       character(:), allocatable :: from
@@ -338,7 +338,7 @@ contains
    !> FREQUENCY=n, default 1.
    subroutine read_frequency(card, deck, frequency, points)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! *TIME POINTS; receives errors
+      type(deck_type), intent(inout) :: deck            !! *TIME POINTS; receives errors
       integer, intent(out) :: frequency                 !! n, at least 0
       type(time_points_type), intent(out) :: points     !! those that the card names
       integer :: i

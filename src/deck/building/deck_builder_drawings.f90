@@ -25,7 +25,7 @@ contains
    !> Reads the cards START, LINE and CIRCL of a surface.
    subroutine build_drawing(card, deck, surface)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       type(surface_type), intent(inout) :: surface         !! receives the drawing
       type(drawn_line_type) :: line
       real(dp) :: last(2), x(2, 2)
@@ -184,7 +184,7 @@ contains
    !> the second node, SNEG on the right.
    subroutine build_line_surface(card, deck, mesh, surface)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       type(mesh_type), intent(in) :: mesh
       type(surface_type), intent(inout) :: surface         !! receives the line
       integer, allocatable :: ends(:, :), lines(:), more(:)

@@ -30,7 +30,7 @@ contains
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
       type(model_type), intent(in) :: model                !! mesh and sets
-      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
       character(:), allocatable :: label, labels
       real(dp) :: values(9)
       integer :: surface
@@ -150,7 +150,7 @@ contains
       character(*), intent(in) :: label                    !! what was written
       character(*), intent(in) :: labels                   !! what is known, separated by slashes
       type(data_card_type), intent(in) :: data             !! the card; the label is field 2
-      type(deck_type), intent(inout) :: deck   !! receives the error
+      type(deck_type), intent(inout) :: deck               !! receives the error
       type(string_type), allocatable :: names(:)
       integer :: first, slash
 
@@ -268,7 +268,7 @@ contains
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: values(:)                    ! (fields)
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
-      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
       real(dp) :: point(3), direction(3), loads(4)
       integer :: i
 
@@ -304,7 +304,7 @@ contains
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
       type(model_type), intent(in) :: model                !! surfaces
-      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
       character(:), allocatable :: advice, label, labels
       real(dp) :: values(9), vector(2)
       integer :: i, surface

@@ -37,7 +37,7 @@ contains
    !> Builds all equations.
    subroutine build_equations(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! numbers -> indexes; receives errors
+      type(deck_type), intent(inout) :: deck               !! numbers -> indexes; receives errors
       type(model_type), intent(inout) :: model             !! receives the equations
       type(term_type), allocatable :: terms(:)
       integer, allocatable :: places(:)
@@ -262,7 +262,7 @@ contains
    subroutine find_reference(parameter, card, deck, model, node)
       character(*), intent(in) :: parameter
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! numbers -> indexes; receives errors
+      type(deck_type), intent(inout) :: deck               !! numbers -> indexes; receives errors
       type(model_type), intent(in) :: model                !! node sets
       integer, intent(out) :: node                         !! its index; 0 after an error
       character(:), allocatable :: name

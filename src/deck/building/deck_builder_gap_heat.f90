@@ -22,7 +22,7 @@ contains
    subroutine build_friction_heat(card, model, deck, heat)
       type(keyword_card_type), intent(in) :: card
       type(model_type), intent(in) :: model                !! with its mesh
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       type(friction_heat_type), intent(out) :: heat
       real(dp) :: values(3)
       logical :: valid
@@ -103,7 +103,7 @@ contains
    subroutine build_gap_radiation(card, constants, deck, law)
       type(keyword_card_type), intent(in) :: card
       type(physical_constants_type), intent(in) :: constants
-      type(deck_type), intent(inout) :: deck   !! receives a note and errors
+      type(deck_type), intent(inout) :: deck               !! receives a note and errors
       type(conductance_law_type), intent(inout) :: law     !! receives radiation in the open gap
       real(dp) :: emissivity(2)
       real(dp), allocatable :: gap(:), view_factor(:)

@@ -30,7 +30,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(physical_constants_type), intent(in) :: constants
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors
+      type(deck_type), intent(inout) :: deck               !! receives notes and errors
       type(conductance_law_type), intent(inout) :: law     !! receives one side
       type(gap_table_type) :: table
       character(:), allocatable :: kind
@@ -93,7 +93,7 @@ contains
    subroutine build_solid_spots(data, kind, deck, law)
       type(data_card_type), intent(in) :: data
       character(*), intent(in) :: kind                     !! CMY or ROSS-STOUTE
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       type(conductance_law_type), intent(inout) :: law     !! receives the closed side
       real(dp) :: value(5), magnitude
       logical :: valid
@@ -140,7 +140,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(physical_constants_type), intent(in) :: constants
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors
+      type(deck_type), intent(inout) :: deck               !! receives notes and errors
       type(conductance_law_type), intent(inout) :: law     !! receives the open side
       character(:), allocatable :: layout
       real(dp) :: added(2), values(3, size(card%data))

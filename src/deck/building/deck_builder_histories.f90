@@ -36,7 +36,7 @@ contains
    !> Builds all amplitudes.
    subroutine build_amplitudes(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives their names and errors
+      type(deck_type), intent(inout) :: deck               !! receives their names and errors
       type(model_type), intent(inout) :: model             !! receives the amplitudes
       integer, allocatable :: places(:)
       integer :: n
@@ -207,7 +207,7 @@ contains
    !> Reads all initial temperatures.
    subroutine build_temperatures(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
       type(model_type), intent(in) :: model                !! mesh and its sets
       type(request_type) :: request
       character(:), allocatable :: kind
@@ -243,7 +243,7 @@ contains
    !> Reads all initial stresses; later cards replace earlier ones.
    subroutine build_initial_stresses(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! numbers of elements; receives errors
+      type(deck_type), intent(inout) :: deck               !! numbers of elements; receives errors
       type(mesh_type), intent(inout) :: mesh               !! receives the stresses
       integer, allocatable :: points(:)
       integer :: j, k

@@ -33,7 +33,7 @@ contains
    !> Builds all surface interactions; a law belongs to the last *SURFACE INTERACTION before it.
    subroutine build_interactions(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors and warnings
+      type(deck_type), intent(inout) :: deck               !! receives notes and errors and warnings
       type(model_type), intent(inout) :: model             !! receives the interactions
       type(interaction_type) :: interaction
       type(place_type) :: law_place
@@ -102,8 +102,8 @@ contains
       do k = place + 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
-            if (size(card%data) == 0 .and. .not. any(card%name == ['FRICTION           ', 'GAP '// &
-               'HEAT GENERATION', 'SURFACE BEHAVIOR   '])) cycle
+            if (size(card%data) == 0 .and. all(card%name /= [character(19) :: 'FRICTION', &
+               'GAP HEAT GENERATION', 'SURFACE BEHAVIOR'])) cycle
             if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
                law_place = card%data(1)%place(1)
             end if

@@ -91,7 +91,7 @@ contains
    subroutine read_node(data, q, deck, node, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: q                             !! node 1, 2, ... of the element
-      type(deck_type), intent(inout) :: deck   !! numbers -> indexes; receives errors
+      type(deck_type), intent(inout) :: deck               !! numbers -> indexes; receives errors
       integer, intent(inout) :: node                       !! stays as it is without a number
       logical, intent(inout) :: valid                      !! false where it has no number
       integer :: number

@@ -39,7 +39,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
       type(model_type), intent(inout) :: model   !! mesh, sets, amplitudes; the step takes OP=NEW
-      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck     !! receives the requests and errors
       type(request_type) :: request
       character(:), allocatable :: kind
       integer :: j, errors, film_amplitude
@@ -153,8 +153,9 @@ contains
          call deck%note('*'//card%name//', AMPLITUDE='//to_upper(card%text('AMPLITUDE'))// &
             ': the sink temperature follows it, '//coefficient)
       else if (card%has('FILM AMPLITUDE')) then
-         call deck%note('*'//card%name//', FILM AMPLITUDE='//to_upper(card%text('FILM '// &
-            'AMPLITUDE'))//': the coefficient follows it, the sink temperature acts fully at once')
+         call deck%note('*'//card%name//', FILM AMPLITUDE='// &
+            to_upper(card%text('FILM AMPLITUDE'))// &
+            ': the coefficient follows it, the sink temperature acts fully at once')
       else
          call deck%note('*'//card%name//' without amplitudes: '//coefficient//', the sink '// &
             'temperature acts fully at once')
@@ -235,7 +236,7 @@ contains
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, place
       type(model_type), intent(in) :: model                !! mesh and its sets
-      type(deck_type), intent(inout) :: deck   !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
       integer :: first, last, dof, support
       logical :: valid
 

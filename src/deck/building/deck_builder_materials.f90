@@ -41,7 +41,7 @@ contains
    !> Builds all materials; a property belongs to the last *MATERIAL before it.
    subroutine build_materials(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives places and notes and errors
+      type(deck_type), intent(inout) :: deck               !! receives places and notes and errors
       type(model_type), intent(inout) :: model             !! receives the materials
       integer :: k, n
 
@@ -148,8 +148,8 @@ contains
       character(:), allocatable :: kind
       integer :: row
 
-      kind = choice(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING '// &
-         'CONSTANTS/ORTHO/ORTHOTROPIC/ANISO/ANISOTROPIC', deck, '')
+      kind = choice(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/'// &
+         'ANISO/ANISOTROPIC', deck, '')
       valid = len(kind) > 0 .or. .not. card%has('TYPE')
       if (.not. valid) return
       select case (kind)
@@ -341,7 +341,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(property_type), intent(in) :: property         !! as read
       integer, intent(in) :: which(:)                     !! indexes of those that must be positive
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck              !! receives errors
       logical, intent(inout) :: valid                     !! false where one is not
       integer :: i, row
 
@@ -359,7 +359,7 @@ contains
    !> Builds all orientations.
    subroutine build_orientations(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives their names and errors
+      type(deck_type), intent(inout) :: deck               !! receives their names and errors
       type(model_type), intent(inout) :: model             !! receives the orientations
       integer, allocatable :: places(:)
       integer :: n

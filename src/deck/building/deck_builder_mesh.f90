@@ -28,7 +28,7 @@ contains
    !> Builds the nodes, in the order of the deck.
    subroutine build_nodes(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives the numbers and errors
+      type(deck_type), intent(inout) :: deck               !! receives the numbers and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the nodes
       real(dp), allocatable :: heights(:)
       integer, allocatable :: places(:)
@@ -219,7 +219,7 @@ contains
    !> number only.
    subroutine build_elements(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives the numbers and errors
+      type(deck_type), intent(inout) :: deck               !! receives the numbers and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the elements
       character(:), allocatable :: name, message, note
       integer, allocatable :: places(:)

@@ -144,7 +144,7 @@ contains
    !> Reads LEVELS= of *REFINE; 0 after an error.
    subroutine take_levels(card, deck, levels)
       type(keyword_card_type), intent(in) :: card          !! the *REFINE
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       integer, intent(inout) :: levels                     !! 0 before
 
       if (card%lacks('LEVELS')) call deck%error(card%place, '*REFINE needs LEVELS=')
@@ -244,7 +244,7 @@ contains
    !> Takes the *REFINE cards that name a surface or a set.
    subroutine build_regions(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       type(model_type), intent(inout) :: model             !! its mesh; receives the regions
       type(refined_region_type) :: region
       integer :: k

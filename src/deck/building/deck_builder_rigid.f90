@@ -18,7 +18,7 @@ contains
    !> surfaces that are lines.
    subroutine build_rigid_body(card, deck, model, coupling)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       type(model_type), intent(inout) :: model             !! receives whom its surfaces follow
       type(coupling_type), intent(inout) :: coupling       !! receives the rest
       character(*), parameter :: names(3) = [character(8) :: 'NSET', 'TIE NSET', 'PIN NSET']
@@ -77,7 +77,7 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(place_type), intent(in) :: place                !! where it is named
       character(*), intent(in) :: advice                   !! what to name in its place
-      type(deck_type), intent(inout) :: deck   !! receives the error
+      type(deck_type), intent(inout) :: deck               !! receives the error
       integer, intent(inout) :: surface                    !! 0 for none, and after an error
 
       if (surface == 0) return

@@ -231,7 +231,7 @@ contains
    !> Builds all surfaces.
    subroutine build_surfaces(cards, deck, mesh)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives their places and errors
+      type(deck_type), intent(inout) :: deck               !! receives their places and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the surfaces
       integer, allocatable :: places(:)
       integer :: n

@@ -42,7 +42,7 @@ contains
    !> Builds all steps, in their order.
    subroutine build_steps(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! receives requests and notes and errors
+      type(deck_type), intent(inout) :: deck               !! receives requests and notes and errors
       type(model_type), intent(inout) :: model             !! receives the steps
       type(step_controls_type) :: controls
       type(card_counts_type) :: counts
@@ -366,7 +366,7 @@ contains
    !> First increment, period, smallest and largest increment.
    subroutine build_increments(data, deck, step)
       type(data_card_type), intent(in) :: data             !! data card of the analysis
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors and warnings
+      type(deck_type), intent(inout) :: deck               !! receives notes and errors and warnings
       type(step_type), intent(inout) :: step               !! receives the times
       real(dp) :: given(5)
       integer :: comma, most

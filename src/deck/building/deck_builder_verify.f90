@@ -28,7 +28,7 @@ contains
    !> Builds all checks.
    subroutine build_verifications(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! numbers of nodes; receives errors
+      type(deck_type), intent(inout) :: deck               !! numbers of nodes; receives errors
       type(model_type), intent(inout) :: model             !! receives the checks
       character(:), allocatable :: kind
       integer, allocatable :: places(:)
@@ -55,7 +55,7 @@ contains
    subroutine check_heat_quantities(verifiable, model, deck)
       type(quantity_type), intent(in) :: verifiable(:)     !! what *VERIFY may name
       type(model_type), intent(in) :: model                !! steps and checks
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       integer :: i, quantity
       logical :: is_told
 

@@ -150,7 +150,7 @@ contains
    !> after it. The deck has no errors, of which these may only be the consequence.
    subroutine check_usage(cards, deck, model)
       type(cards_type), intent(in) :: cards
-      type(deck_type), intent(inout) :: deck   !! requests; receives warnings
+      type(deck_type), intent(inout) :: deck              !! requests; receives warnings
       type(model_type), intent(in) :: model               !! amplitudes and steps
       logical :: told(size(model%amplitudes))
 

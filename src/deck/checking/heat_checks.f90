@@ -27,7 +27,7 @@ contains
    subroutine check_heat_paths(cards, model, deck)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model               !! with its loads and supports
-      type(deck_type), intent(inout) :: deck   !! receives warnings
+      type(deck_type), intent(inout) :: deck              !! receives warnings
       integer :: i
 
       call check_expansion(cards, model, deck)

@@ -66,7 +66,7 @@ contains
 
    !> Loads of a step that add up at one location have the same time history.
    subroutine check_amplitudes(deck, model)
-      type(deck_type), intent(inout) :: deck   !! requests; receives an error
+      type(deck_type), intent(inout) :: deck               !! requests; receives an error
       type(model_type), intent(in) :: model                !! its loads on the mesh of the deck
       integer :: i, s
 
@@ -87,7 +87,7 @@ contains
    !> Index of the first step in which heat is loaded or a temperature prescribed; that behind the
    !> last step when there is none.
    pure integer function first_heat(deck, model)
-      type(deck_type), intent(in) :: deck   !! requests
+      type(deck_type), intent(in) :: deck              !! requests
       type(model_type), intent(in) :: model            !! steps
       integer :: i
 

@@ -213,7 +213,7 @@ contains
    !> The Jacobian is positive at the integration points of every element. Elements that go round
    !> clockwise are reported once.
    subroutine check_jacobians(deck, mesh, inverted)
-      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
+      type(deck_type), intent(inout) :: deck !! places for messages; receives errors
       type(mesh_type), intent(in) :: mesh
       logical, intent(out) :: inverted(:)    !! (elements) whether its sides may be wrong
       real(dp), allocatable :: jacobians(:)

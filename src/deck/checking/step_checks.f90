@@ -22,7 +22,7 @@ contains
    subroutine check_continuations(cards, model, deck)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model               !! with its loads
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck              !! receives errors
       character(:), allocatable :: obstacle
       integer :: k, n
 
@@ -141,7 +141,7 @@ contains
 
    !> Reports what the steps that store heat lack, each thing once, at the first of them.
    subroutine check_storage(deck, model)
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck               !! receives errors
       type(model_type), intent(in) :: model                !! with its initial temperatures
       logical :: is_used(size(model%materials))
       integer :: first, m

@@ -41,7 +41,7 @@ contains
    !> Warns of faces that touch and are not related, once for two bodies, for the seams of a body
    !> and for hanging nodes.
    subroutine check_touches(deck, model)
-      type(deck_type), intent(inout) :: deck   !! places for messages; receives warnings
+      type(deck_type), intent(inout) :: deck              !! places for messages; receives warnings
       type(model_type), intent(in) :: model               !! not refined, its bodies known
       type(element_sides_type) :: sides
       type(touch_type), allocatable :: touches(:)

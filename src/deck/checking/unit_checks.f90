@@ -58,7 +58,7 @@ contains
    subroutine check_units(cards, model, deck)
       type(cards_type), intent(in) :: cards
       type(model_type), intent(in) :: model               !! with its loads and supports
-      type(deck_type), intent(inout) :: deck   !! receives warnings
+      type(deck_type), intent(inout) :: deck              !! receives warnings
       real(dp) :: degree, metre, pascal, watt
       integer :: k, m
 
