@@ -47,7 +47,7 @@ contains
    !> Builds the model that a deck describes, on the mesh of the deck, from which `vary` makes those
    !> that are solved. It is usable only if the report then has no errors.
    subroutine build_model(cards, verifiable, estimated, model, report)
-      type(cards_type), intent(in) :: cards               !! the cards, as read_deck left them
+      type(cards_type), intent(in), target :: cards       !! the cards, as read_deck left them
       type(quantity_type), intent(in) :: verifiable(:)    !! what *VERIFY may name
       type(quantity_type), intent(in) :: estimated(:)     !! what *ACCURACY may name
       type(model_type), intent(out) :: model
@@ -57,6 +57,7 @@ contains
 
       if (size(cards%keywords) == 0) return
       call deck%take_over(report)
+      deck%cards => cards
       deck%verifiable = verifiable
       if (allocated(cards%notes)) then
          do i = 1, size(cards%notes)
@@ -64,39 +65,39 @@ contains
          end do
       end if
       call check_structure(cards, deck)
-      call build_options(cards, deck, model)
-      call build_mesh(cards, deck, model%mesh)
-      call build_regions(cards, deck, model)
-      call build_materials(cards, deck, model)
-      call build_orientations(cards, deck, model)
-      call build_sections(cards, deck, model)
-      call build_amplitudes(cards, deck, model)
-      call build_time_points(cards, deck)
-      call build_temperatures(cards, deck, model)
-      call build_initial_stresses(cards, deck, model%mesh)
-      call build_interactions(cards, deck, model)
-      call build_contacts(cards, deck, model)
-      call build_ties(cards, deck, model)
-      call build_transforms(cards, deck, model)
-      call build_bars(cards, deck, model)
-      call build_equations(cards, deck, model)
-      call build_couplings(cards, deck, model)
-      call build_pre_tensions(cards, deck, model)
-      call build_steps(cards, deck, model)
+      call build_options(deck, model)
+      call build_mesh(deck, model%mesh)
+      call build_regions(deck, model)
+      call build_materials(deck, model)
+      call build_orientations(deck, model)
+      call build_sections(deck, model)
+      call build_amplitudes(deck, model)
+      call build_time_points(deck)
+      call build_temperatures(deck, model)
+      call build_initial_stresses(deck, model%mesh)
+      call build_interactions(deck, model)
+      call build_contacts(deck, model)
+      call build_ties(deck, model)
+      call build_transforms(deck, model)
+      call build_bars(deck, model)
+      call build_equations(deck, model)
+      call build_couplings(deck, model)
+      call build_pre_tensions(deck, model)
+      call build_steps(deck, model)
       why = reason_of_deck(model)
       if (why /= no_reason .and. model%estimates_errors) then
          call deck%note('no bounds of errors: they do not know '//words_of_reason(why))
          model%estimates_errors = .false.
       end if
-      call build_verifications(cards, deck, model)
-      call build_accuracy(cards, estimated, deck, model)
+      call build_verifications(deck, model)
+      call build_accuracy(estimated, deck, model)
       if (allocated(model%accuracy%targets) .and. any(model%steps%restart_frequency > 0)) then
          call deck%note('*RESTART is ignored: each round of *ACCURACY solves the deck anew')
          model%steps%restart_frequency = 0
       end if
       call build_load_axis(cards%last, deck, model)
       call check_model(deck, model)
-      if (.not. deck%has_errors()) call complete_model(cards, deck, model)
+      if (.not. deck%has_errors()) call complete_model(deck, model)
       if (.not. allocated(deck%notes)) allocate (deck%notes(0))
       call move_alloc(deck%notes, model%notes)
       model%warnings = deck%warnings()
@@ -105,40 +106,38 @@ contains
 
    !> Builds nodes and elements, their sets and surfaces. The sets of nodes come last: they may
    !> consist of the nodes of the others.
-   subroutine build_mesh(cards, deck, mesh)
-      type(cards_type), intent(in) :: cards
+   subroutine build_mesh(deck, mesh)
       type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(inout) :: mesh
       type(set_type), allocatable :: sets(:)
       integer, allocatable :: corners(:, :)
       integer :: errors
 
-      call build_nodes(cards, deck, mesh)
-      call build_lines(cards, deck)
-      call build_elements(cards, deck, mesh)
+      call build_nodes(deck, mesh)
+      call build_lines(deck)
+      call build_elements(deck, mesh)
       ! ORDER=1 drops nodes between corners; refined elements have those of the deck at corners.
       allocate (corners(2, size(mesh%node_number)), source=0)
       if (deck%order == 1 .and. deck%levels == 0) corners = side_corners(mesh)
       deck%dropped = corners(1, :) > 0
       errors = deck%error_count()
-      call build_sets('element', cards, deck, mesh, sets)
+      call build_sets('element', deck, mesh, sets)
       call split_line_sets(size(mesh%element_number), sets, deck%line_sets)
       call move_alloc(sets, mesh%element_sets)
       deck%sets_sound = deck%error_count() == errors .and. .not. deck%has_lost('element')
-      call build_surfaces(cards, deck, mesh)
+      call build_surfaces(deck, mesh)
       errors = deck%error_count()
-      call build_sets('node', cards, deck, mesh, sets)
+      call build_sets('node', deck, mesh, sets)
       call move_alloc(sets, mesh%node_sets)
       deck%node_index%sets%others = deck%element_index%sets%name_index_type
       deck%element_index%sets%others = deck%node_index%sets%name_index_type
-      call build_node_surfaces(cards, deck, mesh)
+      call build_node_surfaces(deck, mesh)
       deck%sets_sound = deck%sets_sound .and. deck%error_count() == errors .and. &
          .not. deck%has_lost('node set')
    end subroutine build_mesh
 
    !> Puts the loads and supports of a sound deck on its mesh, and checks what that shows.
-   subroutine complete_model(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine complete_model(deck, model)
       type(deck_type), intent(inout) :: deck
       type(model_type), intent(inout) :: model
       integer :: s
@@ -164,14 +163,14 @@ contains
       call check_amplitudes(deck, model)
       call check_starts(deck, model)
       if (deck%analyses_sound) call check_storage(deck, model)
-      if (deck%analyses_sound) call check_continuations(cards, model, deck)
+      if (deck%analyses_sound) call check_continuations(model, deck)
       if (.not. deck%has_errors()) then
-         call check_usage(cards, deck, model)
-         call check_heat_paths(cards, model, deck)
-         call check_friction_heat(cards, deck, model)
-         call check_units(cards, model, deck)
+         call check_usage(deck, model)
+         call check_heat_paths(model, deck)
+         call check_friction_heat(deck, model)
+         call check_units(model, deck)
       end if
-      call note_defaults(cards, deck, model)
+      call note_defaults(deck, model)
    end subroutine complete_model
 
    !> Gives a model what its deck asks for, and the places of the supports in words.
@@ -196,8 +195,7 @@ contains
    end subroutine take_requests
 
    !> Notes the defaults of what the deck does not say at all.
-   subroutine note_defaults(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine note_defaults(deck, model)
       type(deck_type), intent(inout) :: deck
       type(model_type), intent(in) :: model
 
@@ -216,7 +214,7 @@ contains
       if (any(model%materials%has_specific_heat) .and. .not. any( &
          model%steps%is_transient)) call deck%note('*SPECIFIC HEAT is ignored: no step stores heat')
       if (.not. any(solves_heat(model%steps%analysis))) return
-      if (card_count(cards, 'THERMAL SCHEME') == 0) then
+      if (card_count(deck%cards, 'THERMAL SCHEME') == 0) then
          if (any(model%steps%is_transient)) call deck%note('no *THERMAL SCHEME: L-STABLE where '// &
             'heat is stored')
          if (any(solves_heat(model%steps%analysis) .and. &

@@ -2,7 +2,7 @@
 module deck_builder_bars
    use bars, only: bar_type
    use card_values, only: need_field, read_row
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_types, only: axial_spring, drawn_line, ground_spring, truss
@@ -20,21 +20,20 @@ module deck_builder_bars
 contains
 
    !> Builds all springs and trusses; sections are known.
-   subroutine build_bars(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_bars(deck, model)
       type(deck_type), intent(inout) :: deck               !! the lines of the deck; receives errors
       type(model_type), intent(inout) :: model             !! receives the bars
       type(bar_type) :: of_line(size(deck%line_number))
       integer :: i
       integer, allocatable :: card(:)
 
-      card = cards_of(cards, 'SPRING')
+      card = cards_of(deck%cards, 'SPRING')
       do i = 1, size(card)
-         call read_spring(cards%keywords(card(i)), deck, model, of_line)
+         call read_spring(deck%cards%keywords(card(i)), deck, model, of_line)
       end do
-      card = cards_of(cards, 'SOLID SECTION')
+      card = cards_of(deck%cards, 'SOLID SECTION')
       do i = 1, size(card)
-         call take_section(cards%keywords(card(i)), i, deck, model, of_line)
+         call take_section(deck%cards%keywords(card(i)), i, deck, model, of_line)
       end do
       do i = 1, size(of_line)
          if (deck%line_kind(i) <= drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle

@@ -3,7 +3,7 @@
 module deck_builder_contact
    use card_parameters, only: choice, need_parameter, take_parameter, take_within
    use card_values, only: check_extra, need_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
       friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
@@ -23,19 +23,18 @@ module deck_builder_contact
 contains
 
    !> Builds all interfaces, one for each data card, and their clearances.
-   subroutine build_contacts(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_contacts(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives notes and errors
       type(model_type), intent(inout) :: model             !! receives the interfaces
       integer, allocatable :: places(:)
       type(contact_definition_type) :: common
       integer :: i, k, n
 
-      places = cards_of(cards, 'CONTACT PAIR')
-      allocate (model%contacts(data_count(cards, places)))
+      places = cards_of(deck%cards, 'CONTACT PAIR')
+      allocate (model%contacts(data_count(deck%cards, places)))
       n = 0
       do k = 1, size(places)
-         associate (card => cards%keywords(places(k)))
+         associate (card => deck%cards%keywords(places(k)))
             call read_parameters(card, deck, common)
             do i = 1, size(card%data)
                n = n + 1
@@ -45,9 +44,9 @@ contains
             end do
          end associate
       end do
-      places = cards_of(cards, 'CLEARANCE')
+      places = cards_of(deck%cards, 'CLEARANCE')
       do n = 1, size(places)
-         call build_clearance(cards%keywords(places(n)), deck, model%mesh, model%contacts)
+         call build_clearance(deck%cards%keywords(places(n)), deck, model%mesh, model%contacts)
       end do
    end subroutine build_contacts
 
@@ -177,18 +176,17 @@ contains
    end subroutine check_name
 
    !> Builds all ties, one for each data card.
-   subroutine build_ties(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_ties(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives notes and errors
       type(model_type), intent(inout) :: model             !! receives the ties
       integer, allocatable :: places(:)
       integer :: i, k, n
 
-      places = cards_of(cards, 'TIE')
-      allocate(model%ties(data_count(cards, places)))
+      places = cards_of(deck%cards, 'TIE')
+      allocate(model%ties(data_count(deck%cards, places)))
       n = 0
       do k = 1, size(places)
-         associate (card => cards%keywords(places(k)))
+         associate (card => deck%cards%keywords(places(k)))
             call check_tie_card(card, model%ties(:n), deck)
             do i = 1, size(card%data)
                n = n + 1
@@ -224,8 +222,7 @@ contains
    end subroutine check_tie_card
 
    !> Reads one card of a step.
-   subroutine build_contact_change(cards, k, step, model, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine build_contact_change(k, step, model, deck)
       integer, intent(in) :: k                             !! the keyword card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
       type(model_type), intent(inout) :: model             !! receives the change
@@ -235,26 +232,27 @@ contains
 
       if (step == 0) return
       changes = model%steps(step)%changes
-      select case (cards%keywords(k)%name)
+      select case (deck%cards%keywords(k)%name)
       case ('CHANGE FRICTION')
-         if (is_keyword(cards, k + 1, 'FRICTION')) return
-         call deck%error(cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION after it')
+         if (is_keyword(deck%cards, k + 1, 'FRICTION')) return
+         call deck%error(deck%cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION '// &
+            'after it')
       case ('FRICTION')
-         if (is_keyword(cards, k - 1, 'CHANGE FRICTION')) then
-            call build_friction(cards%keywords(k), deck, change%friction)
-            call deck%need_named(cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
+         if (is_keyword(deck%cards, k - 1, 'CHANGE FRICTION')) then
+            call build_friction(deck%cards%keywords(k), deck, change%friction)
+            call deck%need_named(deck%cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
                change%interaction)
             if (change%interaction == 0) return
             if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
             changes%frictions = [changes%frictions, change]
          else
-            call deck%error(cards%keywords(k)%place, '*FRICTION in a step needs *CHANGE '// &
+            call deck%error(deck%cards%keywords(k)%place, '*FRICTION in a step needs *CHANGE '// &
                'FRICTION, INTERACTION= before it')
          end if
       case ('MODEL CHANGE')
-         call change_pairs(cards%keywords(k), deck, model, changes)
+         call change_pairs(deck%cards%keywords(k), deck, model, changes)
       case default
-         call change_interferences(cards%keywords(k), step, model, deck, changes)
+         call change_interferences(deck%cards%keywords(k), step, model, deck, changes)
       end select
       model%steps(step)%changes = changes
    end subroutine build_contact_change

@@ -3,7 +3,7 @@
 module deck_builder_equations
    use card_parameters, only: choice, need_parameter
    use card_values, only: need_field, read_row
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use equations, only: coupling_type, equation_type
    use deck_context, only: deck_type
@@ -35,8 +35,7 @@ module deck_builder_equations
 contains
 
    !> Builds all equations.
-   subroutine build_equations(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_equations(deck, model)
       type(deck_type), intent(inout) :: deck               !! numbers -> indexes; receives errors
       type(model_type), intent(inout) :: model             !! receives the equations
       type(term_type), allocatable :: terms(:)
@@ -47,9 +46,9 @@ contains
 
       count = 0
       allocate (list(64))
-      places = cards_of(cards, 'EQUATION')
+      places = cards_of(deck%cards, 'EQUATION')
       do k = 1, size(places)
-         associate (card => cards%keywords(places(k)))
+         associate (card => deck%cards%keywords(places(k)))
             data = 1
             do while (data <= size(card%data))
                first = data
@@ -203,37 +202,38 @@ contains
 
    !> Builds all couplings and rigid bodies. Each has a node for its rotation, which the builder of
    !> nodes left behind those of the deck.
-   subroutine build_couplings(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_couplings(deck, model)
       type(deck_type), intent(inout) :: deck  !! numbers -> indexes; receives notes; receives errors
       type(model_type), intent(inout) :: model             !! receives the couplings
       integer :: errors, k, n
 
       errors = deck%error_count()
-      allocate (model%couplings(card_count(cards, 'COUPLING') + card_count(cards, 'RIGID BODY')))
+      allocate ( &
+         model%couplings(card_count(deck%cards, 'COUPLING') + card_count(deck%cards, 'RIGID BODY')))
       n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name == 'RIGID BODY') then
+      do k = 1, size(deck%cards%keywords)
+         if (deck%cards%keywords(k)%name == 'RIGID BODY') then
             n = n + 1
-            call begin_coupling(cards%keywords(k), n, deck, model)
-            if (cards%keywords(k)%has('ROT NODE')) call find_reference('ROT NODE', &
-               cards%keywords(k), deck, model, model%couplings(n)%rotation_node)
-            call build_rigid_body(cards%keywords(k), deck, model, model%couplings(n))
-         else if (cards%keywords(k)%name == 'COUPLING') then
+            call begin_coupling(deck%cards%keywords(k), n, deck, model)
+            if (deck%cards%keywords(k)%has('ROT NODE')) call find_reference('ROT NODE', &
+               deck%cards%keywords(k), deck, model, model%couplings(n)%rotation_node)
+            call build_rigid_body(deck%cards%keywords(k), deck, model, model%couplings(n))
+         else if (deck%cards%keywords(k)%name == 'COUPLING') then
             n = n + 1
-            call begin_coupling(cards%keywords(k), n, deck, model)
-            call deck%need_named(cards%keywords(k), 'SURFACE', 'surface', &
+            call begin_coupling(deck%cards%keywords(k), n, deck, model)
+            call deck%need_named(deck%cards%keywords(k), 'SURFACE', 'surface', &
                model%couplings(n)%surface)
-            call need_faces(model%mesh, cards%keywords(k)%place_of('SURFACE'), 'it follows the '// &
-               'reference node of its *RIGID BODY', deck, model%couplings(n)%surface)
-            if (is_keyword(cards, k + 1, 'KINEMATIC')) cycle
-            call deck%error(cards%keywords(k)%place, '*KINEMATIC is missing: it must directly '// &
-               'follow *COUPLING and name the degrees of freedom')
-         else if (cards%keywords(k)%name == 'KINEMATIC') then
-            if (is_keyword(cards, k - 1, 'COUPLING')) then
-               call read_degrees(cards%keywords(k), deck, model%couplings(n))
+            call need_faces(model%mesh, deck%cards%keywords(k)%place_of('SURFACE'), 'it '// &
+               'follows the reference node of its *RIGID BODY', deck, model%couplings(n)%surface)
+            if (is_keyword(deck%cards, k + 1, 'KINEMATIC')) cycle
+            call deck%error(deck%cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
+               'directly follow *COUPLING and name the degrees of freedom')
+         else if (deck%cards%keywords(k)%name == 'KINEMATIC') then
+            if (is_keyword(deck%cards, k - 1, 'COUPLING')) then
+               call read_degrees(deck%cards%keywords(k), deck, model%couplings(n))
             else
-               call deck%error(cards%keywords(k)%place, '*KINEMATIC must directly follow *COUPLING')
+               call deck%error(deck%cards%keywords(k)%place, '*KINEMATIC must directly follow '// &
+                  '*COUPLING')
             end if
          end if
       end do
@@ -342,18 +342,17 @@ contains
    end subroutine read_range
 
    !> Builds all transforms.
-   subroutine build_transforms(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_transforms(deck, model)
       type(deck_type), intent(inout) :: deck   !! names of the node sets; receives errors
       type(model_type), intent(inout) :: model             !! receives them
       integer, allocatable :: places(:)
       integer :: n
 
-      places = cards_of(cards, 'TRANSFORM')
+      places = cards_of(deck%cards, 'TRANSFORM')
       allocate (model%transforms(size(places)))
       do n = 1, size(places)
-         call build_transform(cards%keywords(places(n)), deck, model%transforms(n))
-         call check_nodes(cards%keywords(places(n)), n, model, deck)
+         call build_transform(deck%cards%keywords(places(n)), deck, model%transforms(n))
+         call check_nodes(deck%cards%keywords(places(n)), n, model, deck)
       end do
    end subroutine build_transforms
 

@@ -3,7 +3,7 @@
 module deck_builder_gap_heat
    use card_parameters, only: take_within
    use card_values, only: read_row, read_rows
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_gas, law_none
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric
@@ -51,16 +51,15 @@ contains
    end subroutine build_friction_heat
 
    !> Heat of friction needs friction that allows slip, and time. Checked with all steps read.
-   subroutine check_friction_heat(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine check_friction_heat(deck, model)
       type(deck_type), intent(inout) :: deck   !! receives errors and warnings
       type(model_type), intent(in) :: model
       real(dp) :: largest
       integer :: k, n, s
 
       n = 0
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             if (card%name == 'SURFACE INTERACTION') n = n + 1
             if (card%name /= 'GAP HEAT GENERATION' .or. n == 0) cycle
             largest = largest_friction(model, n)

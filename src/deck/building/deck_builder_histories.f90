@@ -5,7 +5,7 @@ module deck_builder_histories
    use amplitudes, only: amplitude_type
    use card_parameters, only: choice, chosen, take_parameter, take_within
    use card_values, only: decimal_comma, need_field, read_row, report_decimal_comma
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type, take_name
    use deck_structure, only: cards_of
    use element_kinds, only: kind_count, plane_stress
@@ -34,37 +34,35 @@ module deck_builder_histories
 contains
 
    !> Builds all amplitudes.
-   subroutine build_amplitudes(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_amplitudes(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives their names and errors
       type(model_type), intent(inout) :: model             !! receives the amplitudes
       integer, allocatable :: places(:)
       integer :: n
 
-      places = cards_of(cards, 'AMPLITUDE')
+      places = cards_of(deck%cards, 'AMPLITUDE')
       allocate(model%amplitudes(size(places)))
       do n = 1, size(places)
-         call take_name(cards, places(n), 'amplitude', deck%amplitudes, deck%deck_report_type, &
-            model%amplitudes(n)%name)
-         call build_amplitude(cards%keywords(places(n)), deck, model%amplitudes(n))
+         call take_name(deck%cards, places(n), 'amplitude', deck%amplitudes, &
+            deck%deck_report_type, model%amplitudes(n)%name)
+         call build_amplitude(deck%cards%keywords(places(n)), deck, model%amplitudes(n))
       end do
    end subroutine build_amplitudes
 
    !> Builds all *TIME POINTS: times, any number of them a card, or start, end and interval.
-   subroutine build_time_points(cards, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine build_time_points(deck)
       type(deck_type), intent(inout) :: deck   !! receives them and errors
       integer, allocatable :: places(:)
       integer :: i, j, n
       logical :: valid
       real(dp) :: values(3)
 
-      places = cards_of(cards, 'TIME POINTS')
+      places = cards_of(deck%cards, 'TIME POINTS')
       allocate (deck%time_points(size(places)))
       do n = 1, size(places)
-         call take_name(cards, places(n), 'time points', deck%time_point_names, &
+         call take_name(deck%cards, places(n), 'time points', deck%time_point_names, &
             deck%deck_report_type, deck%time_points(n)%name)
-         associate (card => cards%keywords(places(n)), points => deck%time_points(n))
+         associate (card => deck%cards%keywords(places(n)), points => deck%time_points(n))
             points%total_time = &
                choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
             allocate (points%times(0))
@@ -205,8 +203,7 @@ contains
    end function is_history
 
    !> Reads all initial temperatures.
-   subroutine build_temperatures(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_temperatures(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives the requests and errors
       type(model_type), intent(in) :: model                !! mesh and its sets
       type(request_type) :: request
@@ -217,9 +214,9 @@ contains
       real(dp) :: given(2)
 
       given = 0.0_dp
-      places = cards_of(cards, 'INITIAL CONDITIONS')
+      places = cards_of(deck%cards, 'INITIAL CONDITIONS')
       do k = 1, size(places)
-         associate (card => cards%keywords(places(k)))
+         associate (card => deck%cards%keywords(places(k)))
             if (card%lacks('TYPE')) then
                call deck%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE or '// &
                   'TYPE=STRESS')
@@ -241,15 +238,14 @@ contains
    end subroutine build_temperatures
 
    !> Reads all initial stresses; later cards replace earlier ones.
-   subroutine build_initial_stresses(cards, deck, mesh)
-      type(cards_type), intent(in) :: cards
+   subroutine build_initial_stresses(deck, mesh)
       type(deck_type), intent(inout) :: deck               !! numbers of elements; receives errors
       type(mesh_type), intent(inout) :: mesh               !! receives the stresses
       integer, allocatable :: points(:)
       integer :: j, k
 
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             if (card%name /= 'INITIAL CONDITIONS') cycle
             if (chosen(card, 'TYPE', initial_kinds) /= 'STRESS' .or. card%flawed) cycle
             if (.not. allocated(mesh%initial_stress)) allocate (mesh%initial_stress(4, &

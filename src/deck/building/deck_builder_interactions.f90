@@ -31,29 +31,28 @@ module deck_builder_interactions
 contains
 
    !> Builds all surface interactions; a law belongs to the last *SURFACE INTERACTION before it.
-   subroutine build_interactions(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_interactions(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives notes and errors and warnings
       type(model_type), intent(inout) :: model             !! receives the interactions
       type(interaction_type) :: interaction
       type(place_type) :: law_place
       integer :: k, n, errors
 
-      allocate(model%interactions(card_count(cards, 'SURFACE INTERACTION')))
+      allocate(model%interactions(card_count(deck%cards, 'SURFACE INTERACTION')))
       n = 0
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             if (card%name == 'STEP') exit
             select case (card%name)
             case ('SURFACE INTERACTION')
                errors = deck%error_count()
                n = n + 1
-               call take_name(cards, k, 'surface interaction', deck%interactions, &
+               call take_name(deck%cards, k, 'surface interaction', deck%interactions, &
                   deck%deck_report_type, model%interactions(n)%name)
                law_place = card%place
                call ignore_thickness(card, deck)
                interaction = model%interactions(n)
-               call build_laws(cards, k, model, deck, interaction, law_place)
+               call build_laws(k, model, deck, interaction, law_place)
                model%interactions(n) = interaction
                if (deck%error_count() > errors .or. card%flawed) cycle
                call check_law(card, law_place, model%interactions(n), deck)
@@ -85,8 +84,7 @@ contains
    end subroutine ignore_thickness
 
    !> Reads the laws behind one *SURFACE INTERACTION.
-   subroutine build_laws(cards, place, model, deck, interaction, law_place)
-      type(cards_type), intent(in) :: cards
+   subroutine build_laws(place, model, deck, interaction, law_place)
       integer, intent(in) :: place
       type(model_type), intent(in) :: model          ! with its mesh
       type(deck_type), intent(inout) :: deck
@@ -99,8 +97,8 @@ contains
       friction = 0
       heat = 0
       radiation = 0
-      do k = place + 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = place + 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
             if (size(card%data) == 0 .and. all(card%name /= [character(19) :: 'FRICTION', &
                'GAP HEAT GENERATION', 'SURFACE BEHAVIOR'])) cycle
@@ -109,20 +107,20 @@ contains
             end if
             select case (card%name)
             case ('FRICTION')
-               call count_once(cards, k, friction, deck)
+               call count_once(k, friction, deck)
                call build_friction(card, deck, interaction%friction)
             case ('SURFACE BEHAVIOR')
-               call count_once(cards, k, behavior, deck)
+               call count_once(k, behavior, deck)
                call build_behavior(card, deck, interaction%overlap)
             case ('GAP HEAT GENERATION')
-               call count_once(cards, k, heat, deck)
+               call count_once(k, heat, deck)
                call build_friction_heat(card, model, deck, interaction%heat)
             case ('GAP RADIATION')
-               call count_once(cards, k, radiation, deck)
+               call count_once(k, radiation, deck)
             case ('GAP LAW')
                call build_gap_law(card, interaction%name, model%constants, deck, interaction%law)
             case ('GAP CONDUCTANCE')
-               if (is_of_clearance(card, has_pressure(cards, place))) then
+               if (is_of_clearance(card, has_pressure(deck%cards, place))) then
                   call build_gap_conductance(card, interaction%name, .true., deck, interaction%law)
                else
                   call build_gap_conductance(card, interaction%name, .false., deck, table)
@@ -133,7 +131,7 @@ contains
          end associate
       end do
       call join_gap_conductance(table, interaction%name, deck, interaction%law)
-      if (radiation > 0) call build_gap_radiation(cards%keywords(radiation), model%constants, &
+      if (radiation > 0) call build_gap_radiation(deck%cards%keywords(radiation), model%constants, &
          deck, interaction%law)
    end subroutine build_laws
 
@@ -151,16 +149,15 @@ contains
    end function has_pressure
 
    !> Takes the keyword card of a law that a surface interaction has once.
-   subroutine count_once(cards, k, taken, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine count_once(k, taken, deck)
       integer, intent(in) :: k
       integer, intent(inout) :: taken         ! the card before, 0 for none; receives this one
       type(deck_type), intent(inout) :: deck
 
-      associate (card => cards%keywords(k))
+      associate (card => deck%cards%keywords(k))
          if (taken > 0) call deck%error(card%place, 'a second *'//card%name//' in one surface '// &
-            'interaction; the first is on '//deck%source%words_of(cards%keywords(taken)%place)// &
-            ': leave one of them out')
+            'interaction; the first is on '// &
+            deck%source%words_of(deck%cards%keywords(taken)%place)//': leave one of them out')
       end associate
       taken = k
    end subroutine count_once

@@ -38,21 +38,20 @@ contains
    end function element_cards
 
    !> Builds the lines, in the order of the deck; the nodes are known.
-   subroutine build_lines(cards, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine build_lines(deck)
       type(deck_type), intent(inout) :: deck   !! receives the lines and errors
       character(:), allocatable :: name
       integer, allocatable :: places(:)
       integer :: k, j, n
 
-      places = element_cards(cards, of_lines=.true.)
-      n = data_count(cards, places)
+      places = element_cards(deck%cards, of_lines=.true.)
+      n = data_count(deck%cards, places)
       allocate(deck%line_number(n), deck%line_nodes(nodes_per_line, n), source=0)
       allocate(deck%line_kind(n), source=drawn_line)
       allocate(deck%line_place(n))
       n = 0
       do k = 1, size(places)
-         associate (card => cards%keywords(places(k)))
+         associate (card => deck%cards%keywords(places(k)))
             name = to_upper(card%text('TYPE'))
             if (line_kind(name) == drawn_line) call deck%note('*ELEMENT, TYPE='//name// &
                ': lines are ignored, except for sets and surfaces that are made of them')
@@ -65,9 +64,9 @@ contains
             end do
          end associate
       end do
-      if (size(places) > 0 .and. &
-         data_count(cards, element_cards(cards, of_lines=.false.)) == 0) call deck%missing( &
-         cards%keywords(places(1))%place_of('TYPE'), 'the deck has lines, but no elements')
+      if (size(places) > 0 .and. data_count(deck%cards, &
+         element_cards(deck%cards, of_lines=.false.)) == 0) call deck%missing(deck%cards%keywords( &
+         places(1))%place_of('TYPE'), 'the deck has lines, but no elements')
    end subroutine build_lines
 
    !> Number and nodes of one line; nodes that do not exist are errors, and 0.

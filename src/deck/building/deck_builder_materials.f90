@@ -4,7 +4,7 @@ module deck_builder_materials
    use card_parameters, only: choice, take_parameter
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
       read_row, take_field
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type, take_name
    use deck_source, only: place_type
    use deck_structure, only: card_count, cards_of, has_stand_in
@@ -39,22 +39,21 @@ module deck_builder_materials
 contains
 
    !> Builds all materials; a property belongs to the last *MATERIAL before it.
-   subroutine build_materials(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_materials(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives places and notes and errors
       type(model_type), intent(inout) :: model             !! receives the materials
       integer :: k, n
 
-      n = card_count(cards, 'MATERIAL')
+      n = card_count(deck%cards, 'MATERIAL')
       allocate(model%materials(n), deck%material_place(n))
       n = 0
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             select case (card%name)
             case ('MATERIAL')
                n = n + 1
                deck%material_place(n) = card%place
-               call take_name(cards, k, 'material', deck%materials, deck%deck_report_type, &
+               call take_name(deck%cards, k, 'material', deck%materials, deck%deck_report_type, &
                   model%materials(n)%name)
                if (.not. deck%has_lost('material')) cycle
                call deck%lose('*ELASTIC')   ! another material may have these
@@ -357,18 +356,17 @@ contains
    end subroutine refuse_not_positive
 
    !> Builds all orientations.
-   subroutine build_orientations(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_orientations(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives their names and errors
       type(model_type), intent(inout) :: model             !! receives the orientations
       integer, allocatable :: places(:)
       integer :: n
 
-      places = cards_of(cards, 'ORIENTATION')
+      places = cards_of(deck%cards, 'ORIENTATION')
       allocate(model%orientations(size(places)))
       do n = 1, size(places)
-         associate (card => cards%keywords(places(n)))
-            call take_name(cards, places(n), 'orientation', deck%orientations, &
+         associate (card => deck%cards%keywords(places(n)))
+            call take_name(deck%cards, places(n), 'orientation', deck%orientations, &
                deck%deck_report_type, model%orientations(n)%name)
             if (size(card%data) > 0) call build_axes(card, model%orientations(n), deck)
          end associate
@@ -438,8 +436,7 @@ contains
    end subroutine turn_axes
 
    !> Builds all sections, and gives the elements theirs.
-   subroutine build_sections(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_sections(deck, model)
       type(deck_type), intent(inout) :: deck   !! receives notes, whether all is sound and errors
       type(model_type), intent(inout) :: model             !! receives the sections
       integer, allocatable :: places(:)
@@ -447,13 +444,13 @@ contains
       integer :: n, set
       logical :: valid
 
-      places = cards_of(cards, 'SOLID SECTION')
+      places = cards_of(deck%cards, 'SOLID SECTION')
       allocate(model%sections(size(places)))
       deck%sections_sound = &
-         .not. (has_stand_in(cards, 'SOLID SECTION') .or. deck%has_lost('element set'))
+         .not. (has_stand_in(deck%cards, 'SOLID SECTION') .or. deck%has_lost('element set'))
       valid = .true.
       do n = 1, size(places)
-         associate (card => cards%keywords(places(n)), section => model%sections(n))
+         associate (card => deck%cards%keywords(places(n)), section => model%sections(n))
             call deck%need_named(card, 'MATERIAL', 'material', section%material)
             call deck%take_named(card, 'ORIENTATION', 'orientation', section%orientation)
             if (size(card%data) > 0) then

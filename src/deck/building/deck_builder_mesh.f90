@@ -2,7 +2,7 @@
 module deck_builder_mesh
    use card_parameters, only: need_parameter
    use card_values, only: check_extra, check_unneeded, may_be_decimals, need_field, take_field
-   use cards, only: cards_type, data_card_type
+   use cards, only: data_card_type
    use deck_builder_lines, only: element_cards, read_node
    use deck_context, only: deck_type, plane_by_element
    use deck_reader, only: keyword_of
@@ -26,8 +26,7 @@ module deck_builder_mesh
 contains
 
    !> Builds the nodes, in the order of the deck.
-   subroutine build_nodes(cards, deck, mesh)
-      type(cards_type), intent(in) :: cards
+   subroutine build_nodes(deck, mesh)
       type(deck_type), intent(inout) :: deck               !! receives the numbers and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the nodes
       real(dp), allocatable :: heights(:)
@@ -35,14 +34,14 @@ contains
       integer :: j, k, n
       logical :: told
 
-      places = cards_of(cards, 'NODE')
-      n = data_count(cards, places)
+      places = cards_of(deck%cards, 'NODE')
+      n = data_count(deck%cards, places)
       allocate(mesh%node_number(n), mesh%coordinates(2, n), heights(n))
       allocate(deck%node_place(n), deck%node_valid(n))
       n = 0
       told = .false.
       do k = 1, size(places)
-         associate (rows => cards%keywords(places(k))%data)
+         associate (rows => deck%cards%keywords(places(k))%data)
             do j = 1, size(rows)
                n = n + 1
                deck%node_place(n) = rows(j)%place(1)
@@ -60,7 +59,7 @@ contains
       if (n == 0) call deck%lose('node')
       deck%node_index%noun = 'node'
       call deck%node_index%build(mesh%node_number)
-      call add_rotations(cards, deck, mesh)
+      call add_rotations(deck, mesh)
    end subroutine build_nodes
 
    !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
@@ -96,19 +95,18 @@ contains
    end subroutine drop_repeated
 
    !> Adds a node for the rotation of each coupling and rigid body, which no card can name.
-   subroutine add_rotations(cards, deck, mesh)
-      type(cards_type), intent(in) :: cards
+   subroutine add_rotations(deck, mesh)
       type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(inout) :: mesh
       real(dp) :: place(2)
       integer :: k
 
       if (size(mesh%node_number) == 0) return
-      do k = 1, size(cards%keywords)
-         if (all(cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
+      do k = 1, size(deck%cards%keywords)
+         if (all(deck%cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
          place = mesh%coordinates(:, 1)
          call add_node(mesh, place)
-         deck%node_place = [deck%node_place, cards%keywords(k)%place]
+         deck%node_place = [deck%node_place, deck%cards%keywords(k)%place]
          deck%node_valid = [deck%node_valid, .true.]
       end do
    end subroutine add_rotations
@@ -146,8 +144,7 @@ contains
 
    !> The nodes of elements lie in the plane z = 0, but for rounding. Others may be those of a
    !> drawing or of a rigid body.
-   subroutine check_heights(cards, deck, mesh)
-      type(cards_type), intent(in) :: cards
+   subroutine check_heights(deck, mesh)
       type(deck_type), intent(inout) :: deck   ! whether the elements are sound
       type(mesh_type), intent(in) :: mesh
       integer, allocatable :: places(:)
@@ -165,9 +162,9 @@ contains
       has_element(0) = .false.
       if (.not. any(has_element(1:size(deck%node_height)) .and. &
          abs(deck%node_height) > rounding)) return
-      places = cards_of(cards, 'NODE')
+      places = cards_of(deck%cards, 'NODE')
       do k = 1, size(places)
-         associate (rows => cards%keywords(places(k))%data)
+         associate (rows => deck%cards%keywords(places(k))%data)
             do j = 1, size(rows)
                call read_integer(rows(j)%text(1), number, valid)
                i = deck%node_index%find(number)
@@ -217,16 +214,15 @@ contains
 
    !> Builds the elements, in the order of the deck; one of a type that cannot be used keeps its
    !> number only.
-   subroutine build_elements(cards, deck, mesh)
-      type(cards_type), intent(in) :: cards
+   subroutine build_elements(deck, mesh)
       type(deck_type), intent(inout) :: deck               !! receives the numbers and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the elements
       character(:), allocatable :: name, message, note
       integer, allocatable :: places(:)
       integer :: i, k, j, kind, n, plane
 
-      places = element_cards(cards, of_lines=.false.)
-      n = data_count(cards, places)
+      places = element_cards(deck%cards, of_lines=.false.)
+      n = data_count(deck%cards, places)
       allocate(mesh%element_number(n), mesh%element_section(n))
       allocate(mesh%element_nodes(nodes_per_element, n), source=0)
       allocate(mesh%element_kind(n), source=quad8)
@@ -237,29 +233,31 @@ contains
       n = 0
       do i = 1, size(places)
          k = places(i)
-         call need_parameter(cards%keywords(k), 'TYPE', deck, name)
+         call need_parameter(deck%cards%keywords(k), 'TYPE', deck, name)
          message = ''
          if (len(name) > 0) then
             call take_element_type(name, kind, plane, message, note)
             if (len(note) > 0) call deck%note(note)
          end if
          if (plane == plane_stress .and. deck%plane == plane_by_element) call warn_of_gmsh( &
-            cards%keywords(k)%place_of('TYPE'), deck)
+            deck%cards%keywords(k)%place_of('TYPE'), deck)
          if (deck%plane /= plane_by_element) plane = deck%plane
-         if (len(message) > 0) call deck%error(cards%keywords(k)%place_of('TYPE'), message)
-         do j = 1, size(cards%keywords(k)%data)
+         if (len(message) > 0) call deck%error(deck%cards%keywords(k)%place_of('TYPE'), message)
+         do j = 1, size(deck%cards%keywords(k)%data)
             n = n + 1
-            deck%element_place(n) = cards%keywords(k)%data(j)%place(1)
-            call read_number(cards%keywords(k)%data(j), 'element', deck, mesh%element_number(n))
+            deck%element_place(n) = deck%cards%keywords(k)%data(j)%place(1)
+            call read_number(deck%cards%keywords(k)%data(j), 'element', deck, &
+               mesh%element_number(n))
             if (len(name) == 0 .or. len(message) > 0) cycle
             mesh%element_kind(n) = kind
             mesh%element_plane(n) = plane
-            call read_element_nodes(cards%keywords(k)%data(j), deck, &
+            call read_element_nodes(deck%cards%keywords(k)%data(j), deck, &
                mesh%element_nodes(:element_node_count(kind), n), deck%element_valid(n))
-            call check_layout(cards%keywords(k)%data(j), kind, cards%keywords(k)%place, deck)
+            call check_layout(deck%cards%keywords(k)%data(j), kind, deck%cards%keywords(k)%place, &
+               deck)
          end do
       end do
-      call check_heights(cards, deck, mesh)
+      call check_heights(deck, mesh)
       if (n == 0) call deck%lose('element')
       deck%element_index%noun = 'element'
       call deck%element_index%build(mesh%element_number)

@@ -2,7 +2,7 @@
 module deck_builder_node_surfaces
    use card_parameters, only: chosen, surface_kinds
    use card_values, only: read_row
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count
@@ -19,17 +19,16 @@ module deck_builder_node_surfaces
 contains
 
    !> Finds the faces of all surfaces of nodes.
-   subroutine build_node_surfaces(cards, deck, mesh)
-      type(cards_type), intent(in) :: cards
+   subroutine build_node_surfaces(deck, mesh)
       type(deck_type), intent(inout) :: deck   !! receives their places, and notes and errors
       type(mesh_type), intent(inout) :: mesh               !! with its node sets; receives the faces
       integer, allocatable :: places(:)
       logical, allocatable :: named(:)
       integer :: n, errors
 
-      places = cards_of(cards, 'SURFACE')
+      places = cards_of(deck%cards, 'SURFACE')
       do n = 1, size(places)
-         associate (card => cards%keywords(places(n)))
+         associate (card => deck%cards%keywords(places(n)))
             if (chosen(card, 'TYPE', surface_kinds) /= 'NODE') cycle
             errors = deck%error_count()
             call read_nodes(card, deck, mesh, named)

@@ -1,7 +1,7 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
    use card_parameters, only: choice, needed_choice, take_parameter, take_within
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
@@ -22,8 +22,7 @@ module deck_builder_options
 contains
 
    !> Reads *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
-   subroutine build_options(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_options(deck, model)
       type(deck_type), intent(inout) :: deck   !! receives plane, order, levels, axis and errors
       type(model_type), intent(inout) :: model             !! receives heading, units, solver
       character(:), allocatable :: solver
@@ -35,8 +34,8 @@ contains
       model%units%power = ''
       model%units%temperature = ''
       model%solver = solver_by_size
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             select case (card%name)
             case ('HEADING')
                if (size(card%data) == 0 .or. len(model%heading) > 0) cycle
@@ -242,16 +241,15 @@ contains
    end function is_prescribed
 
    !> Takes the *REFINE cards that name a surface or a set.
-   subroutine build_regions(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_regions(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives errors
       type(model_type), intent(inout) :: model             !! its mesh; receives the regions
       type(refined_region_type) :: region
       integer :: k
 
       allocate(model%regions(0))
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             if (card%name /= 'REFINE') cycle
             if (.not. (card%has('SURFACE') .or. card%has('ELSET'))) cycle
             call build_region(card, deck, model%mesh, region)

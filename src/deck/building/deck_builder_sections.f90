@@ -1,7 +1,7 @@
 !> *PRE-TENSION SECTION -> a body cut in two, and the section that joins its faces again.
 module deck_builder_sections
    use card_values, only: read_row
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_builder_equations, only: find_reference
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
@@ -19,17 +19,16 @@ module deck_builder_sections
 contains
 
    !> Builds all sections, behind the couplings: their nodes are behind all others.
-   subroutine build_pre_tensions(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_pre_tensions(deck, model)
       type(deck_type), intent(inout) :: deck   !! knows the nodes; receives notes; receives errors
       type(model_type), intent(inout) :: model             !! receives sections, nodes, surfaces
       type(coupling_type) :: section
       integer, allocatable :: places(:)
       integer :: k
 
-      places = cards_of(cards, 'PRE-TENSION SECTION')
+      places = cards_of(deck%cards, 'PRE-TENSION SECTION')
       do k = 1, size(places)
-         call build_section(cards%keywords(places(k)), deck, model, section)
+         call build_section(deck%cards%keywords(places(k)), deck, model, section)
          if (section%opposite > 0) then
             model%couplings = [model%couplings, section]
          else

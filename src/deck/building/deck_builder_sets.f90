@@ -2,7 +2,7 @@
 module deck_builder_sets
    use card_parameters, only: choice, need_parameter, surface_kinds
    use card_values, only: check_extra, need_field, read_row
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side
    use deck_builder_lines, only: is_line_card
    use deck_builder_rigid, only: need_faces
@@ -32,9 +32,8 @@ contains
 
    !> Builds all sets of nodes or of elements, lines among them; a name that is on several cards
    !> is one set.
-   subroutine build_sets(noun, cards, deck, mesh, sets)
+   subroutine build_sets(noun, deck, mesh, sets)
       character(*), intent(in) :: noun                           !! node or element
-      type(cards_type), intent(in) :: cards
       !> numbers -> indexes; receives the names; receives errors
       type(deck_type), intent(inout) :: deck
       type(mesh_type), intent(in) :: mesh  !! for nodes: has the element sets and surfaces
@@ -46,12 +45,12 @@ contains
       parameter = merge('NSET ', 'ELSET', noun == 'node')
       parameter = trim(parameter)
       definer = to_upper(noun)
-      allocate(draft%items(size(cards%keywords)), draft%members(size(cards%keywords)))
+      allocate(draft%items(size(deck%cards%keywords)), draft%members(size(deck%cards%keywords)))
       draft%numbers = deck%node_index
       if (noun == 'element') draft%numbers = deck%member_index
       first = [0, size(mesh%element_number)]
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             if (card%name == definer) then
                kind = merge(2, 1, is_line_card(card))
                count = size(card%data)
@@ -229,19 +228,18 @@ contains
    end subroutine generate
 
    !> Builds all surfaces.
-   subroutine build_surfaces(cards, deck, mesh)
-      type(cards_type), intent(in) :: cards
+   subroutine build_surfaces(deck, mesh)
       type(deck_type), intent(inout) :: deck               !! receives their places and errors
       type(mesh_type), intent(inout) :: mesh               !! receives the surfaces
       integer, allocatable :: places(:)
       integer :: n
 
-      places = cards_of(cards, 'SURFACE')
+      places = cards_of(deck%cards, 'SURFACE')
       allocate(mesh%surfaces(size(places)), deck%face_places(size(places)))
       do n = 1, size(places)
-         call take_name(cards, places(n), 'surface', deck%surfaces, deck%deck_report_type, &
+         call take_name(deck%cards, places(n), 'surface', deck%surfaces, deck%deck_report_type, &
             mesh%surfaces(n)%name)
-         call build_surface(cards%keywords(places(n)), deck, mesh, mesh%surfaces(n), &
+         call build_surface(deck%cards%keywords(places(n)), deck, mesh, mesh%surfaces(n), &
             deck%face_places(n))
       end do
    end subroutine build_surfaces

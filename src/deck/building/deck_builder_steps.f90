@@ -2,7 +2,7 @@
 module deck_builder_steps
    use card_parameters, only: choice, is_on, take_from, take_parameter
    use card_values, only: decimal_comma, read_row, report_decimal_comma
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
    use deck_builder_contact, only: build_contact_change
    use deck_builder_controls, only: build_continuation, build_fixed_point, build_print, &
@@ -40,8 +40,7 @@ module deck_builder_steps
 contains
 
    !> Builds all steps, in their order.
-   subroutine build_steps(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_steps(deck, model)
       type(deck_type), intent(inout) :: deck               !! receives requests and notes and errors
       type(model_type), intent(inout) :: model             !! receives the steps
       type(step_controls_type) :: controls
@@ -53,11 +52,11 @@ contains
       has_scheme = .false.
       deck%analyses_sound = .not. deck%has_lost('*STEP')
       deck%boundaries_sound = deck%analyses_sound
-      n = card_count(cards, 'STEP')
+      n = card_count(deck%cards, 'STEP')
       allocate(model%steps(n), deck%step_place(n), deck%analysis_place(n))
       n = 0
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             select case (card%name)
             case ('STEP')
                n = n + 1
@@ -84,7 +83,7 @@ contains
                'SFILM', 'TEMPERATURE')
                call build_load_card(card, n, model, deck)
             case ('CHANGE FRICTION', 'FRICTION', 'MODEL CHANGE', 'CONTACT INTERFERENCE')
-               call build_contact_change(cards, k, n, model, deck)
+               call build_contact_change(k, n, model, deck)
             case default
                if (card%meant == 'STATIC' .or. card%name == 'NO ANALYSIS') then
                   ! One that is refused is reported already.
@@ -97,7 +96,7 @@ contains
          end associate
          if (n > 0) call take_controls(controls, has_scheme, counts%is_uncoupled, model%steps(n))
       end do
-      call warn_of_nlgeom(cards, deck, model%steps)
+      call warn_of_nlgeom(deck, model%steps)
    end subroutine build_steps
 
    !> Reads a card that controls this step and later ones.
@@ -133,15 +132,14 @@ contains
    end subroutine take_controls
 
    !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
-   subroutine warn_of_nlgeom(cards, deck, steps)
-      type(cards_type), intent(in) :: cards
+   subroutine warn_of_nlgeom(deck, steps)
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: steps(:)
       integer, allocatable :: places(:)
 
       steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
-      places = pack(cards_of(cards, 'STEP'), steps%nlgeom)
-      if (size(places) > 0) call deck%warning(cards%keywords(places(1))%place_of('NLGEOM'), &
+      places = pack(cards_of(deck%cards, 'STEP'), steps%nlgeom)
+      if (size(places) > 0) call deck%warning(deck%cards%keywords(places(1))%place_of('NLGEOM'), &
          'NLGEOM is not modelled: displacements and strains stay small')
    end subroutine warn_of_nlgeom
 

@@ -3,7 +3,7 @@ module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
    use card_parameters, only: needed_choice, take_from
    use card_values, only: need_field, read_row
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: data_card_type, keyword_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_type
@@ -26,19 +26,18 @@ module deck_builder_verify
 contains
 
    !> Builds all checks.
-   subroutine build_verifications(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_verifications(deck, model)
       type(deck_type), intent(inout) :: deck               !! numbers of nodes; receives errors
       type(model_type), intent(inout) :: model             !! receives the checks
       character(:), allocatable :: kind
       integer, allocatable :: places(:)
       integer :: k, j, n
 
-      allocate(model%verifications(data_count(cards, cards_of(cards, 'VERIFY'))))
+      allocate(model%verifications(data_count(deck%cards, cards_of(deck%cards, 'VERIFY'))))
       n = 0
-      places = cards_of(cards, 'VERIFY')
+      places = cards_of(deck%cards, 'VERIFY')
       do k = 1, size(places)
-         associate (card => cards%keywords(places(k)))
+         associate (card => deck%cards%keywords(places(k)))
             kind = needed_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', deck)
             do j = 1, size(card%data)
                n = n + 1
@@ -279,15 +278,14 @@ contains
    end subroutine read_when
 
    !> Reads the targets of all cards.
-   subroutine build_accuracy(cards, estimated, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine build_accuracy(estimated, deck, model)
       type(quantity_type), intent(in) :: estimated(:)      !! quantities whose errors are estimated
       type(deck_type), intent(inout) :: deck   !! names of the contact pairs; receives errors
       type(model_type), intent(inout) :: model             !! receives the targets
       integer :: k, j
 
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
+      do k = 1, size(deck%cards%keywords)
+         associate (card => deck%cards%keywords(k))
             if (card%name /= 'ACCURACY') cycle
             if (.not. allocated(model%accuracy%targets)) then
                allocate (model%accuracy%targets(0))

@@ -148,26 +148,24 @@ contains
 
    !> Warns of definitions without use, and of amplitudes that end long before their step or begin
    !> after it. The deck has no errors, of which these may only be the consequence.
-   subroutine check_usage(cards, deck, model)
-      type(cards_type), intent(in) :: cards
+   subroutine check_usage(deck, model)
       type(deck_type), intent(inout) :: deck              !! requests; receives warnings
       type(model_type), intent(in) :: model               !! amplitudes and steps
       logical :: told(size(model%amplitudes))
 
-      call check_names(cards, 'MATERIAL', 'material', deck)
-      call check_names(cards, 'SURFACE INTERACTION', 'surface interaction', deck)
-      call check_names(cards, 'SURFACE', 'surface', deck)
-      call check_names(cards, 'AMPLITUDE', 'amplitude', deck)
+      call check_names('MATERIAL', 'material', deck)
+      call check_names('SURFACE INTERACTION', 'surface interaction', deck)
+      call check_names('SURFACE', 'surface', deck)
+      call check_names('AMPLITUDE', 'amplitude', deck)
       told = .false.
-      call check_amplitudes(cards, deck%boundaries, model, told, deck)
-      call check_amplitudes(cards, deck%loads, model, told, deck)
+      call check_amplitudes(deck%boundaries, model, told, deck)
+      call check_amplitudes(deck%loads, model, told, deck)
    end subroutine check_usage
 
    !> Warns once of the cards of a keyword whose names no card refers to. A library that a deck
    !> includes may well have more materials, interactions and amplitudes than it needs; a surface
    !> without use may be a pair that was forgotten.
-   subroutine check_names(cards, keyword, noun, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine check_names(keyword, noun, deck)
       character(*), intent(in) :: keyword, noun
       type(deck_type), intent(inout) :: deck
       type(name_index_type) :: used
@@ -175,16 +173,16 @@ contains
       integer :: count, first, k
       logical :: from_library
 
-      do k = 1, size(cards%keywords)
-         call add_references(cards%keywords(k), keyword, used)
+      do k = 1, size(deck%cards%keywords)
+         call add_references(deck%cards%keywords(k), keyword, used)
       end do
       from_library = keyword /= 'SURFACE'
       names = ''
       count = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name /= keyword) cycle
-         if (from_library .and. deck%source%file(cards%keywords(k)%place%image) > 1) cycle
-         name = to_upper(cards%keywords(k)%text('NAME'))
+      do k = 1, size(deck%cards%keywords)
+         if (deck%cards%keywords(k)%name /= keyword) cycle
+         if (from_library .and. deck%source%file(deck%cards%keywords(k)%place%image) > 1) cycle
+         name = to_upper(deck%cards%keywords(k)%text('NAME'))
          if (used%find(name) > 0) cycle
          count = count + 1
          if (count == 1) first = k
@@ -192,7 +190,7 @@ contains
       end do
       if (count == 0) return
       if (count > most_names) names = names//' and '//to_text(count - most_names)//' more'
-      call deck%warning(cards%keywords(first)%place, 'nothing uses the '//noun// &
+      call deck%warning(deck%cards%keywords(first)%place, 'nothing uses the '//noun// &
          trim(merge(' ', 's', count == 1))//names(2:))
    end subroutine check_names
 
@@ -239,8 +237,7 @@ contains
 
    !> Warns of amplitudes that end long before the step in which a request begins to follow them,
    !> begin after it, or have peaks within fixed increments.
-   subroutine check_amplitudes(cards, requests, model, told, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine check_amplitudes(requests, model, told, deck)
       type(request_list_type), intent(in) :: requests
       type(model_type), intent(in) :: model
       logical, intent(inout) :: told(:)
@@ -274,7 +271,7 @@ contains
                to_text(curve%values(size(curve%values)))//', is kept'
             if (message == '') cycle
             told(a) = .true.
-            call deck%warning(cards%keywords(card_of(cards, a))%place, message)
+            call deck%warning(deck%cards%keywords(card_of(deck%cards, a))%place, message)
          end associate
       end do
    end subroutine check_amplitudes

@@ -1,7 +1,6 @@
 !> Slips that steps with heat show: contact without a law for its conductance, coefficients of
 !> expansion in another unit than the temperatures.
 module heat_checks
-   use cards, only: cards_type
    use conductance_laws, only: law_none
    use deck_context, only: deck_type
    use equations, only: facing_nodes
@@ -24,14 +23,13 @@ contains
 
    !> Warns of contact pairs that no heat crosses, and of materials whose expansion over the range
    !> of the temperatures of the deck is no small strain.
-   subroutine check_heat_paths(cards, model, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine check_heat_paths(model, deck)
       type(model_type), intent(in) :: model               !! with its loads and supports
       type(deck_type), intent(inout) :: deck              !! receives warnings
       integer :: i
 
-      call check_expansion(cards, model, deck)
-      call check_secants(cards, model, deck)
+      call check_expansion(model, deck)
+      call check_secants(model, deck)
       if (.not. any(solves_heat(model%steps%analysis))) return
       do i = 1, size(model%contacts)
          associate (contact => model%contacts(i), &
@@ -112,8 +110,7 @@ contains
    end subroutine check_no_start
 
    !> Warns of the first *EXPANSION that is too large for small strains.
-   subroutine check_expansion(cards, model, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine check_expansion(model, deck)
       type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       real(dp) :: ends(2), range, strain
@@ -122,33 +119,32 @@ contains
       ends = temperature_range(model)
       range = ends(2) - ends(1)
       m = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name == 'MATERIAL') m = m + 1
-         if (cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
+      do k = 1, size(deck%cards%keywords)
+         if (deck%cards%keywords(k)%name == 'MATERIAL') m = m + 1
+         if (deck%cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
          if (.not. any(model%sections%material == m)) cycle
          strain = maxval(abs(model%materials(m)%expansion))*range
          if (strain <= small_strain) cycle
-         call deck%warning(cards%keywords(k)%place, 'the expansion of '//model%materials(m)%name// &
-            ' over the range of the temperatures, '//to_text(range)//', is a strain of '// &
-            to_text(strain)//', but the theory assumes small strains; check the unit of '// &
-            '*EXPANSION, 1/temperature')
+         call deck%warning(deck%cards%keywords(k)%place, 'the expansion of '// &
+            model%materials(m)%name//' over the range of the temperatures, '//to_text(range)// &
+            ', is a strain of '//to_text(strain)//', but the theory assumes small strains; '// &
+            'check the unit of *EXPANSION, 1/temperature')
          return
       end do
    end subroutine check_expansion
 
    !> Warns of tables of expansion coefficients whose secants begin far from the initial
    !> temperature: farther than a quarter of what the table spans.
-   subroutine check_secants(cards, model, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine check_secants(model, deck)
       type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       real(dp) :: initial
       integer :: e, i, k, m
 
       m = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name == 'MATERIAL') m = m + 1
-         if (cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
+      do k = 1, size(deck%cards%keywords)
+         if (deck%cards%keywords(k)%name == 'MATERIAL') m = m + 1
+         if (deck%cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
          e = findloc(model%sections(model%mesh%element_section)%material, m, dim=1)
          if (e == 0) cycle
          if (.not. follows_temperature(model%materials(m), of_expansion)) cycle
@@ -158,10 +154,10 @@ contains
             associate (rows => material%given(i)%temperature)
                if (abs(initial - material%no_strain) <= far*(rows(size(rows)) - rows(1))) cycle
             end associate
-            call deck%warning(cards%keywords(k)%place, 'the coefficients of '//material%name// &
-               ' are secants from ZERO='//to_text(material%no_strain)//' on, far from the '// &
-               'initial temperature '//to_text(initial)//'; give the ZERO= that they were '// &
-               'measured from')
+            call deck%warning(deck%cards%keywords(k)%place, 'the coefficients of '// &
+               material%name//' are secants from ZERO='//to_text(material%no_strain)//' on, '// &
+               'far from the initial temperature '//to_text(initial)//'; give the ZERO= that '// &
+               'they were measured from')
          end associate
       end do
    end subroutine check_secants

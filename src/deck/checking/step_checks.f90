@@ -3,7 +3,6 @@
 !> proportional to the load factor.
 module step_checks
    use card_places, only: place_type
-   use cards, only: cards_type
    use deck_context, only: deck_type
    use element_kinds, only: element_node_count
    use kinds, only: dp
@@ -19,21 +18,20 @@ module step_checks
 contains
 
    !> Reports what stands against the *CONTINUATION of each step.
-   subroutine check_continuations(cards, model, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine check_continuations(model, deck)
       type(model_type), intent(in) :: model               !! with its loads
       type(deck_type), intent(inout) :: deck              !! receives errors
       character(:), allocatable :: obstacle
       integer :: k, n
 
       n = 0
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%name == 'STEP') n = n + 1
-         if (cards%keywords(k)%name /= 'CONTINUATION' .or. n == 0) cycle
+      do k = 1, size(deck%cards%keywords)
+         if (deck%cards%keywords(k)%name == 'STEP') n = n + 1
+         if (deck%cards%keywords(k)%name /= 'CONTINUATION' .or. n == 0) cycle
          obstacle = obstacle_of_analysis(model, model%steps(n))
          if (obstacle == '') obstacle = obstacle_of_loads(model, n)
          if (obstacle == '') obstacle = obstacle_of_start(model%steps(n))
-         if (obstacle /= '') call deck%error(cards%keywords(k)%place, obstacle)
+         if (obstacle /= '') call deck%error(deck%cards%keywords(k)%place, obstacle)
       end do
    end subroutine check_continuations
 

@@ -1,6 +1,6 @@
 !> Constants in other units than *OPTIONS, UNITS= says.
 module unit_checks
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use heat_checks, only: temperature_range
    use kinds, only: dp
@@ -55,8 +55,7 @@ contains
 
    !> Warns of constants in another unit than the deck says, and of temperatures below absolute
    !> zero.
-   subroutine check_units(cards, model, deck)
-      type(cards_type), intent(in) :: cards
+   subroutine check_units(model, deck)
       type(model_type), intent(in) :: model               !! with its loads and supports
       type(deck_type), intent(inout) :: deck              !! receives warnings
       real(dp) :: degree, metre, pascal, watt
@@ -67,20 +66,20 @@ contains
       watt = size_of(model%units%power, powers)
       pascal = size_of(to_upper(model%units%stress), stresses)
       m = 0
-      do k = 1, size(cards%keywords)
-         select case (cards%keywords(k)%name)
+      do k = 1, size(deck%cards%keywords)
+         select case (deck%cards%keywords(k)%name)
          case ('PHYSICAL CONSTANTS')
-            call check_zero(cards%keywords(k), model, deck)
-            if (min(degree, metre) > 0.0_dp) call check_boltzmann(cards%keywords(k), &
+            call check_zero(deck%cards%keywords(k), model, deck)
+            if (min(degree, metre) > 0.0_dp) call check_boltzmann(deck%cards%keywords(k), &
                watt/(metre**2*degree**4), model, deck)
          case ('MATERIAL')
             m = m + 1
          case ('ELASTIC')
             if (any(solves_mechanics(model%steps%analysis))) call check_property( &
-               cards%keywords(k), model, m, pascal, deck)
+               deck%cards%keywords(k), model, m, pascal, deck)
          case ('CONDUCTIVITY')
             if (min(degree, metre) > 0.0_dp .and. &
-               any(solves_heat(model%steps%analysis))) call check_property(cards%keywords(k), &
+               any(solves_heat(model%steps%analysis))) call check_property(deck%cards%keywords(k), &
                model, m, watt/(metre*degree), deck)
          case default
             cycle

@@ -43,6 +43,7 @@ module deck_context
 
    !> A deck and what is wrong with it.
    type, extends(deck_report_type) :: deck_type
+      type(cards_type), pointer :: cards => null()        !! its cards, which nobody changes
       type(quantity_type), allocatable :: verifiable(:)   !! what *VERIFY may name
       type(item_index_type) :: node_index                 !! numbers of nodes -> indexes
       type(item_index_type) :: element_index              !! numbers of elements -> indexes
