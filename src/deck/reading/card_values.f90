@@ -1,16 +1,16 @@
 !> Values of the fields of a data card, with an error at their place where they are not what they
 !> should be, such as numbers with a decimal comma, which the dialect reads as two fields.
 module card_values
+   use card_parameters, only: limit_fault
    use cards, only: data_card_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use card_parameters, only: limit_fault
    use text, only: integer_fault, is_whole, read_integer, read_real, real_fault, split_words, &
       string_type
    implicit none
    private
    public :: need_field, take_field, check_extra, read_row, read_rows, plane_vector, &
-      decimal_comma, surplus_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, &
+      decimal_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, &
       check_unneeded, check_unneeded_temperature
 
    !> Value of a field; an error where it is missing.
