@@ -30,14 +30,16 @@ contains
       type(contact_points_type), intent(inout) :: pieces(:)   !! s along their lines
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
+      type(contact_points_type), allocatable :: sorted(:)
       integer, allocatable :: order(:)
 
       call begin_lines(mesh, slaves, line, pieces)
       call sort_pieces(line, pieces, order)
-      call check_order(mesh, definition, pieces(order), error)
+      sorted = pieces(order)
+      call check_order(mesh, definition, sorted, error)
       if (allocated(error)) return
-      points = pieces(order(1))
-      if (size(order) > 1) call add_pieces(pieces(order), points)
+      points = sorted(1)
+      if (size(order) > 1) call add_pieces(sorted, points)
       points%arc_length = points%arc_length - points%arc_length(1)
       if (allocated(points%is_open_corner)) points%is_open_corner = open_corners(line, pieces)
    end subroutine join_pieces

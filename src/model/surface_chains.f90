@@ -34,6 +34,7 @@ contains
       type(surface_chain_type), allocatable, intent(out) :: chains(:)   !! the lines
       type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: leaving(:), sides(:, :)
+      type(surface_chain_type), allocatable :: more(:)
       logical, allocatable :: entered(:), is_left(:)
       integer :: count_sides, first, i, n
 
@@ -64,7 +65,10 @@ contains
       do while (any(is_left))
          first = findloc(is_left .and. .not. entered(sides(1, :)), .true., dim=1)
          if (first == 0) first = findloc(is_left, .true., dim=1)
-         chains = [chains, chain_from(mesh, sides, leaving, first, is_left)]
+         allocate (more(size(chains) + 1))
+         more(:size(chains)) = chains
+         more(size(more)) = chain_from(mesh, sides, leaving, first, is_left)
+         call move_alloc(more, chains)
       end do
       call sort_chains(mesh, chains)
    end subroutine chain_faces

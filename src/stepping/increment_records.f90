@@ -35,7 +35,7 @@ module increment_records
       stick_edges
    implicit none
    private
-   public :: complete_record, measure_contact
+   public :: complete_record, measure_contact, warn_of_edges
 
    !> Part of the contact forces that their solution loses by rounding: the spacing of numbers times
    !> the condition of the contact system, some 1e4. A sum of shear forces below it is none.
@@ -84,10 +84,7 @@ contains
          call warn_of_floor(step, record)
          call warn_of_slides(model, bodies, record)
          do i = 1, size(record%contacts)
-            associate (states => record%contacts(i)%contact_state)
-               call warn_of_edges('contact', states /= contact_open)
-               call warn_of_edges('stick', states == contact_stick)
-            end associate
+            call warn_of_edges(bodies%interfaces(i)%name, record%contacts(i)%contact_state, record)
          end do
          if (solves_heat(step%analysis)) then
             if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
@@ -107,19 +104,28 @@ contains
             record%element_points = points_of_elements(model, recovery, step, next, record)
          end if
       end associate
+   end subroutine complete_record
+
+   !> Warns of zones with more edges than are kept.
+   subroutine warn_of_edges(name, states, record)
+      character(*), intent(in) :: name                       !! of the interface
+      integer, intent(in) :: states(:)                       !! (contact points)
+      type(increment_record_type), intent(inout) :: record
+
+      call warn_of('contact', states /= contact_open)
+      call warn_of('stick', states == contact_stick)
    contains
-      !> Warns of zones with more edges than are kept.
-      subroutine warn_of_edges(zone, in_zone)
+      subroutine warn_of(zone, in_zone)
          character(*), intent(in) :: zone
-         logical, intent(in) :: in_zone(:)        ! (contact points)
+         logical, intent(in) :: in_zone(:)
          integer :: edges
 
          edges = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
-         if (edges > edges_kept) call record%warn('contact pair '//bodies%interfaces(i)%name// &
-            ': edges of '//zone//': ', real(edges, dp), '; edges_'//zone// &
-            ' of the result file and the summary have the first '//to_text(edges_kept))
-      end subroutine warn_of_edges
-   end subroutine complete_record
+         if (edges > edges_kept) call record%warn('contact pair '//name//': edges of '//zone// &
+            ': ', real(edges, dp), '; edges_'//zone//' of the result file and the summary have '// &
+            'the first '//to_text(edges_kept))
+      end subroutine warn_of
+   end subroutine warn_of_edges
 
    !> Warns where the last places of the displacements change omega by more than the tolerance: the
    !> fixed point was then met no better than this.
