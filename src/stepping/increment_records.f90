@@ -29,13 +29,13 @@ module increment_records
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
    use temperature_laws, only: face_temperatures_type, law_at
-   use text, only: to_text
+   use text, only: append, to_text
    use transforms, only: on_nodes
    use zone_edges, only: contact_edges, contact_profile, contact_profile_type, edges_kept, &
       stick_edges
    implicit none
    private
-   public :: complete_record, measure_contact, warn_of_edges
+   public :: complete_record, measure_contact, note_edges
 
    !> Part of the contact forces that their solution loses by rounding: the spacing of numbers times
    !> the condition of the contact system, some 1e4. A sum of shear forces below it is none.
@@ -84,7 +84,7 @@ contains
          call warn_of_floor(step, record)
          call warn_of_slides(model, bodies, record)
          do i = 1, size(record%contacts)
-            call warn_of_edges(bodies%interfaces(i)%name, record%contacts(i)%contact_state, record)
+            call note_edges(bodies%interfaces(i)%name, record%contacts(i)%contact_state, record)
          end do
          if (solves_heat(step%analysis)) then
             if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
@@ -106,26 +106,26 @@ contains
       end associate
    end subroutine complete_record
 
-   !> Warns of zones with more edges than are kept.
-   subroutine warn_of_edges(name, states, record)
+   !> Notes zones with more edges than are kept.
+   subroutine note_edges(name, states, record)
       character(*), intent(in) :: name                       !! of the interface
       integer, intent(in) :: states(:)                       !! (contact points)
       type(increment_record_type), intent(inout) :: record
 
-      call warn_of('contact', states /= contact_open)
-      call warn_of('stick', states == contact_stick)
+      call note('contact', states /= contact_open)
+      call note('stick', states == contact_stick)
    contains
-      subroutine warn_of(zone, in_zone)
+      subroutine note(zone, in_zone)
          character(*), intent(in) :: zone
          logical, intent(in) :: in_zone(:)
          integer :: edges
 
          edges = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
-         if (edges > edges_kept) call record%warn('contact pair '//name//': edges of '//zone// &
-            ': ', real(edges, dp), '; edges_'//zone//' of the result file and the summary have '// &
-            'the first '//to_text(edges_kept))
-      end subroutine warn_of
-   end subroutine warn_of_edges
+         if (edges > edges_kept) call append(record%notes, 'contact pair '//name//': edges of '// &
+            zone//': '//to_text(edges)//'; edges_'//zone// &
+            ' of the result file and the summary have the first '//to_text(edges_kept))
+      end subroutine note
+   end subroutine note_edges
 
    !> Warns where the last places of the displacements change omega by more than the tolerance: the
    !> fixed point was then met no better than this.

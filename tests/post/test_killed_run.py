@@ -51,7 +51,7 @@ def numbers_in(path):
             numbers[f"history/{name}"] = dataset[()]
         for contact in file["contact"].values():
             for name, dataset in contact.items():
-                if name in ("slave_node", "master_node", "x", "y", "s", "weight"):
+                if name in ("slave_node", "master_node", "x", "y", "s", "piece", "weight"):
                     continue
                 numbers[f"{contact.name}/{name}"] = dataset[()]
         for name, dataset in file["VTKHDF/PointData"].items():
