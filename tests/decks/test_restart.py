@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import h5py
@@ -370,8 +371,10 @@ def begin(decks, folder, *options):
     process = subprocess.Popen([PROGRAM, "run", "--quiet", *map(str, decks), "--out", str(folder),
                                 *options], stderr=subprocess.PIPE, text=True)
     until = time.monotonic() + PATIENCE
-    sta = folder / "long.sta"
-    while not sta.exists() or len(sta.read_text().splitlines()) < 50:
+    lines = []
+    while len(lines) < 50:
+        with suppress(FileNotFoundError):   # it comes and goes while a run takes its place
+            lines = (folder / "long.sta").read_text().splitlines()
         assert process.poll() is None, process.stderr.read()
         assert time.monotonic() < until
         time.sleep(0.002)
