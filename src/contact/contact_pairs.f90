@@ -143,7 +143,8 @@ contains
 
       do i = 1, size(slaves)
          do j = 1, size(masters)
-            call check_shared(mesh, definition, slaves(i), aligned(i, j), error)
+            call check_shared(mesh, definition, slaves(i), aligned(mesh, definition, slaves(i), &
+               masters(j)), error)
             if (allocated(error)) return
          end do
       end do
@@ -154,7 +155,7 @@ contains
       do k = 1, size(pieces)
          i = slave_of(k)
          j = k - (i - 1)*size(masters)
-         master = aligned(i, j)
+         master = aligned(mesh, definition, slaves(i), masters(j))
          call check_faces(mesh, definition, slaves(i), master, error)
          if (allocated(error)) return
          pieces(k) = points
@@ -162,8 +163,9 @@ contains
             thickness, pieces(k))
          call find_ends(mesh, master, pieces(k))
       end do
-      call check_covered(mesh, definition, slaves(1), aligned(1, facing_chain(mesh, slaves(1), &
-         masters)), sum([(size(pieces(k)%slave), k=1, size(pieces))]), error)
+      call check_covered(mesh, definition, slaves(1), aligned(mesh, definition, slaves(1), &
+         masters(facing_chain(mesh, slaves(1), masters))), sum([(size(pieces(k)%slave), k=1, &
+         size(pieces))]), error)
       if (allocated(error)) return
       call join_pieces(mesh, definition, slaves, [(slave_of(k), k=1, size(pieces))], pieces, &
          points, error)
@@ -176,17 +178,19 @@ contains
 
          slave_of = (piece - 1)/size(masters) + 1
       end function slave_of
-
-      !> A line of the master, along one of the slave.
-      function aligned(i, j) result(master)
-         integer, intent(in) :: i, j
-         type(surface_chain_type) :: master
-
-         master = masters(j)
-         call align_chain(mesh, slaves(i), master)
-         if (definition%either_side) master%turned = .not. slaves(i)%turned
-      end function aligned
    end subroutine find_points
+
+   !> A line of the master, along one of the slave.
+   function aligned(mesh, definition, slave, line) result(master)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      type(surface_chain_type), intent(in) :: slave, line
+      type(surface_chain_type) :: master
+
+      master = line
+      call align_chain(mesh, slave, master)
+      if (definition%either_side) master%turned = .not. slave%turned
+   end function aligned
 
    !> Node pairs of each line of the slave and the nearest of the master. Where some are not
    !> opposite, no contact points but why.
@@ -209,9 +213,7 @@ contains
          pieces(i) = points
          j = facing_chain(mesh, slaves(i), masters)
          meets(i, j) = .true.
-         master = masters(j)
-         call align_chain(mesh, slaves(i), master)
-         if (definition%either_side) master%turned = .not. slaves(i)%turned
+         master = aligned(mesh, definition, slaves(i), masters(j))
          call compare_lines(mesh, definition, slaves(i), master, mismatch, advice)
          if (len(mismatch) == 0) then
             call set_node_pairs(mesh, definition, slaves(i), master, thickness, pieces(i), error)

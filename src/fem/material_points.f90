@@ -1,6 +1,6 @@
-!> What the materials of all elements respond at given points: the only place where stress, heat
-!> flux, heat contents and what a point remembers are found from displacements and temperatures.
-!> What depends on geometry and constants alone is formed once. Residuals sum the responses over the
+!> Responses of the materials at given points of all elements. Stress, heat flux, heat contents and
+!> history are computed from displacements and temperatures here and nowhere else. Everything that
+!> depends on geometry and constants alone is computed once. Residuals sum the responses over the
 !> integration points; the operators are their tangents (stiffness_matrix, thermal_matrix).
 module material_points
    use element_integrals, only: area_factor
@@ -25,7 +25,7 @@ module material_points
       !> (4, points) d xi/dx, d eta/dx, d xi/dy, d eta/dy [1/length]
       real(dp), allocatable :: inverse(:, :)
       real(dp), allocatable :: volume(:)                 !! (points) that each stands for [length^3]
-      integer, allocatable :: remembers(:)   !! (elements + 1) first number of the history of each
+      integer, allocatable :: history_start(:)   !! (elements + 1) where the history of each begins
    contains
       procedure :: prepare
       procedure :: positions
@@ -38,11 +38,11 @@ module material_points
       procedure :: nodal_heat
    end type material_points_type
 
-   !> What all points remember, and for how long they respond.
+   !> Histories of all points at both ends of a time increment.
    type :: point_history_type
       real(dp), allocatable :: before(:)   !! (numbers) at the start; unallocated for none
       real(dp), allocatable :: after(:)    !! (numbers) at the end
-      real(dp) :: duration = 0.0_dp        !! [time]
+      real(dp) :: duration = 0.0_dp        !! of the increment [time]
    end type point_history_type
 
 contains
@@ -59,7 +59,7 @@ contains
 
       call self%place(mesh, sections, materials, orientations, rules)
       n = size(mesh%element_kind)
-      self%remembers = 1 + numbers_before(mesh, sections, materials)
+      self%history_start = 1 + history_before(mesh, sections, materials)
       allocate (self%first(n + 1), source=1)
       do e = 1, n
          self%first(e + 1) = self%first(e) + rules(mesh%element_kind(e))%count
@@ -75,19 +75,19 @@ contains
       end do
    end subroutine prepare
 
-   !> How many numbers the integration points of all elements remember.
+   !> Size of the history of all integration points.
    pure integer function history_count(mesh, sections, materials)
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
       type(material_type), intent(in) :: materials(:)
       integer :: before(size(mesh%element_kind) + 1)
 
-      before = numbers_before(mesh, sections, materials)
+      before = history_before(mesh, sections, materials)
       history_count = before(size(before))
    end function history_count
 
-   !> Numbers of the integration points of the elements before each one.
-   pure function numbers_before(mesh, sections, materials) result(before)
+   !> Size of the history of the elements before each one, and of all.
+   pure function history_before(mesh, sections, materials) result(before)
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
       type(material_type), intent(in) :: materials(:)
@@ -99,7 +99,7 @@ contains
          before(e + 1) = before(e) + point_count(mesh%element_kind(e))* &
             materials(sections(mesh%element_section(e))%material)%law%history_count
       end do
-   end function numbers_before
+   end function history_before
 
    pure subroutine map_points(rule, coordinates, thickness, is_axisymmetric, inverse, volume)
       type(point_rule_type), intent(in) :: rule
@@ -151,8 +151,8 @@ contains
       call elastic_stress(self, mesh, element, displacement, temperature, strain, values)
    end subroutine stress
 
-   !> Stress of an element at its points, its tangent, and what they remember, by the law of its
-   !> material.
+   !> Stress of an element at its points, its tangent and the new history, by the law of its
+   !> material. Source: theory notes, section 3.
    pure subroutine respond(self, mesh, element, displacement, temperature, history, points)
       class(material_points_type), intent(in) :: self        !! at their temperatures
       type(mesh_type), intent(in) :: mesh
@@ -161,15 +161,15 @@ contains
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
       type(point_history_type), intent(inout) :: history     !! receives that of the element
       type(law_points_type), intent(inout) :: points
-      real(dp) :: numbers(self%given(self%sections(mesh%element_section(element))%material)%law% &
+      real(dp) :: numbers(self%library(self%sections(mesh%element_section(element))%material)%law% &
          history_count, self%rules(mesh%element_kind(element))%count)
       integer :: g
 
       call elastic_stress(self, mesh, element, displacement, temperature, points%strain, &
          points%stress)
-      associate (material => self%given(self%sections(mesh%element_section(element))%material), &
-         rule => self%rules(mesh%element_kind(element)), first => self%remembers(element), &
-         last => self%remembers(element + 1) - 1)
+      associate (material => self%library(self%sections(mesh%element_section(element))%material), &
+         rule => self%rules(mesh%element_kind(element)), first => self%history_start(element), &
+         last => self%history_start(element + 1) - 1)
          if (.not. has_law(material)) return
          points%count = rule%count
          points%plane = mesh%element_plane(element)
@@ -190,7 +190,7 @@ contains
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                         !! which element
 
-      follows_law = has_law(self%given(self%sections(mesh%element_section(element))%material))
+      follows_law = has_law(self%library(self%sections(mesh%element_section(element))%material))
    end function follows_law
 
    !> Stress by thermoelasticity, and the strains without those that are enhanced.
@@ -313,7 +313,7 @@ contains
 
       associate (rule => self%rules(mesh%element_kind(element)), first => self%first(element), &
          nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element), &
-         material => self%given(self%sections(mesh%element_section(element))%material))
+         material => self%library(self%sections(mesh%element_section(element))%material))
          if (size(nodes) <= 4) then
             do q = 1, size(nodes)
                contents(nodes(q)) = contents(nodes(q)) + heat_content(material, &

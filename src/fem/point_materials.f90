@@ -32,7 +32,7 @@ module point_materials
       logical, allocatable :: one_material(:)            !! (elements) one for all of its points
       ! Of the model, as they are.
       type(section_type), allocatable :: sections(:)
-      type(material_type), allocatable :: given(:)
+      type(material_type), allocatable :: library(:)
       type(orientation_type), allocatable :: orientations(:)   !! axes of the materials
       logical :: has_inverses = .true.   !! whether compliance and resistivity are asked for
       real(dp), allocatable :: temperature(:)   !! (nodes) that they were set to last [temperature]
@@ -59,7 +59,7 @@ contains
 
       self%rules = rules
       self%sections = sections
-      self%given = materials
+      self%library = materials
       self%orientations = orientations
       allocate (self%material(size(mesh%element_kind)))
       self%one_material = sections(mesh%element_section)%orientation == 0 .and. &
@@ -103,8 +103,8 @@ contains
       class(point_materials_type), intent(inout) :: self    !! placed
       type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: temperature(:), initial(:)    !! (nodes) [temperature]
-      type(properties_type) :: properties(size(self%given))
-      logical, dimension(size(self%given)) :: conducts, strains   ! otherwise with the temperature
+      type(properties_type) :: properties(size(self%library))
+      logical, dimension(size(self%library)) :: conducts, strains   ! otherwise with the temperature
       real(dp) :: axes(2, 2)
       integer :: e, g, m
 
@@ -112,11 +112,11 @@ contains
          if (all(abs(self%temperature - temperature) <= 0.0_dp)) return
       end if
       self%temperature = temperature
-      conducts = follows_temperature(self%given, of_conductivity)
-      strains = follows_temperature(self%given, of_elasticity) .or. &
-         follows_temperature(self%given, of_expansion)
-      do m = 1, size(self%given)
-         properties(m) = self%given(m)%properties_type
+      conducts = follows_temperature(self%library, of_conductivity)
+      strains = follows_temperature(self%library, of_elasticity) .or. &
+         follows_temperature(self%library, of_expansion)
+      do m = 1, size(self%library)
+         properties(m) = self%library(m)%properties_type
       end do
       do e = 1, size(mesh%element_kind)
          associate (section => self%sections(mesh%element_section(e)), &
@@ -131,10 +131,10 @@ contains
                      section%orientation, matmul(mesh%coordinates(:, nodes), psi))
                   associate (at => [dot_product(psi, initial(nodes)), dot_product(psi, &
                      temperature(nodes))], there => self%materials(self%material(e) + g - 1))
-                     call self%given(m)%set_to(at(2), properties(m))
+                     call self%library(m)%set_to(at(2), properties(m))
                      if (conducts(m)) call set_conduction(properties(m), axes, &
                         self%has_inverses, there)
-                     if (strains(m)) call set_strain(plane, self%given(m), properties(m), axes, &
+                     if (strains(m)) call set_strain(plane, self%library(m), properties(m), axes, &
                         at, self%has_inverses, there)
                   end associate
                end associate
@@ -151,7 +151,7 @@ contains
       integer :: e, g
 
       do e = 1, size(self%material)
-         if (.not. has_law(self%given(self%sections(mesh%element_section(e))%material))) cycle
+         if (.not. has_law(self%library(self%sections(mesh%element_section(e))%material))) cycle
          do g = self%material(e), self%material(e) + self%rules(mesh%element_kind(e))%count - 1
             self%materials(g)%elasticity = reshape(tangent(16*g - 15:16*g), [4, 4])
          end do

@@ -1,4 +1,4 @@
-!> Laws of materials beyond linear thermoelasticity, which remember what happened to a point.
+!> Laws of materials beyond linear thermoelasticity, with a history at each point.
 module material_laws
    use kinds, only: dp
    implicit none
@@ -22,7 +22,7 @@ module material_laws
 
    !> The law of a material: none by default.
    type :: material_law_type
-      integer :: history_count = 0                 !! numbers that a point remembers
+      integer :: history_count = 0                 !! history variables of a point
       real(dp), allocatable :: constants(:)
       procedure(response), pointer, nopass :: respond => null()
    end type material_law_type

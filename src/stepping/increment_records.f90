@@ -84,7 +84,7 @@ contains
          call warn_of_floor(step, record)
          call warn_of_slides(model, bodies, record)
          do i = 1, size(record%contacts)
-            call note_edges(bodies%interfaces(i)%name, record%contacts(i)%contact_state, record)
+            call note_edges(bodies%interfaces(i), record%contacts(i)%contact_state, record)
          end do
          if (solves_heat(step%analysis)) then
             if (recovers) call recovery%recover_heat_flux(model, next%temperature, &
@@ -107,8 +107,8 @@ contains
    end subroutine complete_record
 
    !> Notes zones with more edges than are kept.
-   subroutine note_edges(name, states, record)
-      character(*), intent(in) :: name                       !! of the interface
+   subroutine note_edges(points, states, record)
+      type(contact_points_type), intent(in) :: points        !! contact points of the interface
       integer, intent(in) :: states(:)                       !! (contact points)
       type(increment_record_type), intent(inout) :: record
 
@@ -118,11 +118,12 @@ contains
       subroutine note(zone, in_zone)
          character(*), intent(in) :: zone
          logical, intent(in) :: in_zone(:)
-         integer :: edges
+         integer :: edges, k
 
-         edges = count(in_zone(2:) .neqv. in_zone(:size(in_zone) - 1))
-         if (edges > edges_kept) call append(record%notes, 'contact pair '//name//': edges of '// &
-            zone//': '//to_text(edges)//'; edges_'//zone// &
+         edges = count([((in_zone(k) .neqv. in_zone(k + 1)) .and. points%on_one_piece(k, k + 1), &
+            k=1, size(in_zone) - 1)])
+         if (edges > edges_kept) call append(record%notes, 'contact pair '//points%name// &
+            ': edges of '//zone//': '//to_text(edges)//'; edges_'//zone// &
             ' of the result file and the summary have the first '//to_text(edges_kept))
       end subroutine note
    end subroutine note_edges

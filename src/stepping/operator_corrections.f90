@@ -23,7 +23,6 @@ module operator_corrections
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
-   use stiffness_matrix, only: assemble_initial_force
    use text, only: to_text
    implicit none
    private
@@ -72,9 +71,10 @@ module operator_corrections
 contains
 
    !> Forms what stays.
-   subroutine prepare(self, model)
+   subroutine prepare(self, model, initial_force)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
+      real(dp), allocatable, intent(in) :: initial_force(:)  !! (2 nodes) or none [force]
       logical :: follows(0:model%mesh%body_count)      ! bodies, none of them first
       integer :: e
 
@@ -87,8 +87,7 @@ contains
          self%elements = pack([(e, e=1, size(mesh%element_body))], follows(mesh%element_body))
          self%follows = follows(mesh%node_body)
       end associate
-      if (allocated(model%mesh%initial_stress)) self%initial_force = assemble_initial_force( &
-         model%mesh, model%sections)
+      if (allocated(initial_force)) self%initial_force = initial_force
       self%corrects = any(follows) .or. any(model%steps%dilates)
       if (.not. any(follows)) return
       allocate (self%points, self%contents)

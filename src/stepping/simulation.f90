@@ -77,9 +77,9 @@ contains
       call self%bodies%prepare(model, error)
       if (allocated(error)) return
       call self%recovery%prepare(model, spread(.true., 1, size(model%mesh%element_kind)))
-      call self%corrections%prepare(model)
       call self%loads%prepare(model)
       self%state = make_initial_state(model, self%bodies)
+      call self%corrections%prepare(model, self%state%forces_beyond)
       self%seconds%assemble = (wall_seconds() - since)
       call measure_steps(model, self%bodies%points, self%loads, self%state, self%sizes, error)
       if (.not. allocated(error)) call enter_step(self, model)
