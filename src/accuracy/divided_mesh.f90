@@ -116,7 +116,7 @@ contains
 
       associate (points => simulation%bodies%points, state => simulation%state)
          chosen = elements_at_contact(model, points, state%contact%contact_state /= contact_open &
-            .or. largest_part(abs(heat_across(points%weight, state%carrying, state%jump)), &
+            .or. largest_part(abs(heat_across(points%weight, state%flux_conductance, state%jump)), &
             of_heat)) .or. also
       end associate
       call choose_neighbours(model, chosen)
@@ -190,8 +190,8 @@ contains
          deallocate (self%is_divided)
          return
       end if
-      self%run%heats(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
-      self%heat%forms_on_demand = self%run%heats(1)%forms_on_demand
+      self%run%heat_reductions(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
+      self%heat%forms_on_demand = self%run%heat_reductions(1)%forms_on_demand
       call self%run%loads%prepare(self%model)
       self%initial = make_initial_state(self%model, self%run%bodies)
       self%run%state = self%initial
@@ -307,11 +307,12 @@ contains
          guess%sources%film = run%loads%film_matrix()
          guess%force_load = run%loads%nodal_forces()
          step = implicit_step(self%model%steps(number))
-         if (run%heats(1)%forms_on_demand) step%fixed_point%method = method_anderson
+         if (run%heat_reductions(1)%forms_on_demand) step%fixed_point%method = method_anderson
          next = guess
          call implicit_state(run, self%heat, self%model, step, before, next, error)
-         if (allocated(error) .and. run%heats(1)%forms_on_demand .and. run%bodies%is_coupled) then
-            run%heats(1)%forms_on_demand = .false.
+         if (allocated(error) .and. run%heat_reductions(1)%forms_on_demand .and. &
+            run%bodies%is_coupled) then
+            run%heat_reductions(1)%forms_on_demand = .false.
             self%heat%forms_on_demand = .false.
             step = implicit_step(self%model%steps(number))
             next = guess
@@ -363,7 +364,7 @@ contains
          end do
       end associate
       where (node_rank == huge(1)) node_rank = maxval([1, bodies%equilibrium%rank])
-      call self%run%heats(1)%set_node_rank(self%run%bodies, node_rank)
+      call self%run%heat_reductions(1)%set_node_rank(self%run%bodies, node_rank)
    end subroutine order_as_run
 
    !> Enters a step as the run did. The run's state at the start of steps shows in loads that ramp

@@ -108,10 +108,11 @@ contains
       end if
       call begin_increment(run%bodies, step, before, trial)
       film = trial%data%equation%left_film(run%bodies%capacity)
-      if (run%heats(1)%serves(run%bodies, film) .or. .not. solves_heat(step%analysis)) then
-         call solve_with(run%heats(1))
+      if (run%heat_reductions(1)%serves(run%bodies, film) &
+         .or. .not. solves_heat(step%analysis)) then
+         call solve_with(run%heat_reductions(1))
       else
-         call self%heat%share_order(run%heats(1), run%bodies)
+         call self%heat%share_order(run%heat_reductions(1), run%bodies)
          call self%heat%reduce(model, run%bodies, film, error)
          if (.not. allocated(error)) call solve_with(self%heat)
       end if
@@ -209,11 +210,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (bodies => simulation%bodies)
-         if (simulation%heats(1)%serves(bodies, state%sources%film) .or. &
+         if (simulation%heat_reductions(1)%serves(bodies, state%sources%film) .or. &
             .not. solves_heat(step%analysis)) then
-            call solve_end(simulation%heats(1))
+            call solve_end(simulation%heat_reductions(1))
          else
-            call own%share_order(simulation%heats(1), bodies)
+            call own%share_order(simulation%heat_reductions(1), bodies)
             call own%reduce(model, bodies, state%sources%film, error)
             if (.not. allocated(error)) call solve_end(own)
          end if

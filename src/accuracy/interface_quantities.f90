@@ -82,7 +82,7 @@ contains
             values(:, i) = quantities_of(points, contact_of(points, bodies%laws%friction(first), &
                contact%contact_state(first:last), contact%gap(first:last), &
                contact%force(first:last), contact%shear_force(first:last), &
-               heat_across(points%weight, state%carrying(first:last), &
+               heat_across(points%weight, state%flux_conductance(first:last), &
                state%jump(first:last))))
          end do
       end associate

@@ -32,7 +32,7 @@ module singular_corners
    type :: outline_type
       real(dp) :: angle = 0.0_dp        !! within the body
       integer :: sides = 0              !! that are not between two elements
-      integer :: held(2) = 0            !! directions in which the first, the second one is held
+      integer :: prescribed(2) = 0 !! directions in which the first, the second one is held
       logical :: is_curved = .false.    !! whether sides have three nodes
       integer :: material = 0           !! of its elements
       logical :: joins = .false.        !! whether these have several
@@ -129,13 +129,13 @@ contains
 
       subroutine add_side(ends)
          integer, intent(in) :: ends(3)
-         integer :: d, held, i
+         integer :: d, prescribed, i
 
-         held = count([(all(is_held(d, pack(ends, ends > 0))), d=1, 2)])
+         prescribed = count([(all(is_held(d, pack(ends, ends > 0))), d=1, 2)])
          do i = 1, 3, 2
             associate (corner => outline(ends(i)))
                corner%sides = corner%sides + 1
-               if (corner%sides <= 2) corner%held(corner%sides) = held
+               if (corner%sides <= 2) corner%prescribed(corner%sides) = prescribed
                corner%is_curved = ends(2) > 0
             end associate
          end do
@@ -185,7 +185,7 @@ contains
       are_sharp = outline%sides > 2 .or. outline%joins
       if (are_sharp) return
       excess = outline%angle - merge(of_curves, of_chords, outline%is_curved)
-      associate (least => minval(outline%held), most => maxval(outline%held))
+      associate (least => minval(outline%prescribed), most => maxval(outline%prescribed))
          if (least == 0 .and. most == 2) then
             are_sharp = outline%angle > clamped_on_one
          else if (least /= most) then
@@ -255,7 +255,7 @@ contains
             sides(ends([1, 3])) = sides(ends([1, 3])) + 1
          end do
       end associate
-      is_end = sides == 1 .and. outline%held(1) /= 1 .and. outline%held(2) /= 1
+      is_end = sides == 1 .and. outline%prescribed(1) /= 1 .and. outline%prescribed(2) /= 1
    end function ends_at_side
 
 end module singular_corners

@@ -40,10 +40,10 @@ contains
 
    !> Constraints of the displacements; the normal ones, and with friction the tangential ones, are
    !> on the tail.
-   pure subroutine constrain_displacements(used, held, points, has_friction, slave_leads, &
+   pure subroutine constrain_displacements(used, prescribed, points, has_friction, slave_leads, &
       constraints)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
-      logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:)                !! (2 nodes) prescribed displacements
       type(connections_type), intent(in) :: points !! contact points
       logical, intent(in) :: has_friction(:)        !! (m)
       !> (m) whether the slave is to lead where neither node is prescribed; else the master does
@@ -51,24 +51,24 @@ contains
       type(linear_constraints_type), intent(out) :: constraints
       type(constraint_rows_type) :: rows
 
-      rows = displacement_rows(held, points, slave_leads)
+      rows = displacement_rows(prescribed, points, slave_leads)
       rows%on_tail(2::2) = has_friction
       call eliminate(rows, in_use(used, points, .false.), constraints)
    end subroutine constrain_displacements
 
    !> The rows of the displacements.
-   pure function displacement_rows(held, points, slave_leads) result(rows)
-      logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
+   pure function displacement_rows(prescribed, points, slave_leads) result(rows)
+      logical, intent(in) :: prescribed(:)                !! (2 nodes) prescribed displacements
       type(connections_type), intent(in) :: points !! as above
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(constraint_rows_type) :: rows
       real(dp) :: directions(2, size(slave_leads))
       integer :: k
 
-      directions = held_directions(points, held)
-      call begin_rows(held, 2, points, rows)
+      directions = held_directions(points, prescribed)
+      call begin_rows(prescribed, 2, points, rows)
       call add_equations(points%equations, .false., rows)
-      call add_ties(points%ties, held, rows)
+      call add_ties(points%ties, prescribed, rows)
       do k = 1, size(points%slave)
          associate (n => points%normal(:, k), t => points%tangent(:, k), &
             across => abs(directions([2, 1], k)))
@@ -84,34 +84,34 @@ contains
 
    !> Constraints of the temperatures; all jumps are on the tail, and the nodes of faces
    !> whose heat is integrated to the edge of contact.
-   pure subroutine constrain_temperatures(used, held, points, slave_leads, constraints)
+   pure subroutine constrain_temperatures(used, prescribed, points, slave_leads, constraints)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
-      logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
+      logical, intent(in) :: prescribed(:)                !! (nodes) prescribed temperatures
       type(connections_type), intent(in) :: points !! contact points
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(linear_constraints_type), intent(out) :: constraints
 
-      call eliminate(temperature_rows(held, points, slave_leads), &
+      call eliminate(temperature_rows(prescribed, points, slave_leads), &
          in_use(used, points, .true.), constraints)
    end subroutine constrain_temperatures
 
    !> The rows of the temperatures.
-   pure function temperature_rows(held, points, slave_leads) result(rows)
-      logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
+   pure function temperature_rows(prescribed, points, slave_leads) result(rows)
+      logical, intent(in) :: prescribed(:)                !! (nodes) prescribed temperatures
       type(connections_type), intent(in) :: points !! contact points
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(constraint_rows_type) :: rows
       integer :: k
 
-      call begin_rows(held, 1, points, rows)
+      call begin_rows(prescribed, 1, points, rows)
       call add_equations(points%equations, .true., rows)
-      call add_ties(points%ties, held, rows)
+      call add_ties(points%ties, prescribed, rows)
       if (allocated(points%edge_nodes)) then
-         allocate (rows%dof_on_tail(size(held)), source=.false.)
+         allocate (rows%dof_on_tail(size(prescribed)), source=.false.)
          rows%dof_on_tail(points%edge_nodes) = .true.
       end if
       do k = 1, size(points%slave)
-         if (all(held(points%nodes_of(k)))) cycle
+         if (all(prescribed(points%nodes_of(k)))) cycle
          call relate(points, k, 1, [1.0_dp], [1.0_dp], slave_leads, rows)
       end do
    end function temperature_rows
@@ -162,25 +162,25 @@ contains
    end subroutine add_equations
 
    !> The rows of the supports, u - g = 0, and of the hanging nodes.
-   pure subroutine begin_rows(held, components, points, rows)
-      logical, intent(in) :: held(:)
+   pure subroutine begin_rows(prescribed, components, points, rows)
+      logical, intent(in) :: prescribed(:)
       integer, intent(in) :: components
       type(connections_type), intent(in) :: points
       type(constraint_rows_type), intent(out) :: rows
       integer :: c, dof, i, introduced, most
 
       rows%components = components
-      rows%dofs = size(held)
+      rows%dofs = size(prescribed)
       introduced = components*size(points%slave)
-      most = count(held) + components*points%hanging%count + size(points%equations) + &
+      most = count(prescribed) + components*points%hanging%count + size(points%equations) + &
          2*components*points%ties%difference%count + introduced
       allocate (rows%on_tail(introduced), source=.true.)
       allocate (rows%origin(most), rows%choice(most))
-      call rows%reserve(most, 2*count(held) + components*(introduced + &
+      call rows%reserve(most, 2*count(prescribed) + components*(introduced + &
          size(points%difference%value)*merge(2, 1, points%turns())))
-      do dof = 1, size(held)
-         if (.not. held(dof)) cycle
-         call rows%add([dof, size(held) + introduced + dof], [1.0_dp, -1.0_dp])
+      do dof = 1, size(prescribed)
+         if (.not. prescribed(dof)) cycle
+         call rows%add([dof, size(prescribed) + introduced + dof], [1.0_dp, -1.0_dp])
          rows%origin(rows%count) = row_origin_type(of_support, dof)
          rows%choice(rows%count) = dof
       end do
@@ -188,7 +188,7 @@ contains
       do i = 1, points%hanging%count
          do c = 1, components
             associate (dofs => components*(points%hanging%values_of(i) - 1) + c)
-               if (held(dofs(1))) cycle
+               if (prescribed(dofs(1))) cycle
                call rows%add(dofs, points%hanging%coefficients_of(i))
                rows%origin(rows%count) = row_origin_type(of_hanging, dofs(1))
                rows%choice(rows%count) = dofs(1)
@@ -288,12 +288,12 @@ contains
 
    !> Adds the rows of all ties. Two nodes face to face that are both prescribed have a row of their
    !> own: what prescribes them must agree there.
-   pure subroutine add_ties(ties, held, rows)
+   pure subroutine add_ties(ties, prescribed, rows)
       type(tie_points_type), intent(in) :: ties
-      logical, intent(in) :: held(:)                !! (dofs) prescribed values
+      logical, intent(in) :: prescribed(:)                !! (dofs) prescribed values
       type(constraint_rows_type), intent(inout) :: rows
       logical :: determined(ties%difference%count)
-      logical :: shared(size(held)/rows%components) ! whether several ties act on a node
+      logical :: shared(size(prescribed)/rows%components) ! whether several ties act on a node
       integer :: owner(ties%difference%count)
       integer :: c, first(size(shared)), k, slave_dof, master_dof
 
@@ -306,7 +306,7 @@ contains
          end associate
       end do
       do c = 1, rows%components
-         associate (of_component => held(c::rows%components))
+         associate (of_component => prescribed(c::rows%components))
             do k = 1, size(determined)
                associate (ends => [ties%slave(k), ties%master(k)])
                   determined(k) = ties%is_linear(k) .and. all(of_component(ends) .or. &
@@ -318,7 +318,7 @@ contains
          do k = 1, size(determined)
             slave_dof = rows%components*(ties%slave(k) - 1) + c
             master_dof = rows%components*(ties%master(k) - 1) + c
-            if (ties%is_opposite(k) .and. held(slave_dof) .and. held(master_dof)) then
+            if (ties%is_opposite(k) .and. prescribed(slave_dof) .and. prescribed(master_dof)) then
                call add_row([slave_dof, master_dof], [1.0_dp, -1.0_dp], k, slave_dof, rows)
             end if
             if (owner(k) == k) call add_point(ties, owner, k, c, rows)

@@ -32,9 +32,9 @@ contains
 
    !> Directions along which supports hold contact points: all nodes, or the two opposite ones if it
    !> is nearer to their tangent, as at the end of a line of symmetry.
-   pure function held_directions(points, held) result(directions)
+   pure function held_directions(points, prescribed) result(directions)
       type(connections_type), intent(in) :: points !! all contact points
-      logical, intent(in) :: held(:)                      !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:) !! (2 nodes) prescribed displacements
       !> (2, m) unit vectors along which both nodes are held, while their normal motion is not
       !> prescribed; 0 where there are none
       real(dp) :: directions(2, size(points%slave))
@@ -45,12 +45,13 @@ contains
       do k = 1, size(points%slave)
          associate (direction => directions(:, k))
             direction = 0.0_dp
-            call find_shared_axes(points, held, k, axes, all_held)
+            call find_shared_axes(points, prescribed, k, axes, all_held)
             if (holds_normal(points, k, axes, all_held)) cycle
             if (any(all_held)) then
                direction = axes(:, findloc(all_held, .true., dim=1))
-            else if (norm2(held_along_tangent(points, held, k, points%master(k))) > 0.0_dp) then
-               direction = held_along_tangent(points, held, k, points%slave(k))
+            else if (norm2(held_along_tangent(points, prescribed, k, &
+               points%master(k))) > 0.0_dp) then
+               direction = held_along_tangent(points, prescribed, k, points%slave(k))
             end if
          end associate
       end do
@@ -58,16 +59,16 @@ contains
 
    !> Contact points whose normal motion is prescribed: their nodes are held along both axes, or
    !> along the one that is their normal.
-   pure function over_constrained(points, held) result(too_much)
+   pure function over_constrained(points, prescribed) result(too_much)
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:)               !! (2 nodes) prescribed displacements
       logical :: too_much(size(points%slave))      !! (m)
       real(dp) :: axes(2, 2)
       logical :: all_held(2)
       integer :: k
 
       do k = 1, size(points%slave)
-         call find_shared_axes(points, held, k, axes, all_held)
+         call find_shared_axes(points, prescribed, k, axes, all_held)
          too_much(k) = holds_normal(points, k, axes, all_held)
       end do
    end function over_constrained
@@ -85,18 +86,19 @@ contains
 
    !> The axes of a contact point's slave node, and along which of them all nodes whose values it
    !> takes are held.
-   pure subroutine find_shared_axes(points, held, k, axes, all_held)
+   pure subroutine find_shared_axes(points, prescribed, k, axes, all_held)
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       integer, intent(in) :: k
       real(dp), intent(out) :: axes(2, 2)           ! a unit vector each
       logical, intent(out) :: all_held(2)
       integer :: c, i
 
-      call find_axes(points, held, points%slave(k), axes, all_held)
+      call find_axes(points, prescribed, points%slave(k), axes, all_held)
       associate (nodes => points%nodes_of(k))
          do c = 1, 2
-            if (all_held(c)) all_held(c) = all([(free_part(points, held, nodes(i), axes(:, c)) <= &
+            if (all_held(c)) all_held(c) = all([(free_part(points, prescribed, nodes(i), axes(:, &
+               c)) <= &
                least_slant, i=1, size(nodes))])
          end do
       end associate
@@ -105,15 +107,15 @@ contains
    end subroutine find_shared_axes
 
    !> The axis nearer to the tangent of a contact point, if supports hold a node along it; else 0.
-   pure function held_along_tangent(points, held, k, node) result(direction)
+   pure function held_along_tangent(points, prescribed, k, node) result(direction)
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       integer, intent(in) :: k, node
       real(dp) :: direction(2)
       real(dp) :: axes(2, 2)
       logical :: fixed(2)
 
-      call find_axes(points, held, node, axes, fixed)
+      call find_axes(points, prescribed, node, axes, fixed)
       direction = 0.0_dp
       associate (n => abs(matmul(points%normal(:, k), axes)))
          if (fixed(1) .and. n(1) < n(2)) direction = axes(:, 1)
@@ -122,23 +124,23 @@ contains
    end function held_along_tangent
 
    !> Part of a direction along which supports leave a node free.
-   pure real(dp) function free_part(points, held, node, direction)
+   pure real(dp) function free_part(points, prescribed, node, direction)
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: held(:)               !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:)               !! (2 nodes) prescribed displacements
       integer, intent(in) :: node
       real(dp), intent(in) :: direction(2)         !! unit vector
       real(dp) :: axes(2, 2)
       logical :: fixed(2)
 
-      call find_axes(points, held, node, axes, fixed)
+      call find_axes(points, prescribed, node, axes, fixed)
       free_part = norm2(merge(0.0_dp, matmul(direction, axes), fixed))
    end function free_part
 
    !> The axes along which cards name the displacements of a node, and which of these supports
    !> prescribe, also by an equation whose other terms they hold.
-   pure subroutine find_axes(points, held, node, axes, fixed)
+   pure subroutine find_axes(points, prescribed, node, axes, fixed)
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       integer, intent(in) :: node
       real(dp), intent(out) :: axes(2, 2)           ! a unit vector each
       logical, intent(out) :: fixed(2)
@@ -147,12 +149,12 @@ contains
       axes = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
       i = findloc(points%partners%node, node, dim=1)
       if (i > 0) axes = points%partners(i)%axes
-      fixed = held(2*named_node(points, node) - 1:2*named_node(points, node))
+      fixed = prescribed(2*named_node(points, node) - 1:2*named_node(points, node))
       do i = 1, size(points%equations)
          associate (equation => points%equations(i))
             if (equation%node(1) /= node .or. equation%is_thermal()) cycle
             associate (others => equation%places())
-               if (all(held(others(2:)))) fixed(equation%dof(1)) = .true.
+               if (all(prescribed(others(2:)))) fixed(equation%dof(1)) = .true.
             end associate
          end associate
       end do
@@ -198,42 +200,43 @@ contains
    !> A contact point of one interface whose normal force, or friction force, supports leave
    !> undetermined beside those of the others; 0 where there is none. Contact points whose normal
    !> motion is prescribed do not count.
-   pure integer function first_redundant(points, first, last, held, has_friction) result(found)
+   pure integer function first_redundant(points, first, last, prescribed, &
+      has_friction) result(found)
       type(connections_type), intent(in) :: points !! all contact points
       integer, intent(in) :: first, last                  !! those of the interface
-      logical, intent(in) :: held(:)                      !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:) !! (2 nodes) prescribed displacements
       logical, intent(in) :: has_friction(:)              !! (m)
       logical :: moves(size(has_friction)), slides(size(has_friction))
       integer :: k
 
-      moves = .not. over_constrained(points, held)
+      moves = .not. over_constrained(points, prescribed)
       found = redundant_along(points, pack([(k, k=first, last)], moves(first:last)), &
-         points%normal, held)
+         points%normal, prescribed)
       if (found > 0) return
       slides = has_friction .and. moves .and. &
-         .not. norm2(held_directions(points, held), dim=1) > 0.0_dp
+         .not. norm2(held_directions(points, prescribed), dim=1) > 0.0_dp
       found = redundant_along(points, pack([(k, k=first, last)], slides(first:last)), &
-         points%tangent, held)
+         points%tangent, prescribed)
    end function first_redundant
 
    !> The same of some contact points in given directions. Those whose own node is free come first;
    !> only the others can be redundant.
-   pure integer function redundant_along(points, chosen, direction, held) result(found)
+   pure integer function redundant_along(points, chosen, direction, prescribed) result(found)
       type(connections_type), intent(in) :: points
       integer, intent(in) :: chosen(:)
       real(dp), intent(in) :: direction(:, :)             ! (2, m) unit vectors
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       type(constraint_rows_type) :: rows
       integer :: i, k
       integer, allocatable :: order(:)
       logical :: own_is_free(size(chosen))
 
-      own_is_free = [(free_part(points, held, points%slave(chosen(i)), &
+      own_is_free = [(free_part(points, prescribed, points%slave(chosen(i)), &
          direction(:, chosen(i))) > 0.5_dp, i=1, size(chosen))]
       found = 0
       if (all(own_is_free)) return
       order = [pack(chosen, own_is_free), pack(chosen, .not. own_is_free)]
-      rows%dofs = size(held)/2
+      rows%dofs = size(prescribed)/2
       allocate (rows%on_tail(0))
       associate (hanging => points%hanging)
          rows%choice = [(0, i=1, hanging%count), points%slave(order)]
@@ -246,7 +249,8 @@ contains
       do k = 1, size(order)
          associate (nodes => points%nodes_of(order(k)))
             call rows%add(nodes, points%difference%coefficients_of(order(k))* &
-               [(free_part(points, held, nodes(i), direction(:, order(k))), i=1, size(nodes))])
+               [(free_part(points, prescribed, nodes(i), direction(:, order(k))), i=1, &
+               size(nodes))])
          end associate
       end do
       associate (dependent => dependent_rows(rows, least_left), before => points%hanging%count)

@@ -331,8 +331,8 @@ contains
       end do
       unknown = 0
       associate (n => constraints%equations, first => rows%dofs + 1, &
-         held => by_link(rows%dofs + 1:rows%dofs + size(enters)))
-         enters = found%entry(first:first + size(enters) - 1) > 0 .and. .not. held
+         prescribed => by_link(rows%dofs + 1:rows%dofs + size(enters)))
+         enters = found%entry(first:first + size(enters) - 1) > 0 .and. .not. prescribed
          free = used .and. found%writer(:rows%dofs) == 0
          if (allocated(rows%dof_on_tail)) then
             call number_chosen(1, free .and. .not. rows%dof_on_tail, unknown, n)
@@ -346,7 +346,7 @@ contains
          call number_chosen(first, enters .and. rows%on_tail, unknown, n)
          constraints%link_force = [(n + i, i=1, count(found%linked))]
          n = n + size(constraints%link_force)
-         call number_chosen(first, held, unknown, n)
+         call number_chosen(first, prescribed, unknown, n)
          constraints%tail = n - before_tail
       end associate
    end subroutine number_unknowns

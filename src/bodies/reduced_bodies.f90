@@ -58,7 +58,7 @@ module reduced_bodies
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
       ! Key of the numbering: supports, contact points with friction, prescribed temperatures.
-      logical, allocatable, private :: held(:)               !! (2 nodes)
+      logical, allocatable, private :: prescribed(:)               !! (2 nodes)
       logical, allocatable, private :: has_friction(:)       !! (m)
       logical, allocatable, private :: held_temperature(:)   !! (nodes)
    contains
@@ -148,31 +148,32 @@ contains
       logical :: heat, mechanics
 
       self%laws = laws_of_step(model, self%points, step)
-      associate (held => loads%displacement%active, held_temperature => loads%temperature%active, &
+      associate (prescribed => loads%displacement%active, &
+         held_temperature => loads%temperature%active, &
          has_friction => self%laws%friction%coefficient > 0.0_dp)
          mechanics = solves_mechanics(model%steps(step)%analysis)
          heat = solves_heat(model%steps(step)%analysis)
          self%is_coupled = heat .and. mechanics .and. (allocated(self%points%heated) .or. &
             .not. all(is_constant(self%laws%conductance)))
-         if (mechanics .and. allocated(self%held)) mechanics = any(self%held .neqv. held) .or. &
-            any(self%has_friction .neqv. has_friction)
+         if (mechanics .and. allocated(self%prescribed)) mechanics = &
+            any(self%prescribed .neqv. prescribed) .or. any(self%has_friction .neqv. has_friction)
          if (heat .and. allocated(self%held_temperature)) then
             heat = any(self%held_temperature .neqv. held_temperature)
          end if
          if (mechanics) then
-            self%held = held
+            self%prescribed = prescribed
             self%has_friction = has_friction
          end if
          if (heat) self%held_temperature = held_temperature
-         call self%number(model, held, held_temperature, mechanics, heat)
+         call self%number(model, prescribed, held_temperature, mechanics, heat)
       end associate
    end subroutine enter_step
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
-   subroutine number(self, model, held, held_temperature, mechanics, heat)
+   subroutine number(self, model, prescribed, held_temperature, mechanics, heat)
       class(reduced_bodies_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model
-      logical, intent(in) :: held(:)                         !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:) !! (2 nodes) prescribed displacements
       logical, intent(in) :: held_temperature(:)             !! (nodes) prescribed temperatures
       logical, intent(in) :: mechanics                       !! whether displacements are numbered
       logical, intent(in) :: heat                            !! whether temperatures are numbered
@@ -180,16 +181,16 @@ contains
       type(joint_type), allocatable :: of_bars(:), of_equations(:), of_ties(:)
 
       if (mechanics) then
-         self%held_direction = held_directions(self%points, held)
+         self%held_direction = held_directions(self%points, prescribed)
          of_ties = joints_of(self%points%ties)
          of_equations = joints_of(self%points%equations)
          of_bars = joints_of(self%points%elongations)
-         call unsupported_motions(model%mesh, held, [of_ties, of_equations, of_bars], &
+         call unsupported_motions(model%mesh, prescribed, [of_ties, of_equations, of_bars], &
             self%points%references(model%mesh%node_body == 0), self%rigid)
       end if
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) then
-            call constrain_displacements(used, held, points, &
+            call constrain_displacements(used, prescribed, points, &
                self%laws%friction%coefficient > 0.0_dp, slave_is_stiffer(model, points, .true.), &
                self%mechanical%map)
             self%mechanical%numbering = self%mechanical%numbering + 1

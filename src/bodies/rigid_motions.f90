@@ -49,9 +49,9 @@ module rigid_motions
 contains
 
    !> The free motions of all bodies, ordered by their first body; none where all is held.
-   subroutine find_free_motions(mesh, held, joints, motions)
+   subroutine find_free_motions(mesh, prescribed, joints, motions)
       type(mesh_type), intent(in) :: mesh
-      logical, intent(in) :: held(:)                  !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:)                  !! (2 nodes) prescribed displacements
       type(joint_type), intent(in) :: joints(:)   !! what contact points and ties hold
       type(free_motion_type), allocatable, intent(out) :: motions(:)
       type(rigid_parts_type) :: bodies
@@ -59,7 +59,7 @@ contains
       integer :: i
 
       bodies = measure(mesh, joints, [integer ::])
-      basis = free_basis(mesh, bodies, held, joints)
+      basis = free_basis(mesh, bodies, prescribed, joints)
       allocate (motions(size(basis, 2)))
       do i = 1, size(motions)
          motions(i) = motion_of(mesh, bodies, basis(:, i))
@@ -69,9 +69,9 @@ contains
    !> Displacements of the nodes in the motions that supports, ties and equations leave free, each
    !> motion of one body, of those that are tied to it, and of the nodes of no body that equations
    !> relate to them: forces act on these, too.
-   pure subroutine unsupported_motions(mesh, held, joints, references, fields)
+   pure subroutine unsupported_motions(mesh, prescribed, joints, references, fields)
       type(mesh_type), intent(in) :: mesh
-      logical, intent(in) :: held(:)                       !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:) !! (2 nodes) prescribed displacements
       type(joint_type), intent(in) :: joints(:)            !! what ties and equations hold
       integer, intent(in) :: references(:)  !! nodes of no body that contact points take, each once
       real(dp), allocatable, intent(out) :: fields(:, :)   !! (2 nodes, motions)
@@ -80,8 +80,8 @@ contains
       integer :: c, k, node
 
       bodies = measure(mesh, joints, references)
-      basis = free_basis(mesh, bodies, held, joints)
-      allocate (fields(size(held), size(basis, 2)), source=0.0_dp)
+      basis = free_basis(mesh, bodies, prescribed, joints)
+      allocate (fields(size(prescribed), size(basis, 2)), source=0.0_dp)
       do node = 1, size(mesh%node_body)
          if (bodies%part(node) == 0) cycle
          associate (p => bodies%part(node))
@@ -107,16 +107,16 @@ contains
 
    !> Basis of the free motions in reduced echelon form: each has a leading component of its own, 1,
    !> that the others do not have.
-   pure function free_basis(mesh, bodies, held, joints) result(basis)
+   pure function free_basis(mesh, bodies, prescribed, joints) result(basis)
       type(mesh_type), intent(in) :: mesh
       type(rigid_parts_type), intent(in) :: bodies
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       type(joint_type), intent(in) :: joints(:)
       !> (unknowns, motions)
       real(dp), allocatable :: basis(:, :)
       integer :: column, i, k, pivot
 
-      basis = null_space(conditions(mesh, bodies, held, joints))
+      basis = null_space(conditions(mesh, bodies, prescribed, joints))
       column = 1
       do i = 1, size(basis, 1)
          if (column > size(basis, 2)) exit
@@ -132,17 +132,17 @@ contains
    end function free_basis
 
    !> Supports, axes and joints as conditions on the rigid motions, a row each.
-   pure function conditions(mesh, bodies, held, joints) result(rows)
+   pure function conditions(mesh, bodies, prescribed, joints) result(rows)
       type(mesh_type), intent(in) :: mesh
       type(rigid_parts_type), intent(in) :: bodies
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       type(joint_type), intent(in) :: joints(:)
       real(dp), allocatable :: rows(:, :)
       logical :: on_axis(mesh%body_count)
       integer :: c, i, k, n, node, p
 
       on_axis = bodies_on_axis(mesh)
-      allocate (rows(count(held) + size(joints) + 2*count(on_axis(bodies%body)) + &
+      allocate (rows(count(prescribed) + size(joints) + 2*count(on_axis(bodies%body)) + &
          2*size(bodies%hinge, 2), bodies%unknowns()), source=0.0_dp)
       n = 0
       do p = 1, size(bodies%body)
@@ -160,7 +160,7 @@ contains
       end do
       do node = 1, size(mesh%node_body)
          do c = 1, 2
-            if (.not. held(2*(node - 1) + c)) cycle
+            if (.not. prescribed(2*(node - 1) + c)) cycle
             n = n + 1
             rows(n, :) = displacement_row(mesh, bodies, node, unit(:, c))
          end do

@@ -22,18 +22,18 @@ contains
 
    !> Bodies that neither supports nor contact could ever constrain: all contact points that are not
    !> removed count as closed, those with friction as stuck. One message a body.
-   subroutine unconstrained_in_step(model, points, laws, held, messages)
+   subroutine unconstrained_in_step(model, points, laws, prescribed, messages)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points !! all contact points
       type(contact_laws_type), intent(in) :: laws   !! theirs in the step
-      logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:)                !! (2 nodes) prescribed displacements
       type(string_type), allocatable, intent(out) :: messages(:)
       type(free_motion_type), allocatable :: motions(:)
       character(:), allocatable :: words
       integer :: i, n
       logical :: is_first, is_last
 
-      call free_motions(model, points, held, &
+      call free_motions(model, points, prescribed, &
          merge(contact_open, merge(contact_stick, contact_slip, laws%friction%coefficient > &
          0.0_dp), laws%removed), motions)
       allocate (messages(0))
@@ -60,11 +60,11 @@ contains
 
    !> Bodies that the supports and the contact points in these states leave free, to be added to a
    !> message, such as '; body 2 (...) is free to slide along x'; empty where all are constrained.
-   function unconstrained_now(model, points, has_friction, held, contact_state) result(words)
+   function unconstrained_now(model, points, has_friction, prescribed, contact_state) result(words)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points !! all contact points
       logical, intent(in) :: has_friction(:)        !! (m)
-      logical, intent(in) :: held(:)                !! (2 nodes) prescribed displacements
+      logical, intent(in) :: prescribed(:)                !! (2 nodes) prescribed displacements
       integer, intent(in) :: contact_state(:)     !! (m) contact_open, contact_slip or contact_stick
       character(:), allocatable :: words
       type(free_motion_type), allocatable :: motions(:), welded(:)
@@ -72,10 +72,10 @@ contains
       character(:), allocatable :: last
       integer :: i
 
-      call free_motions(model, points, held, contact_state, motions)
+      call free_motions(model, points, prescribed, contact_state, motions)
       stuck = merge(contact_stick, contact_state, contact_state == contact_slip .and. &
          has_friction)
-      call free_motions(model, points, held, stuck, welded)
+      call free_motions(model, points, prescribed, stuck, welded)
       words = ''
       last = ''
       do i = 1, size(motions)
@@ -95,10 +95,10 @@ contains
    end function unconstrained_now
 
    !> The free motions with the contact points in these states.
-   subroutine free_motions(model, points, held, contact_state, motions)
+   subroutine free_motions(model, points, prescribed, contact_state, motions)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       integer, intent(in) :: contact_state(:)
       type(free_motion_type), allocatable, intent(out) :: motions(:)
       type(joint_type) :: joints(2*size(contact_state))
@@ -118,7 +118,7 @@ contains
       of_ties = joints_of(points%ties)
       of_equations = joints_of(points%equations)
       of_bars = joints_of(points%elongations)
-      call find_free_motions(model%mesh, held, [joints(:n), of_ties, of_equations, of_bars], &
+      call find_free_motions(model%mesh, prescribed, [joints(:n), of_ties, of_equations, of_bars], &
          motions)
       if (.not. allocated(model%couplings)) return
       do k = 1, size(motions)
@@ -144,31 +144,32 @@ contains
 
    !> Bodies whose temperature nothing can ever determine: contact points count as conducting where
    !> one side of their law is given. One message a body.
-   subroutine undetermined_in_step(model, points, laws, held, step, messages)
+   subroutine undetermined_in_step(model, points, laws, prescribed, step, messages)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points !! all contact points
       type(contact_laws_type), intent(in) :: laws   !! theirs in the step
-      logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
+      logical, intent(in) :: prescribed(:)                !! (nodes) prescribed temperatures
       integer, intent(in) :: step                   !! the step, for its films
       type(string_type), allocatable, intent(out) :: messages(:)
 
-      call find_undetermined(model, points, with_source(model, held, step), held, &
+      call find_undetermined(model, points, with_source(model, prescribed, step), prescribed, &
          laws%conductance%open_kind /= law_none .or. laws%conductance%closed_kind /= law_none, &
          ': no *BOUNDARY on dof 11, no *FILM and no contact that conducts heat fixes it', messages)
    end subroutine undetermined_in_step
 
    !> Bodies whose temperature the conductances of an instant leave undetermined, in one message;
    !> empty where there are none.
-   function undetermined_now(model, points, held, step, conducts) result(words)
+   function undetermined_now(model, points, prescribed, step, conducts) result(words)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points !! all contact points
-      logical, intent(in) :: held(:)                !! (nodes) prescribed temperatures
+      logical, intent(in) :: prescribed(:)                !! (nodes) prescribed temperatures
       integer, intent(in) :: step                   !! the step, for its films
       logical, intent(in) :: conducts(:)            !! (m) contact points that carry heat
       character(:), allocatable :: words
       type(string_type), allocatable :: messages(:)
 
-      call find_undetermined(model, points, with_source(model, held, step), held, conducts, &
+      call find_undetermined(model, points, with_source(model, prescribed, step), prescribed, &
+         conducts, &
          ': all its contact points have conductance 0', messages)
       words = joined(messages)
    end function undetermined_now
@@ -205,11 +206,11 @@ contains
 
    !> Bodies whose temperature, uniform in each, is left free by the sources of heat, by conducting
    !> contact points and ties, which make that of two bodies equal, and by the equations.
-   subroutine find_undetermined(model, points, has_source, held, conducts, ending, messages)
+   subroutine find_undetermined(model, points, has_source, prescribed, conducts, ending, messages)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points
       logical, intent(in) :: has_source(:)          ! (bodies)
-      logical, intent(in) :: held(:)                ! (nodes) prescribed temperatures
+      logical, intent(in) :: prescribed(:)                ! (nodes) prescribed temperatures
       logical, intent(in) :: conducts(:)
       character(*), intent(in) :: ending            ! of each message
       type(string_type), allocatable, intent(out) :: messages(:)
@@ -226,7 +227,7 @@ contains
             call join(points%ties%slave(k), points%ties%master(k))
          end do
       end if
-      rows = equation_rows(model, points, held)
+      rows = equation_rows(model, points, prescribed)
       do body = 1, size(has_source)
          if (has_source(body)) call add_row(body, 0)
          do other = 1, body - 1
@@ -261,12 +262,12 @@ contains
 
    !> Conditions of equations on the temperatures of the bodies and, behind them, of the nodes of no
    !> body that they name, a column each.
-   pure function equation_rows(model, points, held) result(rows)
+   pure function equation_rows(model, points, prescribed) result(rows)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       real(dp), allocatable :: rows(:, :)
-      integer :: lone(size(held)), e, i, k, n
+      integer :: lone(size(prescribed)), e, i, k, n
 
       lone = 0
       n = 0
@@ -275,7 +276,7 @@ contains
          n = n + 1
          lone(points%equations(e)%node) = 1
       end do
-      where (model%mesh%node_body > 0 .or. held) lone = 0
+      where (model%mesh%node_body > 0 .or. prescribed) lone = 0
       k = model%mesh%body_count
       do i = 1, size(lone)
          if (lone(i) == 0) cycle
@@ -298,9 +299,9 @@ contains
 
    !> Bodies with a prescribed temperature, with a heat capacity in a transient step, or with a film
    !> in a step: its own ones and those of the steps before that it keeps.
-   pure function with_source(model, held, step) result(source)
+   pure function with_source(model, prescribed, step) result(source)
       type(model_type), intent(in) :: model
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       integer, intent(in) :: step
       logical :: source(model%mesh%body_count)
       integer :: i, s
@@ -316,7 +317,7 @@ contains
             end do
          end associate
       end do
-      source(pack(model%mesh%node_body, held .and. model%mesh%node_body > 0)) = .true.
+      source(pack(model%mesh%node_body, prescribed .and. model%mesh%node_body > 0)) = .true.
       if (model%steps(step)%is_transient) source(pack(model%mesh%element_body, &
          model%materials(model%sections(model%mesh%element_section)%material)%specific_heat > &
          0.0_dp)) = .true.

@@ -118,7 +118,7 @@ contains
       real(dp), allocatable :: x(:, :)
       real(dp) :: thickness
       integer :: first, i, n
-      logical :: round
+      logical :: is_axisymmetric
 
       n = count(locations%kind == load_film_coefficient)
       first = findloc(locations%kind, load_film_coefficient, dim=1)
@@ -128,8 +128,8 @@ contains
             film%coefficient = first + i - 1
             film%sink = film%coefficient + n
             call find_domain(model, location%item, location%component, film%nodes, x, thickness, &
-               round)
-            film%mass = side_mass(x, thickness, round)
+               is_axisymmetric)
+            film%mass = side_mass(x, thickness, is_axisymmetric)
          end associate
       end do
       call integrate_columns(unit, model, locations)
@@ -184,7 +184,7 @@ contains
       real(dp), allocatable, intent(out) :: heat(:)      !! (n) [power per unit of the load]
       real(dp), allocatable :: moments(:, :), x(:, :), weights(:)
       real(dp) :: thickness
-      logical :: round
+      logical :: is_axisymmetric
 
       associate (kind => location%kind, item => location%item, component => location%component)
          select case (kind)
@@ -192,15 +192,15 @@ contains
             nodes = [item]
             weights = [1.0_dp]
          case (load_pressure)
-            call find_domain(model, item, component, nodes, x, thickness, round)
-            forces = side_pressure(x, thickness, round)
+            call find_domain(model, item, component, nodes, x, thickness, is_axisymmetric)
+            forces = side_pressure(x, thickness, is_axisymmetric)
          case (load_face_heat, load_traction)
             call find_domain(model, item, merge(component, (component + 1)/2, &
-               kind == load_face_heat), nodes, x, thickness, round)
-            weights = side_weights(x, thickness, round)
+               kind == load_face_heat), nodes, x, thickness, is_axisymmetric)
+            weights = side_weights(x, thickness, is_axisymmetric)
          case (load_body_force, load_gravity, load_body_heat, load_centrifugal)
-            call find_domain(model, item, 0, nodes, x, thickness, round)
-            moments = body_moments(model%mesh%element_kind(item), x, thickness, round)
+            call find_domain(model, item, 0, nodes, x, thickness, is_axisymmetric)
+            moments = body_moments(model%mesh%element_kind(item), x, thickness, is_axisymmetric)
             weights = moments(1, :)
             if (kind == load_centrifugal) forces = turning_forces(moments, component)
          case default
@@ -238,13 +238,13 @@ contains
    end function turning_forces
 
    !> Data of an integral over a side of an element, or over all of it.
-   pure subroutine find_domain(model, element, side, nodes, x, thickness, round)
+   pure subroutine find_domain(model, element, side, nodes, x, thickness, is_axisymmetric)
       type(model_type), intent(in) :: model
       integer, intent(in) :: element, side                 !! side 0 for the whole element
       integer, allocatable, intent(out) :: nodes(:)        !! (n)
       real(dp), allocatable, intent(out) :: x(:, :)        !! (2, n) coordinates [length]
       real(dp), intent(out) :: thickness                   !! [length]
-      logical, intent(out) :: round                        !! whether x is a radius
+      logical, intent(out) :: is_axisymmetric                        !! whether x is a radius
 
       associate (mesh => model%mesh)
          if (side > 0) then
@@ -254,7 +254,7 @@ contains
          end if
          x = mesh%coordinates(:, nodes)
          thickness = model%sections(mesh%element_section(element))%thickness
-         round = mesh%element_plane(element) == axisymmetric
+         is_axisymmetric = mesh%element_plane(element) == axisymmetric
       end associate
    end subroutine find_domain
 

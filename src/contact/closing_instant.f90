@@ -67,7 +67,7 @@ module closing_instant
    end type contact_change_type
 
    !> Contact points on their way through the increment, 2n rows: n normal, then n tangential ones.
-   type :: way_type
+   type :: closing_path_type
       integer, allocatable :: point(:)       !! (n) the contact points
       logical, allocatable :: is_open(:)     !! (n) whether it has not closed so far
       real(dp), allocatable :: last_gap(:)   !! (n) gap at the end of the increment [length]
@@ -79,7 +79,7 @@ module closing_instant
       real(dp), allocatable :: own(:)        !! (2n) diagonal of the first C_R [length/force]
       real(dp), allocatable :: law(:, :)     !! (2n, 2n) A [length/force]
       real(dp), allocatable :: rate(:, :)    !! (2n, 2n) dy/dlambda through all phi [length/force]
-   end type way_type
+   end type closing_path_type
 
 contains
 
@@ -88,29 +88,29 @@ contains
    !> least one from the start of the increment. The workspace may have laws of an earlier pass; a
    !> pass that fails leaves none.
    !> Error: as solve_contact.
-   subroutine solve_increment(system, previous, load, work, held, state, error)
+   subroutine solve_increment(system, previous, load, work, sticking, state, error)
       type(contact_system_type), intent(in) :: system     !! the reduced system
       type(contact_state_type), intent(in) :: previous    !! state at the start of the increment
       real(dp), intent(in) :: load(:)                     !! (tail) condensed load [force]
       type(contact_workspace_type), intent(inout) :: work !! laws and factors of the solution out
       !> Factors of the set whose closed contact points all hold their positions: a fresh one, or
       !> that of an earlier pass of the increment.
-      type(contact_workspace_type), intent(inout) :: held
+      type(contact_workspace_type), intent(inout) :: sticking
       type(contact_state_type), intent(inout) :: state    !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
 
-      call settle_laws(system, previous, load, work, held, state, error)
+      call settle_laws(system, previous, load, work, sticking, state, error)
       if (.not. allocated(error)) return
       work%closing = closing_law_type()
       work%keeps_laws = .false.
    end subroutine solve_increment
 
    !> Solves with frozen closing laws until they stay.
-   subroutine settle_laws(system, previous, load, work, held, state, error)
+   subroutine settle_laws(system, previous, load, work, sticking, state, error)
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: previous
       real(dp), intent(in) :: load(:)
-      type(contact_workspace_type), intent(inout) :: work, held
+      type(contact_workspace_type), intent(inout) :: work, sticking
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       type(closing_law_type) :: laws(size(state%contact_state))
@@ -118,9 +118,9 @@ contains
       real(dp) :: change, swing   ! of the last pass, of the last one before changes are halved
       integer :: k, pass
 
-      if (.not. allocated(held%closing)) then
-         held = work%another()
-         held%closing = closing_law_type()
+      if (.not. allocated(sticking%closing)) then
+         sticking = work%another()
+         sticking%closing = closing_law_type()
       end if
       holds = .false.
       swing = 0.0_dp
@@ -131,9 +131,9 @@ contains
          if (allocated(error)) return
          if (work%keeps_laws) exit
          holds = state%contact_state /= contact_open .or. (holds .and. pass > free_passes)
-         held%soft = work%soft
+         sticking%soft = work%soft
          laws = work%closing
-         call find_laws(system, previous, state, holds, held, laws, error)
+         call find_laws(system, previous, state, holds, sticking, laws, error)
          if (allocated(error)) return
          change = maxval([0.0_dp, law_change(work%closing, laws, system%alone)])
          if (pass > plain_passes) then
@@ -166,196 +166,198 @@ contains
    !> increment. A contact point that has opened again keeps its law, on which nothing depends:
    !> without it the contact point might close, with it open, for ever.
    !> Error: a singular system.
-   subroutine find_laws(system, previous, state, holds, held, laws, error)
+   subroutine find_laws(system, previous, state, holds, sticking, laws, error)
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: previous
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: holds(:)
-      type(contact_workspace_type), intent(inout) :: held
+      type(contact_workspace_type), intent(inout) :: sticking
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
-      type(contact_state_type) :: held_state
-      type(way_type) :: way
+      type(contact_state_type) :: sticking_state
+      type(closing_path_type) :: path
       logical :: closes(size(state%contact_state))
       integer :: k
 
       closes = previous%contact_state == contact_open .and. holds
       if (.not. any(closes .and. system%tangent > 0)) return
-      held_state = state
-      held_state%contact_state = merge(contact_stick, contact_open, holds .and. &
+      sticking_state = state
+      sticking_state%contact_state = merge(contact_stick, contact_open, holds .and. &
          previous%contact_state /= contact_open)
-      way%point = pack([(k, k=1, size(closes))], closes)
-      allocate (way%is_open(size(way%point)), source=.true.)
-      way%last_gap = merge(max(state%gap(way%point), 0.0_dp), 0.0_dp, &
-         state%contact_state(way%point) == contact_open)
-      way%y = [way%last_gap - max(previous%gap(way%point), 0.0_dp), &
-         previous%tangential(way%point) - state%tangential(way%point)]
-      way%lambda = [-state%force(way%point), state%shear_force(way%point)]
-      way%least_gap = together*max(maxval(previous%gap(way%point)), 0.0_dp) + system%least_length
-      do k = 1, size(way%point)
-         associate (law => laws(way%point(k)))
-            law = closing_law_type(acts=.true., start=previous%tangential(way%point(k)))
+      path%point = pack([(k, k=1, size(closes))], closes)
+      allocate (path%is_open(size(path%point)), source=.true.)
+      path%last_gap = merge(max(state%gap(path%point), 0.0_dp), 0.0_dp, &
+         state%contact_state(path%point) == contact_open)
+      path%y = [path%last_gap - max(previous%gap(path%point), 0.0_dp), &
+         previous%tangential(path%point) - state%tangential(path%point)]
+      path%lambda = [-state%force(path%point), state%shear_force(path%point)]
+      path%least_gap = together*max(maxval(previous%gap(path%point)), 0.0_dp) + system%least_length
+      do k = 1, size(path%point)
+         associate (law => laws(path%point(k)))
+            law = closing_law_type(acts=.true., start=previous%tangential(path%point(k)))
             allocate (law%compliance(2, size(closes)), law%rate(2, size(closes)), source=0.0_dp)
          end associate
       end do
-      call go_freely(system, held, held_state, way, laws, error)
+      call go_freely(system, sticking, sticking_state, path, laws, error)
       if (allocated(error)) return
-      if (.not. any(way%is_open)) return
-      call find_compliance(system, held, way)
-      do while (any(way%is_open))
-         call go_to_event(way, laws)
+      if (.not. any(path%is_open)) return
+      call find_compliance(system, sticking, path)
+      do while (any(path%is_open))
+         call go_to_event(path, laws)
       end do
    end subroutine find_laws
 
    !> Bodies that nothing holds go where their forces drive them, until they touch, in no time.
    !> Error: a singular system.
-   subroutine go_freely(system, held, held_state, way, laws, error)
+   subroutine go_freely(system, sticking, sticking_state, path, laws, error)
       type(contact_system_type), intent(in) :: system
-      type(contact_workspace_type), intent(inout) :: held  !! factors at the end of the way out
-      type(contact_state_type), intent(inout) :: held_state
-      type(way_type), intent(inout) :: way
+      type(contact_workspace_type), intent(inout) :: sticking  !! factors at the end of the way out
+      type(contact_state_type), intent(inout) :: sticking_state
+      type(closing_path_type), intent(inout) :: path
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: forces(2, size(laws)), on_tail(size(system%schur, 1))
-      real(dp) :: motion(size(way%y)), length
+      real(dp) :: motion(size(path%y)), length
       real(dp), allocatable :: drive(:)
       integer :: i, n
 
-      n = size(way%point)
+      n = size(path%point)
       do
-         call held%factor_set(system, held_state, error)
+         call sticking%factor_set(system, sticking_state, error)
          if (allocated(error)) return
-         if (size(held%unconstrained, 2) == 0 .or. .not. any(way%is_open)) return
+         if (size(sticking%unconstrained, 2) == 0 .or. .not. any(path%is_open)) return
          forces = 0.0_dp
-         forces(1, way%point) = way%lambda(:n)
-         forces(2, way%point) = way%lambda(n + 1:)
+         forces(1, path%point) = path%lambda(:n)
+         forces(2, path%point) = path%lambda(n + 1:)
          on_tail = system%on_tail(forces)
-         associate (free => held%rows%free, unheld => held%unconstrained)
+         associate (free => sticking%rows%free, unheld => sticking%unconstrained)
             drive = matmul(on_tail(free), unheld)
             if (norm2(drive) <= undriven*norm2(on_tail)) return
             on_tail = 0.0_dp
             on_tail(free) = -matmul(unheld, drive)/norm2(drive)
          end associate
-         motion(:n) = on_tail(system%normal(way%point))
+         motion(:n) = on_tail(system%normal(path%point))
          motion(n + 1:) = 0.0_dp
          do i = 1, n
-            if (system%tangent(way%point(i)) > 0) motion(n + i) = &
-               on_tail(system%tangent(way%point(i)))
+            if (system%tangent(path%point(i)) > 0) motion(n + i) = &
+               on_tail(system%tangent(path%point(i)))
          end do
-         associate (reaches => way%is_open .and. motion(:n) > nothing)
+         associate (reaches => path%is_open .and. motion(:n) > nothing)
             if (.not. any(reaches)) return
-            length = max(minval((way%last_gap - way%y(:n))/motion(:n), mask=reaches), 0.0_dp)
+            length = max(minval((path%last_gap - path%y(:n))/motion(:n), mask=reaches), 0.0_dp)
          end associate
-         way%y = way%y + length*motion
+         path%y = path%y + length*motion
          do i = 1, n
-            if (.not. way%is_open(i)) cycle
-            laws(way%point(i))%start = laws(way%point(i))%start + length*motion(n + i)
-            if (way%last_gap(i) - way%y(i) > way%least_gap) cycle
-            way%is_open(i) = .false.
-            held_state%contact_state(way%point(i)) = contact_stick
+            if (.not. path%is_open(i)) cycle
+            laws(path%point(i))%start = laws(path%point(i))%start + length*motion(n + i)
+            if (path%last_gap(i) - path%y(i) > path%least_gap) cycle
+            path%is_open(i) = .false.
+            sticking_state%contact_state(path%point(i)) = contact_stick
          end do
       end do
    end subroutine go_freely
 
    !> Compliance of the contact points on their way, while all others that are closed hold their
    !> positions.
-   pure subroutine find_compliance(system, held, way)
+   pure subroutine find_compliance(system, sticking, path)
       type(contact_system_type), intent(in) :: system
-      type(contact_workspace_type), intent(inout) :: held   !! factors
-      type(way_type), intent(inout) :: way
-      integer :: i, j, n, rows(2, size(way%point))
+      type(contact_workspace_type), intent(inout) :: sticking   !! factors
+      type(closing_path_type), intent(inout) :: path
+      integer :: i, j, n, rows(2, size(path%point))
       real(dp) :: response(size(system%schur, 1), 2)
 
-      n = size(way%point)
-      rows(1, :) = system%normal(way%point)
-      rows(2, :) = system%tangent(way%point)
-      allocate (way%compliance(2*n, 2*n), way%law(2*n, 2*n), way%rate(2*n, 2*n), source=0.0_dp)
-      if (.not. allocated(held%relief)) allocate (held%relief(size(system%normal)))
+      n = size(path%point)
+      rows(1, :) = system%normal(path%point)
+      rows(2, :) = system%tangent(path%point)
+      allocate (path%compliance(2*n, 2*n), path%law(2*n, 2*n), path%rate(2*n, 2*n), source=0.0_dp)
+      if (.not. allocated(sticking%point_compliance)) allocate ( &
+         sticking%point_compliance(size(system%normal)))
       do j = 1, n
-         if (.not. way%is_open(j)) cycle
-         associate (relief => held%relief(way%point(j)))
-            if (.not. allocated(relief%response)) then
+         if (.not. path%is_open(j)) cycle
+         associate (point_compliance => sticking%point_compliance(path%point(j)))
+            if (.not. allocated(point_compliance%response)) then
                response = 0.0_dp
                response(rows(1, j), 1) = 1.0_dp
                if (rows(2, j) > 0) response(rows(2, j), 2) = 1.0_dp
-               call held%solve_free(response)
-               relief%response = response
-               held%reliefs = held%reliefs + 1
+               call sticking%solve_free(response)
+               point_compliance%response = response
+               sticking%compliances_found = sticking%compliances_found + 1
             end if
             do i = 1, n
-               if (.not. way%is_open(i)) cycle
-               way%compliance(i, [j, n + j]) = relief%response(rows(1, i), :)
-               if (rows(2, i) > 0) way%compliance(n + i, [j, n + j]) = &
-                  relief%response(rows(2, i), :)
+               if (.not. path%is_open(i)) cycle
+               path%compliance(i, [j, n + j]) = point_compliance%response(rows(1, i), :)
+               if (rows(2, i) > 0) path%compliance(n + i, [j, n + j]) = &
+                  point_compliance%response(rows(2, i), :)
             end do
-            way%compliance(j, j) = way%compliance(j, j) + held%soft%compliance(way%point(j), &
-               -way%lambda(j))
+            path%compliance(j, j) = path%compliance(j, &
+               j) + sticking%soft%compliance(path%point(j), &
+               -path%lambda(j))
          end associate
       end do
-      way%own = [(way%compliance(i, i), i=1, 2*n)]
+      path%own = [(path%compliance(i, i), i=1, 2*n)]
    end subroutine find_compliance
 
    !> Goes on until the next contact points close, which have their laws then.
-   pure subroutine go_to_event(way, laws)
-      type(way_type), intent(inout) :: way
+   pure subroutine go_to_event(path, laws)
+      type(closing_path_type), intent(inout) :: path
       type(closing_law_type), intent(inout) :: laws(:)
-      real(dp) :: ends(size(way%y)), slope(size(way%y)), gap(size(way%point)), part, trial
+      real(dp) :: ends(size(path%y)), slope(size(path%y)), gap(size(path%point)), part, trial
       integer :: first, i, n
 
-      n = size(way%point)
-      ends = -matmul(way%compliance, way%lambda)
-      gap = max(way%last_gap - way%y(:n), 0.0_dp)
+      n = size(path%point)
+      ends = -matmul(path%compliance, path%lambda)
+      gap = max(path%last_gap - path%y(:n), 0.0_dp)
       first = 0
       part = 1.0_dp
       do i = 1, n
-         if (.not. way%is_open(i) .or. ends(i) <= way%last_gap(i)) cycle
-         trial = gap(i)/(gap(i) + (ends(i) - way%last_gap(i)))
+         if (.not. path%is_open(i) .or. ends(i) <= path%last_gap(i)) cycle
+         trial = gap(i)/(gap(i) + (ends(i) - path%last_gap(i)))
          if (trial >= part) cycle
          part = trial
          first = i
       end do
       slope = 0.0_dp
-      if (first > 0) slope = (part*way%compliance(first, :) + (1.0_dp - part)* &
-         (way%law(first, :) - way%rate(first, :)))/(ends(first) - way%y(first))
+      if (first > 0) slope = (part*path%compliance(first, :) + (1.0_dp - part)* &
+         (path%law(first, :) - path%rate(first, :)))/(ends(first) - path%y(first))
       do i = 1, 2*n
-         way%rate(:, i) = (1.0_dp - part)*way%rate(:, i) + (ends - way%y)*slope(i)
+         path%rate(:, i) = (1.0_dp - part)*path%rate(:, i) + (ends - path%y)*slope(i)
       end do
-      way%law = (1.0_dp - part)*way%law + part*way%compliance
-      way%y = (1.0_dp - part)*way%y + part*ends
-      way%left = (1.0_dp - part)*way%left
+      path%law = (1.0_dp - part)*path%law + part*path%compliance
+      path%y = (1.0_dp - part)*path%y + part*ends
+      path%left = (1.0_dp - part)*path%left
       do i = 1, n
-         if (.not. way%is_open(i)) cycle
-         if (first > 0 .and. i /= first .and. way%last_gap(i) - way%y(i) > way%least_gap) cycle
-         associate (law => laws(way%point(i)))
-            law%fraction = 1.0_dp - way%left
-            law%compliance(1, way%point) = way%law(n + i, :n)
-            law%compliance(2, way%point) = way%law(n + i, n + 1:)
-            law%rate(1, way%point) = -way%rate(n + i, :n)
-            law%rate(2, way%point) = -way%rate(n + i, n + 1:)
+         if (.not. path%is_open(i)) cycle
+         if (first > 0 .and. i /= first .and. path%last_gap(i) - path%y(i) > path%least_gap) cycle
+         associate (law => laws(path%point(i)))
+            law%fraction = 1.0_dp - path%left
+            law%compliance(1, path%point) = path%law(n + i, :n)
+            law%compliance(2, path%point) = path%law(n + i, n + 1:)
+            law%rate(1, path%point) = -path%rate(n + i, :n)
+            law%rate(2, path%point) = -path%rate(n + i, n + 1:)
          end associate
-         way%is_open(i) = .false.
-         call hold(way, i)
-         call hold(way, n + i)
+         path%is_open(i) = .false.
+         call hold(path, i)
+         call hold(path, n + i)
       end do
    end subroutine go_to_event
 
    !> Holds a row where it is. One that the others hold has no compliance left.
-   pure subroutine hold(way, row)
-      type(way_type), intent(inout) :: way
+   pure subroutine hold(path, row)
+      type(closing_path_type), intent(inout) :: path
       integer, intent(in) :: row
-      real(dp) :: column(size(way%y)), line(size(way%y))
+      real(dp) :: column(size(path%y)), line(size(path%y))
       integer :: j
 
-      column = way%compliance(:, row)
-      line = way%compliance(row, :)
-      if (column(row) > nothing*way%own(row)) then
+      column = path%compliance(:, row)
+      line = path%compliance(row, :)
+      if (column(row) > nothing*path%own(row)) then
          do j = 1, size(line)
-            if (abs(line(j)) > 0.0_dp) way%compliance(:, j) = way%compliance(:, j) - &
+            if (abs(line(j)) > 0.0_dp) path%compliance(:, j) = path%compliance(:, j) - &
                column*(line(j)/column(row))
          end do
       end if
-      way%compliance(:, row) = 0.0_dp
-      way%compliance(row, :) = 0.0_dp
+      path%compliance(:, row) = 0.0_dp
+      path%compliance(row, :) = 0.0_dp
    end subroutine hold
 
    !> Change from one law to another; of compliances beside that of the contact point alone.

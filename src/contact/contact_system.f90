@@ -10,7 +10,8 @@
 !>    slip   d_n = h                                 lambda_t = direction mu (-lambda_n)
 !>    capped d_n = h                                 lambda_t = direction times the largest shear
 !>
-!> On soft faces (soft_faces) d_n is sought where a contact point is closed, too, and its row is
+!> On soft faces (pressure_overclosure) d_n is sought where a contact point is closed, too, and its
+!> row is
 !>
 !>    lambda_n + stiffness (d_n - h) = 0,
 !>
@@ -46,7 +47,7 @@ module contact_system
    use dense, only: least_squares, null_space, product_of
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
-   use soft_faces, only: soft_faces_type
+   use pressure_overclosure, only: pressure_overclosure_type
    implicit none
    private
    public :: contact_system_type, contact_rows_type, rows_of, free_motions, is_driven, &
@@ -150,7 +151,7 @@ contains
       real(dp), intent(in) :: friction(:)                 !! (m) mu [-]
       type(contact_state_type), intent(in) :: state       !! states and directions
       type(closing_law_type), intent(in) :: closing(:)    !! (m) laws of closing contact points
-      type(soft_faces_type), intent(in) :: soft           !! tangents of soft faces
+      type(pressure_overclosure_type), intent(in) :: soft           !! tangents of soft faces
       type(contact_rows_type) :: rows
       logical :: sought(2, size(state%contact_state))
       integer :: c, k, tail
@@ -242,18 +243,18 @@ contains
       real(dp), intent(in) :: spring(:)      !! (tail) what holds free rows [force/length]
       real(dp), intent(in) :: schur(:, :)    !! (tail, tail) S [force/length]
       real(dp), allocatable :: unheld(:, :) !! (n, l)
-      logical :: held(size(motion, 1))
+      logical :: supported(size(motion, 1))
       integer :: i
 
       if (size(motion, 2) == 0) then
          allocate (unheld(size(free), 0))
          return
       end if
-      held = .true.
+      supported = .true.
       do i = 1, size(free)
-         held(free(i)) = spring(free(i)) > slack*abs(schur(free(i), free(i)))
+         supported(free(i)) = spring(free(i)) > slack*abs(schur(free(i), free(i)))
       end do
-      associate (tail_rows => pack([(i, i=1, size(held))], held))
+      associate (tail_rows => pack([(i, i=1, size(supported))], supported))
          unheld = matmul(motion(free, :), null_space(motion(tail_rows, :)))
       end associate
    end function free_motions

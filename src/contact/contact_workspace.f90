@@ -10,7 +10,7 @@ module contact_workspace
    use friction_laws, only: friction_law_type
    use kinds, only: dp
    use overlap_laws, only: overlap_law_type
-   use soft_faces, only: soft_faces_type
+   use pressure_overclosure, only: pressure_overclosure_type
    implicit none
    private
    public :: contact_workspace_type
@@ -20,16 +20,16 @@ module contact_workspace
    real(dp), parameter :: unresolved = 1.0e-3_dp
 
    !> Compliance of one contact point to forces on it.
-   type :: relief_type
+   type :: point_compliance_type
       !> (tail, 2) motion by forces along d_n and d_t, unallocated until it is sought [length/force]
       real(dp), allocatable :: response(:, :)
-   end type relief_type
+   end type point_compliance_type
 
    !> Data of the increment, and the factors for the active set of the last solution.
    type :: contact_workspace_type
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
       type(friction_law_type), allocatable :: friction(:)   !! (m) of nodal forces
-      type(soft_faces_type) :: soft               !! tangents of soft faces
+      type(pressure_overclosure_type) :: soft               !! tangents of soft faces
       logical, allocatable :: removed(:)          !! (m) open whatever the gap
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
       !> Largest sum of the terms that make a force of the last solution, S d - c, without their
@@ -48,8 +48,8 @@ module contact_workspace
       logical :: driven = .false.                 !! whether these are more than rounding
       logical, allocatable :: idle(:)  !! (m) closed contact points that carry nothing (idle_points)
       integer :: factorisations = 0               !! of active sets, so far
-      integer :: reliefs = 0                      !! found so far
-      type(relief_type), allocatable :: relief(:) !! (m) with the factors; none were sought at first
+      integer :: compliances_found = 0                      !! found so far
+      type(point_compliance_type), allocatable :: point_compliance(:) !! (m) of the factors
       logical :: several = .false.                !! whether other states under the load are proven
       type(contact_factors_type) :: factors       !! of these rows
       integer, allocatable, private :: factored(:)   !! (m) state codes of the factors
@@ -86,7 +86,7 @@ contains
       work%initial_gap = initial_gap
       work%friction = friction
       work%removed = removed
-      work%soft = soft_faces_type(size(initial_gap), overlap, area)
+      work%soft = pressure_overclosure_type(size(initial_gap), overlap, area)
       allocate (work%least_drive(size(system%schur, 1)), source=0.0_dp)
       allocate (work%anchor(size(system%schur, 1)), source=0.0_dp)
       allocate (work%closing(size(initial_gap)))
@@ -343,7 +343,7 @@ contains
       logical, intent(out) :: singular                     !! the rows depend on each other
 
       if (allocated(self%factored)) deallocate (self%factored)
-      if (allocated(self%relief)) deallocate (self%relief)
+      if (allocated(self%point_compliance)) deallocate (self%point_compliance)
       call self%factors%factor(system, self%rows, self%hold, self%unconstrained, singular)
    end subroutine factor_rows
 

@@ -91,11 +91,11 @@ contains
 
    !> Newton's correction of a point, normal to the branch, or with one unknown held; and the
    !> tangent there, the way of the point's own one.
-   subroutine correction(self, point, pass, held, step)
+   subroutine correction(self, point, pass, fixed_coordinate, step)
       class(branch_measure_type), intent(in) :: self
       type(branch_point_type), intent(in) :: point
       type(pass_type), intent(in) :: pass         !! with its derivatives
-      integer, intent(in) :: held                 !! a contact point, m + 1 for f, or 0
+      integer, intent(in) :: fixed_coordinate                 !! a contact point, m + 1 for f, or 0
       type(path_step_type), intent(out) :: step   !! not sound where there is none
       real(dp) :: matrix(size(self%part) + 1, size(self%part) + 1), rest(size(self%part)), rate
       integer :: k, n
@@ -123,11 +123,12 @@ contains
          rest(k) = 0.0_dp
       end do
       matrix(n + 1, :) = point%tangent
-      if (held > 0) matrix(n + 1, :) = [(merge(1.0_dp, 0.0_dp, k == held), k=1, n + 1)]
+      if (fixed_coordinate > 0) matrix(n + 1, :) = [(merge(1.0_dp, 0.0_dp, &
+         k == fixed_coordinate), k=1, n + 1)]
       call solve_on_path(matrix, rest, step)
       if (.not. step%sound) return
       if (dot_product(step%tangent, point%tangent) < 0.0_dp) step%tangent = -step%tangent
-      if (held == 0) step%change = step%change - &
+      if (fixed_coordinate == 0) step%change = step%change - &
          dot_product(step%change, step%tangent)*step%tangent
    end subroutine correction
 

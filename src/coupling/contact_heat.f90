@@ -33,7 +33,7 @@ module contact_heat
       real(dp), allocatable :: of_tail(:, :)   !! (tail, n)
       real(dp), allocatable :: heat(:)         !! (n) load of the tail per omega
       !> (points that friction may heat, n) their heat, where it follows
-      real(dp), allocatable :: made(:, :)
+      real(dp), allocatable :: friction_heat(:, :)
    end type jump_derivatives_type
 
    integer, parameter :: most_steps = 100            !! solutions of (3.4)
@@ -63,8 +63,8 @@ contains
          of_point = data%equation%contact_diagonal(omega)
          history = data%equation%contact_history(omega)
          x = data%heat%condensed
-         if (allocated(workspace%friction%made)) x = x + matmul(heat%friction_heat, &
-            workspace%friction%parts(2, :)*workspace%friction%made)
+         if (allocated(workspace%friction%heat)) x = x + matmul(heat%friction_heat, &
+            workspace%friction%parts(2, :)*workspace%friction%heat)
          diagonal = 0.0_dp
          do k = 1, size(omega)
             if (tail_index(k) == 0) cycle
@@ -189,8 +189,9 @@ contains
             if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
                heat%jump_mean(:, bodies%jump_index(k))*jump(k)
          end do
-         if (allocated(workspace%friction%made)) faces%mean = faces%mean + &
-            matmul(heat%friction_mean, workspace%friction%parts(2, :)*workspace%friction%made)
+         if (allocated(workspace%friction%heat)) faces%mean = faces%mean + &
+            matmul(heat%friction_mean, workspace%friction%parts(2, &
+            :)*workspace%friction%heat)
          workspace%pass%graph%law = bodies%laws%conductance_at(faces%mean, faces%jump)
       end associate
    end subroutine take_temperatures
@@ -291,27 +292,28 @@ contains
 
       derivative = 0.0_dp
       derivative(:, by_omega%active) = changes_by_temperature(bodies, heat, workspace, coordinate, &
-         by_omega%of_tail, by_omega%made)
+         by_omega%of_tail, by_omega%friction_heat)
    end function derivative_by_temperature
 
    !> dW with the unknowns of the thermal tail, with the heat of friction, and with the means of the
    !> faces without jumps.
-   function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, made, mean) &
+   function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, friction_heat, &
+      mean) &
       result(change)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       real(dp), intent(in) :: of_tail(:, :)                    !! (thermal tail, n)
-      real(dp), intent(in), optional :: made(:, :)             !! (heats, n)
+      real(dp), intent(in), optional :: friction_heat(:, :)             !! (heats, n)
       real(dp), intent(in), optional :: mean(:)                !! (m) [temperature]
       real(dp) :: change(size(coordinate), size(of_tail, 2))   !! (m, n)
       real(dp) :: jump(size(coordinate), size(of_tail, 2))
       integer :: k
 
       change = product_of(heat%jump_mean, of_tail)
-      if (present(made)) change = change + product_of(heat%friction_mean, &
-         workspace%friction%entering_part(made))
+      if (present(friction_heat)) change = change + product_of(heat%friction_mean, &
+         workspace%friction%entering_part(friction_heat))
       if (present(mean)) change = change + spread(mean, 2, size(change, 2))
       jump = 0.0_dp
       do k = 1, size(coordinate)

@@ -60,7 +60,7 @@ contains
       logical :: settles
 
       settles = allocated(workspace%pass%coordinate) .and. bodies%points%vary_with_temperature()
-      if (allocated(workspace%friction%made)) then
+      if (allocated(workspace%friction%heat)) then
          call settle_friction(bodies, heat, data, workspace, jump, state, error)
       else
          call find_contact(bodies, heat, data, workspace, jump, state, error)
@@ -83,7 +83,7 @@ contains
       real(dp), intent(out) :: jump(:)
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: load(size(data%welded_load))                   ! condensed, with the jumps
+      real(dp) :: load(size(data%no_jump_load))                   ! condensed, with the jumps
       integer :: k
       logical :: settles
 
@@ -95,7 +95,7 @@ contains
          call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       end if
       if (allocated(error)) return
-      load = data%welded_load
+      load = data%no_jump_load
       if (heat%forms_on_demand) then
          load = load + heat%load_of_jumps(bodies, workspace%on_tail)
       else
@@ -103,10 +103,10 @@ contains
             load = load + heat%jump_load(:, k)*workspace%on_tail(k)
          end do
       end if
-      if (allocated(workspace%friction%made)) load = load + matmul(heat%friction_load, &
-         workspace%friction%parts(2, :)*workspace%friction%made)
+      if (allocated(workspace%friction%heat)) load = load + matmul(heat%friction_load, &
+         workspace%friction%parts(2, :)*workspace%friction%heat)
       call solve_increment(bodies%equilibrium%contact, data%previous, load, workspace%contact, &
-         workspace%held, state, error)
+         workspace%sticking, state, error)
    end subroutine find_contact
 
    !> The same where the heat that friction makes is that of the contact state which it leads to, by
@@ -121,7 +121,7 @@ contains
       real(dp), intent(out) :: jump(:)
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      real(dp), dimension(size(workspace%friction%made)) :: base, found, rest, step
+      real(dp), dimension(size(workspace%friction%heat)) :: base, found, rest, step
       real(dp) :: last, part, residual
       integer :: i
 
@@ -130,19 +130,20 @@ contains
       do i = 1, most_steps
          call find_contact(bodies, heat, data, workspace, jump, state, error)
          if (allocated(error)) return
-         associate (made => workspace%friction%made)
-            rest = workspace%friction%found(bodies, state) - made
-            residual = maxval(abs(rest))/max(maxval(abs(made)), maxval(abs(made + rest)), &
+         associate (friction_heat => workspace%friction%heat)
+            rest = workspace%friction%found(bodies, state) - friction_heat
+            residual = maxval(abs(rest))/max(maxval(abs(friction_heat)), &
+               maxval(abs(friction_heat + rest)), &
                tiny(1.0_dp))
             if (residual <= rounding .or. maxval(abs(rest)) <= rounding* &
                workspace%friction%of_positions(bodies, state, data%displacement_scale)) return
             if (residual <= converged .and. norm2(rest) >= 0.5_dp*last) return
             if (all(workspace%friction%parts(2, :) <= 0.0_dp)) then
-               made = made + rest
+               friction_heat = friction_heat + rest
                return
             end if
             if (norm2(rest) < last) then
-               base = made
+               base = friction_heat
                found = rest
                step = friction_step(bodies, heat, workspace, state, rest)
                last = norm2(rest)
@@ -155,7 +156,7 @@ contains
                last = huge(last)
                part = 1.0_dp
             end if
-            made = base + part*step
+            friction_heat = base + part*step
          end associate
       end do
       call set_error(error, status_no_convergence, 'the heat of friction and the contact '// &
@@ -354,7 +355,7 @@ contains
          where (body <= 0.0_dp) body = 1.0_dp
          call make_tangent(bodies%equilibrium%contact, workspace%contact, state, tangent, sound)
          if (sound) load = product_of(heat%jump_load, by_omega%of_tail)
-         if (sound .and. allocated(workspace%friction%made)) call follow_friction(bodies, heat, &
+         if (sound .and. allocated(workspace%friction%heat)) call follow_friction(bodies, heat, &
             workspace, state, by_omega, load, sound)
          if (sound) then
             allocate (change(m, n))
@@ -386,7 +387,7 @@ contains
          product_of(heat%jump_load, by_factor%of_tail)
       call make_tangent(bodies%equilibrium%contact, workspace%contact, state, tangent, &
          sound)
-      if (sound .and. allocated(workspace%friction%made)) call follow_friction(bodies, heat, &
+      if (sound .and. allocated(workspace%friction%heat)) call follow_friction(bodies, heat, &
          workspace, state, by_factor, load, sound)
       associate (pass => workspace%pass)
          if (.not. sound) then
@@ -397,7 +398,7 @@ contains
          pass%by_factor = change(:, 1)
          if (.not. bodies%points%vary_with_temperature()) return
          change = changes_by_temperature(bodies, heat, workspace, pass%coordinates(), &
-            by_factor%of_tail, by_factor%made, data%rate%mean)
+            by_factor%of_tail, by_factor%friction_heat, data%rate%mean)
          pass%by_factor = pass%by_factor + matmul(pass%derivative, change(:, 1))
       end associate
    end subroutine load_derivative
@@ -419,9 +420,9 @@ contains
       if (.not. exists) return
       call contact_response(bodies%equilibrium%contact, of_heat%contact, state, load, change, &
          with_slip=.true.)
-      allocate (by_omega%made(size(workspace%friction%made), size(load, 2)))
+      allocate (by_omega%friction_heat(size(workspace%friction%heat), size(load, 2)))
       call of_heat%follow(workspace%friction%changes(bodies, state, change), by_omega%of_tail, &
-         load, by_omega%made)
+         load, by_omega%friction_heat)
    end subroutine follow_friction
 
    !> Changes of the openings with the condensed mechanical load.

@@ -86,7 +86,7 @@ contains
          associate (row => bodies%equilibrium%contact%normal(k))
             stiffness = bodies%equilibrium%contact%alone(k)
             if (stiffness > 0.0_dp) scales%length = max(scales%length, &
-               abs(data%welded_load(row))/stiffness)
+               abs(data%no_jump_load(row))/stiffness)
          end associate
       end do
       if (scales%length <= 0.0_dp) scales%length = 1.0_dp
@@ -241,8 +241,8 @@ contains
          record%coupling_gain_max = 0.0_dp
          if (.not. (any(abs(graph%derivative(graph%coordinate_of_opening(opening))) > 0.0_dp) .or. &
             any(next%resting) .or. bodies%points%vary_with_temperature() .or. &
-            allocated(workspace%friction%made))) return
-         if (.not. all(next%resting) .or. allocated(workspace%friction%made)) then
+            allocated(workspace%friction%heat))) return
+         if (.not. all(next%resting) .or. allocated(workspace%friction%heat)) then
             record%coupling_gain = ieee_value(1.0_dp, ieee_quiet_nan)
             record%coupling_gain_max = record%coupling_gain
             call find_gains(bodies, heat, data, workspace, next, gains)
@@ -278,7 +278,7 @@ contains
                if (data%equation%duration > 0.0_dp) then
                   call record%warn('det(I - U'') is negative: the increment is too long to '// &
                      'show a mode that grows, the state does not last; take shorter increments')
-               else if (allocated(workspace%friction%made)) then
+               else if (allocated(workspace%friction%heat)) then
                   ! Heat of friction has no bound: the other solutions may be at infinity.
                   call record%warn('det(I - U'') is negative: the branch is unstable')
                else
@@ -332,7 +332,7 @@ contains
          if (bodies%points%vary_with_temperature()) by_temperature = derivative_by_temperature( &
             bodies, heat, workspace, graph%coordinate_of_opening(opening), by_omega)
          is_unstable = is_one_of_several(graph, opening, derivative, next%resting, by_temperature)
-         if (.not. allocated(workspace%friction%made)) return
+         if (.not. allocated(workspace%friction%heat)) return
          ! The determinant is that of I - U' with the heat of friction following, times that of the
          ! heat at constant conductances.
          call of_friction%make(bodies, heat, workspace, next%contact)
@@ -357,7 +357,7 @@ contains
       type(contact_workspace_type) :: tangent
       type(contact_change_type) :: of_contact
       real(dp), dimension(size(solution%jump)) :: coordinate, rate, scale, slope
-      real(dp), allocatable :: change(:, :), made(:, :), of_tail(:, :)
+      real(dp), allocatable :: change(:, :), friction_heat(:, :), of_tail(:, :)
       real(dp) :: heat_scale
       integer, allocatable :: free(:), heated(:)
       integer :: k
@@ -365,8 +365,8 @@ contains
 
       free = pack([(k, k=1, size(rate))], .not. solution%resting)
       heated = [integer ::]
-      if (allocated(workspace%friction%made)) heated = pack([(k, k=1, &
-         size(workspace%friction%made))], workspace%friction%parts(2, :) > 0.0_dp)
+      if (allocated(workspace%friction%heat)) heated = pack([(k, k=1, &
+         size(workspace%friction%heat))], workspace%friction%parts(2, :) > 0.0_dp)
       if (size(free) + size(heated) == 0) return
       call make_tangent(bodies%equilibrium%contact, workspace%contact, solution%contact, tangent, &
          sound)
@@ -378,7 +378,7 @@ contains
          scale = sqrt(of_largest(slope)/of_largest(rate))
          heat_scale = max(maxval(abs(rate)), tiny(1.0_dp)**0.25_dp)
          allocate (of_tail(bodies%thermal%map%tail, 1), change(size(rate), 1))
-         if (size(heated) > 0) allocate (made(size(workspace%friction%made), 1))
+         if (size(heated) > 0) allocate (friction_heat(size(workspace%friction%heat), 1))
          call gains%begin(size(free) + size(heated), no_gain)
          do while (gains%wants_product)
             of_tail = 0.0_dp
@@ -405,9 +405,9 @@ contains
          real(dp), allocatable :: entering(:, :)
 
          associate (friction => workspace%friction)
-            made = 0.0_dp
-            made(heated, 1) = heat_scale*gains%vector(size(free) + 1:)
-            entering = friction%entering_part(made)
+            friction_heat = 0.0_dp
+            friction_heat(heated, 1) = heat_scale*gains%vector(size(free) + 1:)
+            entering = friction%entering_part(friction_heat)
             of_tail = of_tail + product_of(heat%friction_heat, entering)
             call workspace%tail%solve_columns(of_tail)
             call opening_changes(bodies, workspace%pass%graph, tangent, solution%contact, &
@@ -415,10 +415,10 @@ contains
                change, of_contact)
             change(:, 1) = slope*change(:, 1)
             if (bodies%points%vary_with_temperature()) change = change + &
-               changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, made)
-            made = friction%changes(bodies, solution%contact, of_contact)
+               changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, friction_heat)
+            friction_heat = friction%changes(bodies, solution%contact, of_contact)
          end associate
-         call gains%take([change(free, 1)/scale(free), made(heated, 1)/heat_scale])
+         call gains%take([change(free, 1)/scale(free), friction_heat(heated, 1)/heat_scale])
       end subroutine take_heated_product
    end subroutine find_gains
 

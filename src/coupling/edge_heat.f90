@@ -351,7 +351,8 @@ contains
       heat = rates%conducted - rates%entering
       if (allocated(rates%stored)) heat = heat + rates%stored
       call bodies%points%difference%add_shares(undivided, heat)
-      if (allocated(rates%made)) call bodies%points%heat_shares%add_shares(-rates%made, heat)
+      if (allocated(rates%friction_heat)) call bodies%points%heat_shares%add_shares( &
+         -rates%friction_heat, heat)
       if (allocated(at_edge%point)) call at_edge%jump%add_shares(rates%crossing(at_edge%point), &
          heat)
       call bodies%thermal%map%carry_over(heat)

@@ -29,7 +29,7 @@ module friction_heating
    !> Heats of the increment.
    type :: friction_heating_type
       real(dp), allocatable :: old(:)           !! (n) q_i [power]
-      real(dp), allocatable :: made(:)          !! (n) q_i+1 [power]
+      real(dp), allocatable :: heat(:)          !! (n) q_i+1 [power]
       real(dp), allocatable :: parts(:, :)      !! (2, n) p_1, p_2
       real(dp) :: duration = 1.0_dp             !! in which contact points slip [time]
       !> (m) slip that was counted before; unallocated for none [length]
@@ -58,17 +58,17 @@ contains
       integer :: j
 
       friction%old = friction_at_start(bodies, contact, before)
-      friction%made = friction%old
+      friction%heat = friction%old
       allocate (friction%parts(2, size(friction%old)), source=0.0_dp)
       if (.not. solves_heat(analysis)) then
-         friction%made = 0.0_dp
+         friction%heat = 0.0_dp
          return
       end if
       associate (c => equation%scheme%c/equation%scheme%a(1), speed => bodies%laws%heat%speed)
          if (.not. solves_mechanics(analysis)) then
             ! Nothing slips, and pressures stay.
-            where (speed < 0.0_dp) friction%made = 0.0_dp
-            friction%old = friction%made
+            where (speed < 0.0_dp) friction%heat = 0.0_dp
+            friction%old = friction%heat
             friction%parts(1, :) = sum(c)
          else if (equation%is_explicit()) then
             friction%parts(1, :) = sum(c)
@@ -111,7 +111,7 @@ contains
       class(friction_heating_type), intent(in) :: self
       real(dp) :: load(size(self%old))                     !! (n) [power]
 
-      load = self%load_at_start() + self%parts(2, :)*self%made
+      load = self%load_at_start() + self%parts(2, :)*self%heat
    end function load
 
    !> The part of it that is known before the increment is solved.
@@ -123,12 +123,12 @@ contains
    end function load_at_start
 
    !> Part of heats at the end, or of their changes, in the load.
-   pure function entering_part(self, made)
+   pure function entering_part(self, friction_heat)
       class(friction_heating_type), intent(in) :: self
-      real(dp), intent(in) :: made(:, :)                   !! (n, columns) [power]
-      real(dp) :: entering_part(size(made, 1), size(made, 2))
+      real(dp), intent(in) :: friction_heat(:, :)                   !! (n, columns) [power]
+      real(dp) :: entering_part(size(friction_heat, 1), size(friction_heat, 2))
 
-      entering_part = spread(self%parts(2, :), 2, size(made, 2))*made
+      entering_part = spread(self%parts(2, :), 2, size(friction_heat, 2))*friction_heat
    end function entering_part
 
    !> Heats that enter the faces at the end of the increment.
@@ -136,7 +136,7 @@ contains
       class(friction_heating_type), intent(in) :: self
       real(dp) :: entering(size(self%old))                 !! (n) [power]
 
-      entering = merge(self%made, self%old, self%parts(2, :) > 0.0_dp)
+      entering = merge(self%heat, self%old, self%parts(2, :) > 0.0_dp)
    end function entering
 
    !> How much more heat enters the faces just behind the start of the increment than before it:
@@ -146,7 +146,7 @@ contains
       real(dp), intent(in) :: before(:)                    !! (n) heats that the state has [power]
       real(dp) :: more(size(self%old))                     !! (n) [power]
 
-      more = merge(self%old, self%made, self%parts(1, :) > 0.0_dp) - before
+      more = merge(self%old, self%heat, self%parts(1, :) > 0.0_dp) - before
    end function late_start
 
    !> Heats that a contact state makes at the end of the increment.

@@ -50,7 +50,7 @@ contains
       if (.not. sound) return
       associate (friction => workspace%friction, heated => bodies%points%heated)
          self%active = pack([(j, j=1, size(heated))], friction%parts(2, :) > 0.0_dp .and. &
-            (state%contact_state(heated) /= contact_open .or. abs(friction%made) > 0.0_dp))
+            (state%contact_state(heated) /= contact_open .or. abs(friction%heat) > 0.0_dp))
          associate (part => friction%parts(2, self%active))
             self%on_tail = heat%friction_heat(:, self%active)*spread(part, 1, &
                size(heat%friction_heat, 1))
@@ -72,21 +72,21 @@ contains
    end subroutine make
 
    !> Adds to changes at constant heat what the heat makes that follows them.
-   subroutine follow(self, by_contact, of_tail, load, made)
+   subroutine follow(self, by_contact, of_tail, load, friction_heat)
       class(friction_tangent_type), intent(in) :: self
       real(dp), intent(in) :: by_contact(:, :)        !! (n, columns) changes of the heats
       real(dp), intent(inout) :: of_tail(:, :)        !! (thermal tail, columns)
       real(dp), intent(inout) :: load(:, :)           !! (mechanical tail, columns)
       !> (n, columns) changes of the heats in the end
-      real(dp), intent(out) :: made(:, :)
+      real(dp), intent(out) :: friction_heat(:, :)
       real(dp), allocatable :: change(:, :)
 
       change = by_contact(self%active, :)
       call self%lu%solve(change)
       of_tail = of_tail + product_of(self%on_tail, change)
       load = load + product_of(self%load, change)
-      made = 0.0_dp
-      made(self%active, :) = change
+      friction_heat = 0.0_dp
+      friction_heat(self%active, :) = change
    end subroutine follow
 
 end module friction_tangent

@@ -53,7 +53,7 @@ module increment_data
       type(field_load_type) :: heat         !! load of (3.4)
       type(field_load_type) :: force        !! load of (2.4)
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed
-      real(dp), allocatable :: welded_load(:) !! (mechanical tail) condensed load without jumps
+      real(dp), allocatable :: no_jump_load(:) !! (mechanical tail) condensed load without jumps
       real(dp) :: displacement_scale = 0.0_dp !! largest displacement of the last increment [length]
       !> (m) mean temperature of the faces without jumps, where conductance laws vary with it
       real(dp), allocatable :: welded_mean(:)
@@ -92,7 +92,7 @@ module increment_data
       type(edge_integral_type), allocatable :: edge_integrals(:)   !! of the last openings
       type(edge_heat_type) :: edge                   !! heat at edges, also of the last omega*
       type(contact_workspace_type) :: contact        !! laws and factors of the contact
-      type(contact_workspace_type) :: held           !! with all closed contact points holding
+      type(contact_workspace_type) :: sticking           !! with all closed contact points holding
       type(pass_type) :: pass                        !! the last pass
       !> (m) temperatures of the faces that it found, where laws vary with them
       type(face_temperatures_type), allocatable :: faces(:)

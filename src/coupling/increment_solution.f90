@@ -66,9 +66,10 @@ contains
          if (solves_mechanics(data%analysis)) call solve_equilibrium(bodies, heat, loads, trial, &
             error)
          if (allocated(error)) return
-         if (allocated(workspace%friction%made)) data%friction%made = workspace%friction%made
-         if (allocated(data%friction%made)) next%friction_heat = data%friction%made
-         next%carrying = data%equation%carrying(joined_conductance(next%omega, next%edge))
+         if (allocated(workspace%friction%heat)) data%friction%heat = workspace%friction%heat
+         if (allocated(data%friction%heat)) next%friction_heat = data%friction%heat
+         next%flux_conductance = data%equation%flux_conductance(joined_conductance(next%omega, &
+            next%edge))
       end associate
    end subroutine solve_points
 
@@ -117,7 +118,7 @@ contains
       real(dp), allocatable :: rhs(:)                            ! (nodes) [power]
 
       rhs = data%equation%history(bodies%thermal%matrix)
-      if (allocated(data%friction%made)) rhs = rhs + nodal_friction_heat(bodies, &
+      if (allocated(data%friction%heat)) rhs = rhs + nodal_friction_heat(bodies, &
          data%friction%load_at_start())
    end function history_of_heat
 
@@ -222,8 +223,8 @@ contains
       type(solution_state_type), intent(inout) :: next
       type(error_type), allocatable, intent(out) :: error
 
-      call solve_increment(bodies%equilibrium%contact, data%previous, data%welded_load, &
-         workspace%contact, workspace%held, next%contact, error)
+      call solve_increment(bodies%equilibrium%contact, data%previous, data%no_jump_load, &
+         workspace%contact, workspace%sticking, next%contact, error)
       if (allocated(error)) return
       next%omega = law_conductance(bodies, next%temperature, next%jump, next%contact)
       next%omega_before = next%omega
@@ -359,9 +360,9 @@ contains
             bodies%laws%overlap, bodies%points%weight)
          work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)))
          work%least_drive = least_drive(contact%rigid, matmul(abs(applied), abs(bodies%rigid)))
-         trial%data%welded_load = balanced_load(force%condensed, contact%rigid, contact%motion, &
+         trial%data%no_jump_load = balanced_load(force%condensed, contact%rigid, contact%motion, &
             matmul(applied, bodies%rigid))
-         call check_finite([force%rhs(:, 1), trial%data%welded_load], 'forces', &
+         call check_finite([force%rhs(:, 1), trial%data%no_jump_load], 'forces', &
             status_no_convergence, error)
       end associate
    end subroutine load_mechanics
@@ -383,9 +384,9 @@ contains
          if (.not. solves_mechanics(data%analysis)) return
          if (bodies%is_coupled) then
             call add_jumps(bodies, heat, workspace%on_tail, next%temperature)
-            if (allocated(workspace%friction%made)) next%temperature = next%temperature + &
+            if (allocated(workspace%friction%heat)) next%temperature = next%temperature + &
                heat%welded_response(bodies%thermal, nodal_friction_heat(bodies, &
-               workspace%friction%parts(2, :)*workspace%friction%made))
+               workspace%friction%parts(2, :)*workspace%friction%heat))
             data%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
                unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
                next%forces_beyond), loads%displacement%value)

@@ -17,7 +17,7 @@ module solution_state
       type(edge_heat_type) :: edge                  !! contact points at the edge of contact
       logical, allocatable :: resting(:)          !! (m) contact points that rest, where a law jumps
       logical, allocatable :: idle(:)               !! (m) closed contact points that carry no force
-      real(dp), allocatable :: carrying(:)          !! (m) conductance by which heat crossed last
+      real(dp), allocatable :: flux_conductance(:) !! (m) conductance by which heat crossed last
       real(dp), allocatable :: omega_before(:)      !! (m) conductance an increment earlier
       real(dp), allocatable :: jump(:)              !! (m) T_xi - T_eta [temperature]
       real(dp), allocatable :: friction_heat(:)     !! (n) heat of friction, or none [power]
@@ -71,7 +71,7 @@ contains
       end associate
       call reals(self, 'conductance', state%omega)
       call reals(self, 'conductance_before', state%omega_before)
-      call reals(self, 'carrying', state%carrying)
+      call reals(self, 'carrying', state%flux_conductance)
       call logicals(self, 'resting', state%resting)
       call logicals(self, 'idle', state%idle)
       call integers(self, 'edge_point', state%edge%point)

@@ -38,7 +38,7 @@ module heat_equation
       real(dp), allocatable :: entering(:)          !! (nodes) by loads and films, Q - F T [power]
       real(dp), allocatable :: crossing(:)          !! (m) from slave to master [power]
       real(dp), allocatable :: stored(:)            !! (nodes) by heat capacities, or none [power]
-      real(dp), allocatable :: made(:)              !! (n) by friction at contact points [power]
+      real(dp), allocatable :: friction_heat(:) !! (n) by friction at contact points [power]
    end type heat_rates_type
 
    !> Eq. (3.4) of one increment, from what is known at its start.
@@ -74,7 +74,7 @@ module heat_equation
       procedure :: contact_diagonal
       procedure :: contact_history
       procedure :: crossing_by_omega
-      procedure :: carrying
+      procedure :: flux_conductance
       procedure :: rates
       procedure :: rates_at_start
    end type heat_equation_type
@@ -274,14 +274,14 @@ contains
    end function crossing_by_omega
 
    !> The conductances by which heat crosses: those of the start in an explicit scheme.
-   pure function carrying(self, omega)
+   pure function flux_conductance(self, omega)
       class(heat_equation_type), intent(in) :: self
       real(dp), intent(in) :: omega(:)                  !! (m) omega_i+1
-      real(dp) :: carrying(size(omega))                 !! (m) [power/(length^2 temperature)]
+      real(dp) :: flux_conductance(size(omega)) !! (m) [power/(length^2 temperature)]
 
-      carrying = omega
-      if (self%is_explicit()) carrying = self%omega_old
-   end function carrying
+      flux_conductance = omega
+      if (self%is_explicit()) flux_conductance = self%omega_old
+   end function flux_conductance
 
    !> The heat rates that (3.4) balances, means over the increment: each side divided by a1 + b1.
    pure function rates(self, conduction, capacity, temperature, omega, jump)

@@ -10,7 +10,8 @@ module material_points
    use material_laws, only: law_points_type
    use materials, only: has_law, heat_content, material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
-   use point_gradients, only: add_hoop_strain, find_fall, find_strains, set_mean_dilatation
+   use point_gradients, only: add_hoop_strain, find_negative_gradient, find_strains, &
+      set_mean_dilatation
    use point_materials, only: point_material_type, point_materials_type
    use point_rules, only: most => most_points_of_rule, point_rule_type
    use quadrature, only: point_count
@@ -284,18 +285,19 @@ contains
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: temperature(:)         !! (nodes) [temperature]
       real(dp), intent(inout) :: values(most, 2)     !! its points first; x, y [power/length^2]
-      real(dp) :: fall(most, 2), t(nodes_per_element), k(2, 2)
+      real(dp) :: negative_gradient(most, 2), t(nodes_per_element), k(2, 2)
       integer :: g, q
 
       associate (rule => self%rules(mesh%element_kind(element)))
          do q = 1, rule%nodes
             t(q) = temperature(mesh%element_nodes(q, element))
          end do
-         call find_fall(rule, self%inverse(:, self%first(element)), t, fall)
+         call find_negative_gradient(rule, self%inverse(:, self%first(element)), t, &
+            negative_gradient)
          do g = 1, rule%count
             k = self%materials(self%at_point(element, g))%conductivity
-            values(g, 1) = k(1, 1)*fall(g, 1) + k(1, 2)*fall(g, 2)
-            values(g, 2) = k(2, 1)*fall(g, 1) + k(2, 2)*fall(g, 2)
+            values(g, 1) = k(1, 1)*negative_gradient(g, 1) + k(1, 2)*negative_gradient(g, 2)
+            values(g, 2) = k(2, 1)*negative_gradient(g, 1) + k(2, 2)*negative_gradient(g, 2)
          end do
       end associate
    end subroutine heat_flux

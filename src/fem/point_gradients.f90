@@ -7,7 +7,7 @@ module point_gradients
    use point_rules, only: most => most_points_of_rule, point_rule_type
    implicit none
    private
-   public :: add_hoop_strain, find_fall, find_strains, set_mean_dilatation
+   public :: add_hoop_strain, find_negative_gradient, find_strains, set_mean_dilatation
 
 contains
 
@@ -77,10 +77,10 @@ contains
    end subroutine set_mean_dilatation
 
    !> -grad T.
-   pure subroutine find_fall(rule, inverse, temperature, fall)
+   pure subroutine find_negative_gradient(rule, inverse, temperature, negative_gradient)
       type(point_rule_type), intent(in) :: rule
       real(dp), intent(in) :: inverse(4, *), temperature(nodes_per_element)
-      real(dp), intent(out) :: fall(most, 2)
+      real(dp), intent(out) :: negative_gradient(most, 2)
       real(dp), dimension(2) :: xi, eta
       integer :: g, q
 
@@ -91,9 +91,9 @@ contains
             xi = xi - rule%slope_xi(g:g + 1, q)*temperature(q)
             eta = eta - rule%slope_eta(g:g + 1, q)*temperature(q)
          end do
-         fall(g:g + 1, 1) = xi*inverse(1, g:g + 1) + eta*inverse(2, g:g + 1)
-         fall(g:g + 1, 2) = xi*inverse(3, g:g + 1) + eta*inverse(4, g:g + 1)
+         negative_gradient(g:g + 1, 1) = xi*inverse(1, g:g + 1) + eta*inverse(2, g:g + 1)
+         negative_gradient(g:g + 1, 2) = xi*inverse(3, g:g + 1) + eta*inverse(4, g:g + 1)
       end do
-   end subroutine find_fall
+   end subroutine find_negative_gradient
 
 end module point_gradients

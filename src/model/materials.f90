@@ -32,7 +32,7 @@ module materials
       real(dp) :: centre(2) = 0.0_dp                     !! of the radius, x and y [length]
       !> Axis 1, unit vector in x and y, or in the directions of radius and circumference
       real(dp) :: direction(2) = [1.0_dp, 0.0_dp]
-      real(dp) :: hand = 1.0_dp                          !! 1: axis 2 is left of axis 1; -1: right
+      real(dp) :: orientation_sign = 1.0_dp !! 1: axis 2 is left of axis 1; -1: right
    end type orientation_type
 
    !> A property of a material as the deck gives it: constants over temperature, linear between
@@ -434,7 +434,7 @@ contains
                   orientation%direction(2)*[-radial(2), radial(1)]
             end if
          end if
-         axes(:, 2) = orientation%hand*[-axes(2, 1), axes(1, 1)]
+         axes(:, 2) = orientation%orientation_sign*[-axes(2, 1), axes(1, 1)]
       end associate
    end function material_axes
 

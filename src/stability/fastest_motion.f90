@@ -14,7 +14,7 @@ module fastest_motion
    use motion_responses, only: motion_response_type
    use records, only: increment_record_type
    use simulation, only: simulation_type
-   use small_motions, only: small_motion_type
+   use linear_perturbations, only: linear_perturbation_type
    use text, only: counted, to_text
    implicit none
    private
@@ -32,7 +32,7 @@ contains
    !> Finds it, and sees whether as many motions grow as among the projected ones.
    subroutine find_fastest(simulation, motion, response, projected, neutral, record)
       type(simulation_type), intent(in) :: simulation        !! the run at its end
-      type(small_motion_type), intent(in) :: motion
+      type(linear_perturbation_type), intent(in) :: motion
       type(motion_response_type), intent(in) :: response     !! at a rate above it
       complex(dp), intent(in) :: projected(:)                !! rates of the projected bodies
       real(dp), intent(in) :: neutral                        !! a rate that is no growth [1/time]
@@ -109,7 +109,7 @@ contains
       real(dp), intent(in) :: vector(:, :)                   ! (nodes, 2) real and imaginary part
       complex(dp), intent(in) :: rate
       type(simulation_type), intent(in) :: simulation
-      type(small_motion_type), intent(in) :: motion
+      type(linear_perturbation_type), intent(in) :: motion
       type(increment_record_type), intent(inout) :: record
       complex(dp) :: largest
 
@@ -131,7 +131,7 @@ contains
    !> A product with the inverse.
    function inverse_product(simulation, motion, response, coupling, vector) result(temperature)
       type(simulation_type), intent(in) :: simulation
-      type(small_motion_type), intent(in) :: motion
+      type(linear_perturbation_type), intent(in) :: motion
       type(motion_response_type), intent(in) :: response
       type(lu_type), intent(in) :: coupling                  ! I - N W
       real(dp), intent(in) :: vector(:)                      ! (nodes)

@@ -17,7 +17,7 @@ module growing_modes
    use projected_motions, only: projected_motions_type
    use records, only: increment_record_type
    use simulation, only: simulation_type
-   use small_motions, only: small_motion_type
+   use linear_perturbations, only: linear_perturbation_type
    implicit none
    private
    public :: analyse_stability
@@ -61,20 +61,20 @@ contains
 
    !> Counts the growing motions and finds the fastest one: at the first rate where none seems to
    !> grow or nearly so, else at one above those, which is one more of the projection.
-   !> Errors: as small_motion_type's begin and motion_response_type's make.
+   !> Errors: as linear_perturbation_type's begin and motion_response_type's make.
    subroutine find_motions(model, simulation, record, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record   ! with an empty stability record
       type(error_type), allocatable, intent(out) :: error
-      type(small_motion_type) :: motion
+      type(linear_perturbation_type) :: motion
       type(motion_response_type) :: response
       type(projected_motions_type) :: projection
       complex(dp), allocatable :: rates(:)
       real(dp) :: bound, fastest, slowest
       logical :: is_known
 
-      call motion%begin(simulation%bodies, simulation%state, simulation%heats( &
+      call motion%begin(simulation%bodies, simulation%state, simulation%heat_reductions( &
          simulation%in_use), simulation%solved, error)
       if (allocated(error)) return
       slowest = slowest_conduction(model)
@@ -111,7 +111,7 @@ contains
    subroutine project(model, simulation, motion, first, projection, bound, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
-      type(small_motion_type), intent(in) :: motion
+      type(linear_perturbation_type), intent(in) :: motion
       type(motion_response_type), intent(in) :: first
       type(projected_motions_type), intent(inout) :: projection
       real(dp), intent(out) :: bound                         ! of the gain beyond all rates

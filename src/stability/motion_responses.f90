@@ -8,7 +8,7 @@ module motion_responses
    use reduced_bodies, only: reduced_bodies_type
    use shifted_conduction, only: shifted_conduction_type
    use simulation, only: simulation_type
-   use small_motions, only: small_motion_type
+   use linear_perturbations, only: linear_perturbation_type
    implicit none
    private
    public :: motion_response_type
@@ -36,13 +36,14 @@ contains
       class(motion_response_type), intent(inout) :: self     !! fresh, or of another rate
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation        !! the run at its end
-      type(small_motion_type), intent(in) :: motion
+      type(linear_perturbation_type), intent(in) :: motion
       real(dp), intent(in) :: sigma                          !! > 0 [1/time]
       type(error_type), allocatable, intent(out) :: error
 
       self%sigma = sigma
       associate (bodies => simulation%bodies, state => simulation%state)
-         call self%conduction%factor(model, bodies, state, simulation%heats(simulation%in_use), &
+         call self%conduction%factor(model, bodies, state, &
+            simulation%heat_reductions(simulation%in_use), &
             sigma, error)
          if (allocated(error)) return
          self%temperature = self%conduction%responses(bodies, motion)
@@ -72,7 +73,7 @@ contains
    real(dp) function gain_bound(self, bodies, motion) result(bound)
       class(motion_response_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
-      type(small_motion_type), intent(in) :: motion
+      type(linear_perturbation_type), intent(in) :: motion
       real(dp), allocatable :: read(:, :), real_part(:), imaginary_part(:)
       logical :: found
 

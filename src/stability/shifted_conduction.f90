@@ -11,7 +11,7 @@ module shifted_conduction
    use kinds, only: dp
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
-   use small_motions, only: small_motion_type
+   use linear_perturbations, only: linear_perturbation_type
    use solution_state, only: solution_state_type
    use sparse_matrix, only: linear_combination, sparse_matrix_type
    implicit none
@@ -81,7 +81,7 @@ contains
    function responses(self, bodies, motion) result(temperature)
       class(shifted_conduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
-      type(small_motion_type), intent(in) :: motion
+      type(linear_perturbation_type), intent(in) :: motion
       real(dp), allocatable :: temperature(:, :)               !! (nodes, changes)
       real(dp), allocatable :: nodal(:, :), on_tail(:, :)
 

@@ -69,7 +69,7 @@ contains
       rates%conducted = bodies%thermal%matrix%multiply(next%temperature)
       if (allocated(data%equation%beyond)) rates%conducted = rates%conducted - data%equation%beyond
       rates%entering = next%sources%net_heat(next%temperature)
-      rates%crossing = heat_across(bodies%points%weight, next%carrying, next%jump)
+      rates%crossing = heat_across(bodies%points%weight, next%flux_conductance, next%jump)
       record%heat_stored = ieee_value(1.0_dp, ieee_quiet_nan)
       record%heat_dilatation = record%heat_stored
       record%heat_friction = record%heat_stored
@@ -81,17 +81,17 @@ contains
             record%heat_stored = record%heat_stored - next%dilatation
          end if
       end if
-      if (allocated(data%friction%made)) then
-         rates%made = data%friction%entering()
-         record%heat_friction = sum(rates%made)
+      if (allocated(data%friction%heat)) then
+         rates%friction_heat = data%friction%entering()
+         record%heat_friction = sum(rates%friction_heat)
       end if
       residual = supplied_heat(bodies, next%edge, rates)
       call sum_rates(loads, next%temperature, residual, record)
-      associate (held => loads%temperature%active, body => model%mesh%node_body)
+      associate (prescribed => loads%temperature%active, body => model%mesh%node_body)
          scale = max(record%heat_in, record%heat_out, abs(sum(rates%crossing)), &
-            maxval(abs(residual), mask=held), maxval(abs(rates%entering)), &
+            maxval(abs(residual), mask=prescribed), maxval(abs(rates%entering)), &
             noise*bodies%thermal%largest_entry*norm2(next%temperature), tiny(1.0_dp))
-         if (allocated(rates%made)) scale = max(scale, sum(abs(rates%made)))
+         if (allocated(rates%friction_heat)) scale = max(scale, sum(abs(rates%friction_heat)))
          if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)), &
             content_noise*maxval(abs(data%equation%content_old))/data%equation%duration)
          if (allocated(data%equation%taken_up)) scale = max(scale, &
@@ -100,27 +100,27 @@ contains
             scale = max(scale, content_noise*maxval(abs(bodies%capacity%multiply( &
             bodies%dilatation%absolute)))/data%equation%duration)
          end if
-         record%fields%reaction_heat = merge(residual, 0.0_dp, held)
+         record%fields%reaction_heat = merge(residual, 0.0_dp, prescribed)
          record%fields%external_heat = record%fields%reaction_heat + rates%entering
          rates%crossing = heat_across(bodies%points%weight, omega, next%jump)
          record%heat_imbalance_pointwise = imbalance(rates%conducted, &
-            supplied_heat(bodies, next%edge, rates), held, body, [.true.], scale)
+            supplied_heat(bodies, next%edge, rates), prescribed, body, [.true.], scale)
          rates = data%equation%rates(bodies%thermal%matrix, bodies%capacity, next%temperature, &
             omega, next%jump)
-         if (allocated(data%friction%made)) rates%made = data%equation%scheme%a(1)* &
-            data%friction%load()
+         if (allocated(data%friction%heat)) rates%friction_heat = data%equation%scheme%a(1)* &
+               data%friction%load()
          record%heat_imbalance = imbalance(rates%conducted, supplied_heat(bodies, next%edge, &
-            rates), held, body, [.true.], scale)
-         call warn_of_imbalances(bodies, held, data, next%is_out_of_balance, record)
+            rates), prescribed, body, [.true.], scale)
+         call warn_of_imbalances(bodies, prescribed, data, next%is_out_of_balance, record)
       end associate
    end subroutine balance_heat
 
    !> Warns where heat starts out of equilibrium, (K + G) T /= Q, with a scheme that never damps
    !> that; else where the scheme leaves heat out of balance at the end of the increment, once for
    !> as long as it stays so.
-   pure subroutine warn_of_imbalances(bodies, held, data, was_out, record)
+   pure subroutine warn_of_imbalances(bodies, prescribed, data, was_out, record)
       type(reduced_bodies_type), intent(in) :: bodies
-      logical, intent(in) :: held(:)                          !! (nodes) prescribed temperatures
+      logical, intent(in) :: prescribed(:) !! (nodes) prescribed temperatures
       type(increment_data_type), intent(in) :: data
       logical, intent(in) :: was_out                          !! whether the last increment was
       type(increment_record_type), intent(inout) :: record
@@ -130,7 +130,7 @@ contains
       if (data%equation%duration > 0.0_dp) return
       at_start = 0.0_dp
       if (data%equation%never_damps() .and. .not. data%kept_imbalance) at_start = &
-         start_imbalance(bodies, held, data)
+         start_imbalance(bodies, prescribed, data)
       if (at_start > equilibrium) then
          call record%warn('heat starts out of equilibrium, (K + G) T - Q is ', at_start, &
             ' of the largest rate; the scheme of (3.4), amplification '// &
@@ -146,9 +146,9 @@ contains
 
    !> Largest residual of (K + G) T - Q in any row that is not prescribed, at the start of an
    !> increment, relative to the largest rate.
-   pure real(dp) function start_imbalance(bodies, held, data) result(relative)
+   pure real(dp) function start_imbalance(bodies, prescribed, data) result(relative)
       type(reduced_bodies_type), intent(in) :: bodies
-      logical, intent(in) :: held(:)
+      logical, intent(in) :: prescribed(:)
       type(increment_data_type), intent(in) :: data
       type(heat_rates_type) :: rates
       real(dp) :: scale
@@ -158,11 +158,11 @@ contains
          maxval([0.0_dp, abs(rates%crossing)]), noise*bodies%thermal%largest_entry* &
          maxval(abs(data%equation%temperature_old)), tiny(1.0_dp))
       if (allocated(data%friction%old)) then
-         rates%made = data%friction%old
-         scale = max(scale, sum(abs(rates%made)))
+         rates%friction_heat = data%friction%old
+         scale = max(scale, sum(abs(rates%friction_heat)))
       end if
       relative = maxval([0.0_dp, pack(abs(supplied_heat(bodies, edge_heat_type(), rates)), &
-         .not. held)])/scale
+         .not. prescribed)])/scale
    end function start_imbalance
 
    !> Net rates, one per load card and per card of prescribed temperatures, summed by their sign.
@@ -230,13 +230,14 @@ contains
       dropped = size(next%contact%force)*bodies%equilibrium%contact%least_force()
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
-      associate (held => loads%displacement%active)
-         scales%force = max(maxval(abs(residual), mask=held), maxval(abs(next%force_load)), &
+      associate (prescribed => loads%displacement%active)
+         scales%force = max(maxval(abs(residual), mask=prescribed), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*stiffness*scales%length, &
             least*stiffness, dropped/noise, tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal - bar_forces(bodies, next%displacement, &
-            next%temperature - model%initial_temperature), residual, held, model%mesh%node_body, &
+            next%temperature - model%initial_temperature), residual, prescribed, &
+            model%mesh%node_body, &
             [along_x, .true.], scales%force)
          positions = bodies%points%relative(next%displacement)
          positions = reshape([loads%present_gaps(bodies%points) - sum(positions* &
@@ -247,10 +248,11 @@ contains
          where (bodies%laws%removed) positions(1, :) = 0.0_dp
          friction = bodies%laws%nodal_friction
          where (bodies%equilibrium%contact%tangent == 0) friction%coefficient = 0.0_dp
-         record%contact_violation = contact_violation(positions, residual, held, bodies%points, &
+         record%contact_violation = contact_violation(positions, residual, prescribed, &
+            bodies%points, &
             next%contact, friction, scales)
          record%fields%reaction = on_nodes(bodies%points%partners, reshape(merge(residual, &
-            0.0_dp, held), [2, size(next%temperature)]))
+            0.0_dp, prescribed), [2, size(next%temperature)]))
       end associate
    end subroutine balance_forces
 

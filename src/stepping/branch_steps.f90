@@ -186,11 +186,11 @@ contains
       if (abs(reached - bound) > same) then
          self%is_last = .true.
          self%is_fold = .false.
-         self%held = size(self%from%tangent)
+         self%fixed_coordinate = size(self%from%tangent)
          self%point%factor = bound
          call self%try_step(model, bodies, heat, loads, self%tried*(bound - self%from%factor)/ &
             (reached - self%from%factor), error)
-         self%held = 0
+         self%fixed_coordinate = 0
          self%is_last = self%outcome == is_found
       end if
       if (self%is_last) self%ending = 'the load factor is '//to_text(bound)

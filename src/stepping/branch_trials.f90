@@ -40,7 +40,7 @@ module branch_trials
       type(branch_measure_type) :: measure     !! of lengths along the branch
       type(branch_point_type) :: from          !! where steps begin
       type(branch_point_type) :: point         !! where the last one ended, on the branch if found
-      integer :: held = 0                      !! what corrections leave: a contact point, or m + 1
+      integer :: fixed_coordinate = 0 !! what corrections leave: a contact point, or m + 1
       integer :: outcome = is_lost             !! of the last step
       logical :: has_converged = .false.       !! whether it led to the branch
       type(contact_state_type) :: contact      !! of the last pass
@@ -106,13 +106,13 @@ contains
       allocate (self%known(2))
       call load_increment(self, model, bodies, heat, loads, loaded, error)
       if (allocated(error)) return
-      self%rate = load_rate_type(loaded%data%heat%condensed, loaded%data%welded_load)
+      self%rate = load_rate_type(loaded%data%heat%condensed, loaded%data%no_jump_load)
       if (allocated(loaded%data%welded_mean)) self%rate%mean = loaded%data%welded_mean
       self%point%factor = 1.0_dp
       call load_increment(self, model, bodies, heat, loads, loaded, error)
       if (allocated(error)) return
       self%rate%heat = loaded%data%heat%condensed - self%rate%heat
-      self%rate%force = loaded%data%welded_load - self%rate%force
+      self%rate%force = loaded%data%no_jump_load - self%rate%force
       if (allocated(loaded%data%welded_mean)) self%rate%mean = loaded%data%welded_mean - &
          self%rate%mean
       m = size(self%before%omega)
@@ -210,7 +210,7 @@ contains
          return
       end if
       self%point%tangent = self%from%tangent
-      call self%measure%correction(self%point, self%pass, self%held, correction)
+      call self%measure%correction(self%point, self%pass, self%fixed_coordinate, correction)
       if (.not. correction%sound) return
       call self%measure%orient(self%from, self%point, correction%tangent)
       self%point%tangent = correction%tangent
@@ -232,10 +232,10 @@ contains
       integer :: i
 
       trial = self%measure%moved(self%from, length*self%from%tangent)
-      if (self%held == size(trial%tangent)) then
+      if (self%fixed_coordinate == size(trial%tangent)) then
          trial%factor = self%point%factor
-      else if (self%held > 0) then
-         trial%coordinate(self%held) = self%point%coordinate(self%held)
+      else if (self%fixed_coordinate > 0) then
+         trial%coordinate(self%fixed_coordinate) = self%point%coordinate(self%fixed_coordinate)
       end if
       self%point = trial
       self%has_converged = .false.
@@ -245,12 +245,12 @@ contains
          if (.not. correction%sound) exit
          self%has_converged = self%residual <= wanted_part .and. norm2(correction%change) <= &
             self%near
-         if (self%has_converged .or. (self%held == 0 .and. norm2(correction%change) > &
+         if (self%has_converged .or. (self%fixed_coordinate == 0 .and. norm2(correction%change) > &
             most_correction*length)) exit
          self%point = self%measure%moved(self%point, correction%change)
       end do
-      if (self%has_converged .and. self%held == 0 .and. self%measure%is_caught(self%from, trial, &
-         self%point)) then
+      if (self%has_converged .and. self%fixed_coordinate == 0 .and. &
+         self%measure%is_caught(self%from, trial, self%point)) then
          self%has_converged = .false.
          self%outcome = is_sharp
       else if (self%has_converged) then

@@ -174,9 +174,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       self%point = self%measure%moved(self%from, 2*reach*self%from%tangent)
-      self%held = self%measure%kinked(self%from, self%point)
+      self%fixed_coordinate = self%measure%kinked(self%from, self%point)
       call self%try_step(model, bodies, heat, loads, 2*reach, error)
-      self%held = 0
+      self%fixed_coordinate = 0
       if (allocated(error)) return
       self%tried = self%length
       if (self%has_converged) then
@@ -210,10 +210,10 @@ contains
       real(dp) :: tangent(size(behind%tangent))
 
       tangent = behind%tangent
-      self%held = self%measure%kinked(self%from, behind)
+      self%fixed_coordinate = self%measure%kinked(self%from, behind)
       self%point = self%measure%at_kink(self%from, behind)
       call self%try_step(model, bodies, heat, loads, 0.0_dp, error)
-      self%held = 0
+      self%fixed_coordinate = 0
       self%outcome = merge(is_found, is_lost, self%has_converged)
       self%point%tangent = tangent
    end subroutine meet_corner

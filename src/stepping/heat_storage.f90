@@ -117,10 +117,10 @@ contains
          if (run%corrections%corrects) rates%conducted = rates%conducted - &
             run%corrections%heat_beyond(model, bodies, state%temperature)
          rates%entering = state%sources%net_heat(state%temperature)
-         rates%crossing = heat_across(bodies%points%weight, state%carrying, state%jump)
+         rates%crossing = heat_across(bodies%points%weight, state%flux_conductance, state%jump)
          if (allocated(bodies%points%heated)) then
-            rates%made = friction_at_start(bodies, state%contact, state%friction_heat)
-            state%friction_heat = rates%made
+            rates%friction_heat = friction_at_start(bodies, state%contact, state%friction_heat)
+            state%friction_heat = rates%friction_heat
          end if
          do i = 1, bodies%capacity%row_count
             stores(i) = by%start(i + 1) > by%start(i)
@@ -153,7 +153,7 @@ contains
       associate (scheme => model%steps(record%step)%scheme)
          part = merge(1.0_dp, 0.5_dp/scheme%a(1), scheme%stages == 2)
       end associate
-      record%local_error = maxval(abs(run%heats(run%in_use)%welded_response( &
+      record%local_error = maxval(abs(run%heat_reductions(run%in_use)%welded_response( &
          run%bodies%thermal, part*(next%stored - stored))))/range
       record%largest_change = maxval(abs(next%temperature - start%temperature), &
          mask=.not. run%loads%temperature%active)

@@ -161,7 +161,7 @@ contains
          call corrections%keep(run%bodies, before, attempt%next)
          if (run%bodies%is_coupled .and. step%fixed_point%finds_gain .and. .not. &
             attempt%data%equation%is_explicit()) then
-            call judge_solution(run%bodies, run%heats(run%in_use), attempt%trial_type)
+            call judge_solution(run%bodies, run%heat_reductions(run%in_use), attempt%trial_type)
             attempt%record%solution_report_type = attempt%workspace%record
          end if
          attempt%record%corrections = corrections%passes
@@ -184,7 +184,7 @@ contains
          call bodies%move_operators(model, next%temperature, tangent)
          call run%corrections%renew(model, bodies, stage, before, next)
          if (solves_mechanics(model%steps(run%control%step)%analysis)) call bodies%reduce(model, &
-            run%heats(run%in_use)%node_rank, error)
+            run%heat_reductions(run%in_use)%node_rank, error)
       end associate
    end subroutine renew_operators
 
@@ -231,7 +231,8 @@ contains
          data => attempt%data, workspace => attempt%workspace, next => attempt%next)
          workspace%record%increment = attempt%record%increment
          since = wall_seconds()
-         call solve_points(bodies, run%heats(run%in_use), run%loads, attempt%trial_type, error)
+         call solve_points(bodies, run%heat_reductions(run%in_use), run%loads, &
+            attempt%trial_type, error)
          attempt%record%solution_report_type = workspace%record
          run%seconds%iterate = run%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
@@ -244,11 +245,12 @@ contains
             return
          end if
          since = wall_seconds()
-         call recover_fields(bodies, run%heats(run%in_use), run%loads, before, attempt%trial_type)
+         call recover_fields(bodies, run%heat_reductions(run%in_use), run%loads, before, &
+            attempt%trial_type)
          if (step%is_transient) then
             next%stored = data%equation%stored_rate(bodies%capacity, next%temperature)
             associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
-               if (allocated(data%friction%made)) next%stored = next%stored - b(1)/a(1)* &
+               if (allocated(data%friction%heat)) next%stored = next%stored - b(1)/a(1)* &
                   nodal_friction_heat(bodies, data%friction%late_start(before%friction_heat))
             end associate
          end if

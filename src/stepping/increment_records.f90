@@ -205,7 +205,7 @@ contains
          call points%master_mean%add_totals(next%temperature, record%master_temperature)
       end if
       if (.not. with_heat) return
-      record%conductance = next%carrying(first:last)
+      record%conductance = next%flux_conductance(first:last)
       if (next%has_mechanics) call conduct_on_axis(bodies, points, next, first, closed, rests, &
          record)
       associate (jump => next%jump(first:last))

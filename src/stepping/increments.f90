@@ -52,7 +52,8 @@ contains
          clock = run%control%next_instant(model)
          if (run%branch%points > 0) then
             call begin_record(run, model, clock, record)
-            call run%branch%find_point(model, run%bodies, run%heats(run%in_use), run%loads, &
+            call run%branch%find_point(model, run%bodies, run%heat_reductions(run%in_use), &
+               run%loads, &
                run%state, error)
             if (.not. allocated(error)) clock = run%branch%clock_at(run%branch%point%factor)
          end if

@@ -83,19 +83,19 @@ contains
    end subroutine measure_steps
 
    !> Notes the memory of the factors that are, and their smallest pivot.
-   subroutine measure_factors(bodies, heats, sizes)
+   subroutine measure_factors(bodies, heat_reductions, sizes)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heats(:)         !! those that are kept
+      type(heat_reduction_type), intent(in) :: heat_reductions(:)         !! those that are kept
       type(run_size_type), intent(inout) :: sizes               !! receives both
       integer(long) :: bytes
       integer :: i
 
       bytes = 0
       if (allocated(bodies%equilibrium%solver)) call measure(bodies%equilibrium%solver)
-      do i = 1, size(heats)
-         if (allocated(heats(i)%solver)) call measure(heats(i)%solver)
+      do i = 1, size(heat_reductions)
+         if (allocated(heat_reductions(i)%solver)) call measure(heat_reductions(i)%solver)
       end do
-      sizes%heat_factored = sum(heats%factored)
+      sizes%heat_factored = sum(heat_reductions%factored)
       sizes%stiffness_factored = bodies%equilibrium%factored
       sizes%factor_bytes = max(sizes%factor_bytes, bytes)
    contains

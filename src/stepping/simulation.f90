@@ -34,7 +34,7 @@ module simulation
    type :: simulation_type
       type(reduced_bodies_type) :: bodies   !! the bodies reduced to their contact unknowns
       !> Their heat likewise, for films and increment sizes; where no heat is stored the first alone
-      type(heat_reduction_type) :: heats(kept_reductions)
+      type(heat_reduction_type) :: heat_reductions(kept_reductions)
       integer :: in_use = 1                 !! which of them the increment has
       type(recovery_type) :: recovery               !! stress and flux with their errors
       type(corrections_type) :: corrections         !! what bodies are beyond their operators
@@ -122,7 +122,7 @@ contains
       call self%assemble(model)
       since = wall_seconds()
       associate (analysis => model%steps(self%control%step)%analysis, bodies => self%bodies, &
-         heat => self%heats(self%in_use))
+         heat => self%heat_reductions(self%in_use))
          film = heat%added
          if (solves_heat(analysis) .and. (heat%numbering /= bodies%thermal%numbering .or. &
             .not. allocated(heat%solver))) then
@@ -152,7 +152,7 @@ contains
             film, error)
       end associate
       self%seconds%reduce = self%seconds%reduce + (wall_seconds() - since)
-      call measure_factors(self%bodies, self%heats, self%sizes)
+      call measure_factors(self%bodies, self%heat_reductions, self%sizes)
    end subroutine reduce
 
    !> Moves loads and operators from an attempt that is not accepted back to those of the last
@@ -192,19 +192,20 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      if (.not. self%heats(self%in_use)%serves(self%bodies, film) .and. &
+      if (.not. self%heat_reductions(self%in_use)%serves(self%bodies, film) .and. &
          model%steps(self%control%step)%is_transient) then
-         do i = 1, size(self%heats)
-            if (self%heats(i)%serves(self%bodies, film)) exit
+         do i = 1, size(self%heat_reductions)
+            if (self%heat_reductions(i)%serves(self%bodies, film)) exit
          end do
-         if (i > size(self%heats)) then
-            i = 1 + modulo(self%in_use, size(self%heats))
-            call self%heats(i)%share_order(self%heats(self%in_use), self%bodies)
+         if (i > size(self%heat_reductions)) then
+            i = 1 + modulo(self%in_use, size(self%heat_reductions))
+            call self%heat_reductions(i)%share_order(self%heat_reductions(self%in_use), self%bodies)
          end if
          self%in_use = i
       end if
-      call self%heats(self%in_use)%reduce(model, self%bodies, film, error)
-      if (.not. allocated(error)) call measure_factors(self%bodies, self%heats, self%sizes)
+      call self%heat_reductions(self%in_use)%reduce(model, self%bodies, film, error)
+      if (.not. allocated(error)) call measure_factors(self%bodies, self%heat_reductions, &
+         self%sizes)
    end subroutine reduce_heat
 
    !> Frees the factors.
@@ -213,8 +214,8 @@ contains
       integer :: i
 
       call self%bodies%equilibrium%release()
-      do i = 1, size(self%heats)
-         call self%heats(i)%release()
+      do i = 1, size(self%heat_reductions)
+         call self%heat_reductions(i)%release()
       end do
    end subroutine release
 
@@ -238,7 +239,7 @@ contains
          state%omega = law_conductance(bodies, model%initial_temperature, state%jump, &
             contact)
          state%omega_before = state%omega
-         state%carrying = state%omega
+         state%flux_conductance = state%omega
          allocate (state%displacement(2*n), state%sources%load(n), source=0.0_dp)
          state%temperature = model%initial_temperature
          if (allocated(model%mesh%initial_stress)) state%forces_beyond = assemble_initial_force( &

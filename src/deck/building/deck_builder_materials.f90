@@ -397,7 +397,7 @@ contains
                .not. abs(b(3) - a(3)) > 0.0_dp) call deck%error(data%place(4), 'the axis '// &
                'through a and b must be parallel to z')
             orientation%centre = a(1:2)
-            orientation%hand = sign(1.0_dp, b(3) - a(3))
+            orientation%orientation_sign = sign(1.0_dp, b(3) - a(3))
          else if (abs(a(3)) > 0.0_dp .or. abs(b(3)) > 0.0_dp) then
             call deck%error(data%place(merge(3, 6, abs(a(3)) > 0.0_dp)), 'axes 1 and 2 lie in '// &
                'the plane: the z components of a and b must be 0')
@@ -405,7 +405,7 @@ contains
             call deck%error(data%place(1), 'a and b must not lie on one line')
          else
             orientation%direction = a(1:2)/norm2(a(1:2))
-            orientation%hand = sign(1.0_dp, turn)
+            orientation%orientation_sign = sign(1.0_dp, turn)
          end if
       end associate
       if (size(card%data) > 1) then
@@ -430,7 +430,8 @@ contains
       end if
       angle = given(2)*degree
       associate (first => orientation%direction, &
-         second => orientation%hand*[-orientation%direction(2), orientation%direction(1)])
+         second => orientation%orientation_sign*[-orientation%direction(2), &
+         orientation%direction(1)])
          orientation%direction = cos(angle)*first + sin(angle)*second
       end associate
    end subroutine turn_axes

@@ -31,7 +31,7 @@ module deck_builder_steps
       integer :: files = 0             !! *NODE FILE, *EL FILE, *CONTACT FILE
       integer :: node_prints = 0
       integer :: element_prints = 0
-      logical :: says_course = .false.   !! AMPLITUDE= on *STEP
+      logical :: has_amplitude = .false.   !! AMPLITUDE= on *STEP
       logical :: is_uncoupled = .false.  !! *UNCOUPLED TEMPERATURE-DISPLACEMENT
    end type card_counts_type
 
@@ -60,7 +60,7 @@ contains
             select case (card%name)
             case ('STEP')
                n = n + 1
-               counts = card_counts_type(says_course=card%has('AMPLITUDE'))
+               counts = card_counts_type(has_amplitude=card%has('AMPLITUDE'))
                deck%step_place(n) = card%place
                if (n > 1) before = model%steps(n - 1)
                call begin_step(card, before, deck, model%steps(n))
@@ -229,7 +229,7 @@ contains
       if (n == 0) return
       deck%analysis_place(n) = card%place
       call build_analysis(card, n, deck, steps(n))
-      if (steps(n)%is_transient .and. .not. counts%says_course) then
+      if (steps(n)%is_transient .and. .not. counts%has_amplitude) then
          steps(n)%ramped = .false.
          call deck%note('*'//card%name//' without STEADY STATE: loads without an amplitude act '// &
             'at once; *STEP, AMPLITUDE=RAMP ramps them')

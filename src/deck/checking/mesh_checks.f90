@@ -45,15 +45,15 @@ contains
    subroutine check_planes(deck, mesh)
       type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
       type(mesh_type), intent(in) :: mesh
-      integer :: e, q, round, strained
+      integer :: e, q, is_axisymmetric, strained
       logical :: turns(size(mesh%element_plane))
 
       turns = mesh%element_plane == axisymmetric .and. deck%element_valid
-      round = findloc(turns, .true., dim=1)
+      is_axisymmetric = findloc(turns, .true., dim=1)
       strained = findloc(mesh%element_plane == plane_strain .and. deck%element_valid, .true., dim=1)
-      if (round > 0 .and. strained > 0) then
-         call deck%error(deck%element_place(max(round, strained)), 'element '// &
-            to_text(mesh%element_number(round))//' is axisymmetric and element '// &
+      if (is_axisymmetric > 0 .and. strained > 0) then
+         call deck%error(deck%element_place(max(is_axisymmetric, strained)), 'element '// &
+            to_text(mesh%element_number(is_axisymmetric))//' is axisymmetric and element '// &
             to_text(mesh%element_number(strained))//' in plane strain: plane elements beside '// &
             'axisymmetric ones are in plane stress, such as CPS4')
          return

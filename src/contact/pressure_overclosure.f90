@@ -7,18 +7,18 @@
 !> under the pressure that was found, whichever is nearer to where it was: an exponential law would
 !> overflow on the way to the former from a small pressure, and lose its pressure on the way to the
 !> latter from a large one.
-module soft_faces
+module pressure_overclosure
    use kinds, only: dp
    use overlap_laws, only: overlap_law_type
    implicit none
    private
-   public :: soft_faces_type
+   public :: pressure_overclosure_type
 
    !> Change of a tangent, relative, that counts as none: the law is then met to its square.
    real(dp), parameter :: settled_change = 1.0e-7_dp
 
    !> The tangents of all contact points.
-   type :: soft_faces_type
+   type :: pressure_overclosure_type
       logical, allocatable :: is_soft(:)         !! (m)
       real(dp), allocatable :: stiffness(:)      !! (m) 0 without area [force/length]
       real(dp), allocatable :: onset(:)          !! (m) 0 of hard faces [length]
@@ -31,20 +31,20 @@ module soft_faces
       procedure :: press
       procedure :: follow
       procedure :: compliance
-   end type soft_faces_type
+   end type pressure_overclosure_type
 
-   interface soft_faces_type
-      module procedure new_soft_faces
-   end interface soft_faces_type
+   interface pressure_overclosure_type
+      module procedure new_pressure_overclosure
+   end interface pressure_overclosure_type
 
 contains
 
    !> Contact points without pressure.
-   pure function new_soft_faces(points, law, area) result(soft)
+   pure function new_pressure_overclosure(points, law, area) result(soft)
       integer, intent(in) :: points                            !! m
       type(overlap_law_type), intent(in), optional :: law(:)   !! (m) absent where all are hard
       real(dp), intent(in), optional :: area(:)                !! (m) [length^2], with the laws
-      type(soft_faces_type) :: soft
+      type(pressure_overclosure_type) :: soft
 
       allocate (soft%is_soft(points), source=.false.)
       allocate (soft%stiffness(points), soft%onset(points), soft%reach(points), source=0.0_dp)
@@ -54,11 +54,11 @@ contains
       soft%is_soft = law%is_soft()
       soft%reach = law%reach()
       soft%at = -soft%reach
-   end function new_soft_faces
+   end function new_pressure_overclosure
 
    !> The tangents under given forces, unless they are those of a solution.
    pure subroutine press(self, force)
-      class(soft_faces_type), intent(inout) :: self
+      class(pressure_overclosure_type), intent(inout) :: self
       real(dp), intent(in) :: force(:)           !! (m) compressive [force]
       integer :: k
 
@@ -74,7 +74,7 @@ contains
 
    !> The next tangents, unless the solution has settled on the present ones.
    pure subroutine follow(self, overlap, force, settled)
-      class(soft_faces_type), intent(inout) :: self
+      class(pressure_overclosure_type), intent(inout) :: self
       real(dp), intent(in) :: overlap(:)         !! (m) of the solution [length]
       real(dp), intent(in) :: force(:)           !! (m) compressive [force]
       logical, intent(out) :: settled
@@ -104,7 +104,7 @@ contains
    !> Overlap of a contact point since it began to press, over its force; 0 of hard faces, and where
    !> there is no area.
    pure real(dp) function compliance(self, k, force)
-      class(soft_faces_type), intent(in) :: self
+      class(pressure_overclosure_type), intent(in) :: self
       integer, intent(in) :: k                   !! the contact point
       real(dp), intent(in) :: force              !! compressive [force]
 
@@ -114,4 +114,4 @@ contains
          (self%law(k)%overlap_under(force/self%area(k)) + self%reach(k))/force
    end function compliance
 
-end module soft_faces
+end module pressure_overclosure

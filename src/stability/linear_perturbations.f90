@@ -8,7 +8,7 @@
 !> contact answers temperatures: with its strains, its gaps and pressures, and the laws. Open,
 !> slipping and stuck contact points keep their states, points at rest their conductance. At edges
 !> inside a side of mortar points heat follows the openings themselves, which move the edges.
-module small_motions
+module linear_perturbations
    use closing_instant, only: contact_change_type, contact_response
    use contact_heat, only: changes_by_faces
    use contact_operator, only: make_graph, opening_changes, openings
@@ -25,10 +25,10 @@ module small_motions
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: small_motion_type
+   public :: linear_perturbation_type
 
    !> How the contact answers temperatures.
-   type :: small_motion_type
+   type :: linear_perturbation_type
       integer, allocatable :: active(:)        !! (a) contact points whose conductance counts
       logical :: takes_rates = .false.         !! whether y depends on dT/dt: by slip that goes on
       real(dp), allocatable :: reads(:, :)     !! (nodes, n) N^T at constant temperatures
@@ -46,14 +46,14 @@ module small_motions
       procedure :: heats
       procedure :: heat_loads
       procedure :: displacement
-   end type small_motion_type
+   end type linear_perturbation_type
 
 contains
 
    !> Begins with the state that an increment found.
    !> Error: its contact system is singular.
    subroutine begin(self, bodies, state, heat, solved, error)
-      class(small_motion_type), intent(out) :: self
+      class(linear_perturbation_type), intent(out) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: state
       type(heat_reduction_type), intent(in) :: heat            !! of the increment
@@ -89,8 +89,8 @@ contains
          .not. bodies%points%vary_with_temperature())) heat_rate = 0.0_dp
       self%active = pack([(k, k=1, size(heat_rate))], abs(heat_rate) > 0.0_dp)
       self%heat_rate = heat_rate(self%active)
-      if (allocated(solved%friction%made)) then
-         self%heated = size(solved%friction%made)
+      if (allocated(solved%friction%heat)) then
+         self%heated = size(solved%friction%heat)
          self%takes_rates = any(bodies%laws%heat%speed < 0.0_dp)
       end if
       call read_temperatures(self, bodies, state, laws, slope)
@@ -100,7 +100,7 @@ contains
    !> How the changes y follow temperatures by the strains of the bodies: what loads of the
    !> mechanical tail change, of which temperatures make those that temperatures_in_loads has.
    subroutine read_temperatures(self, bodies, state, laws, slope)
-      type(small_motion_type), intent(inout) :: self           ! receives it
+      type(linear_perturbation_type), intent(inout) :: self           ! receives it
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: state
       type(increment_workspace_type), intent(in) :: laws
@@ -137,7 +137,7 @@ contains
 
    !> Adds how conductances follow the temperatures of the faces by their laws.
    pure subroutine read_faces(self, bodies, laws, coordinate)
-      type(small_motion_type), intent(inout) :: self
+      type(linear_perturbation_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_workspace_type), intent(in) :: laws
       real(dp), intent(in) :: coordinate(:)                    ! (m) of the laws [length]
@@ -159,7 +159,7 @@ contains
 
    !> N: changes y with temperatures that grow at a rate.
    pure function answers(self, temperature, growth) result(changes)
-      class(small_motion_type), intent(in) :: self
+      class(linear_perturbation_type), intent(in) :: self
       real(dp), intent(in) :: temperature(:, :)                !! (nodes, columns) [temperature]
       real(dp), intent(in) :: growth                           !! [1/time]
       real(dp) :: changes(size(self%reads, 2), size(temperature, 2))
@@ -171,7 +171,7 @@ contains
 
    !> F^T T: the heats of unit changes at the temperatures of a field.
    pure function heats(self, bodies, temperature) result(sums)
-      class(small_motion_type), intent(in) :: self
+      class(linear_perturbation_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:, :)                !! (nodes, n)
       real(dp) :: sums(size(self%reads, 2), size(temperature, 2))
@@ -193,7 +193,7 @@ contains
 
    !> F: loads of the tail, and nodal heats of friction and at edges.
    pure subroutine heat_loads(self, bodies, on_tail, nodal)
-      class(small_motion_type), intent(in) :: self
+      class(linear_perturbation_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), allocatable, intent(out) :: on_tail(:, :)      !! (thermal tail, a)
       real(dp), allocatable, intent(out) :: nodal(:, :)        !! (nodes, n - a)
@@ -215,7 +215,7 @@ contains
 
    !> Displacements that temperatures make.
    function displacement(self, bodies, state, temperature) result(values)
-      class(small_motion_type), intent(in) :: self
+      class(linear_perturbation_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: state
       real(dp), intent(in) :: temperature(:)                   !! (nodes) [temperature]
@@ -232,4 +232,4 @@ contains
          change%motion(:, 1))
    end function displacement
 
-end module small_motions
+end module linear_perturbations
