@@ -59,6 +59,7 @@ contains
       end if
       self%contact = contact_system_type()
       associate (contact => self%contact, map => mechanical%map)
+         contact%interface_start = points%interface_start
          contact%normal = map%tail_index(map%introduced(1::2))
          contact%tangent = map%tail_index(map%introduced(2::2))
          call move_alloc(self%solver%schur, contact%schur)

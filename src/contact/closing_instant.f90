@@ -1,7 +1,8 @@
 !> The instants at which contact points close within an increment, from which their slip counts.
 !>
-!> Let all contact points that close in the increment be relieved of their forces, and all others
-!> that are closed hold their positions. Along the straight way from the start of the increment to
+!> The contact points of an interface are ordered by themselves. Let those that close in the
+!> increment be relieved of their forces, and all others that are closed in the end hold their
+!> positions. Along the straight way from the start of the increment to
 !> where they then would end, one closes first: there its slip starts to count. From there on it
 !> holds its position; the others go on the straight way to where they would end now; and so on,
 !> until all have closed. Contact points that reach the other face together close together: so a
@@ -66,8 +67,10 @@ module closing_instant
       real(dp), allocatable :: motion(:, :)   !! (tail, n) of the unknowns, where slip is asked for
    end type contact_change_type
 
-   !> Contact points on their way through the increment, 2n rows: n normal, then n tangential ones.
+   !> Contact points of an interface on their way through the increment, 2n rows: n normal, then n
+   !> tangential ones.
    type :: closing_path_type
+      integer :: first = 1                   !! first contact point of the interface
       integer, allocatable :: point(:)       !! (n) the contact points
       logical, allocatable :: is_open(:)     !! (n) whether it has not closed so far
       real(dp), allocatable :: last_gap(:)   !! (n) gap at the end of the increment [length]
@@ -162,8 +165,8 @@ contains
       where (.not. work%removed) state%gap = max(state%gap, 0.0_dp)
    end subroutine settle_laws
 
-   !> Closing laws of the contact points that are closed now and were open at the start of the
-   !> increment. A contact point that has opened again keeps its law, on which nothing depends:
+   !> Closing laws of the contact points that are closed in the end and were open at the start of
+   !> the increment, each interface by itself. A contact point that has opened again keeps its law, on which nothing depends:
    !> without it the contact point might close, with it open, for ever.
    !> Error: a singular system.
    subroutine find_laws(system, previous, state, holds, sticking, laws, error)
@@ -174,16 +177,34 @@ contains
       type(contact_workspace_type), intent(inout) :: sticking
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
-      type(contact_state_type) :: sticking_state
-      type(closing_path_type) :: path
-      logical :: closes(size(state%contact_state))
-      integer :: k
+      logical :: closes(size(state%contact_state)), is_of(size(state%contact_state))
+      integer :: i
 
       closes = previous%contact_state == contact_open .and. holds
-      if (.not. any(closes .and. system%tangent > 0)) return
-      sticking_state = state
-      sticking_state%contact_state = merge(contact_stick, contact_open, holds .and. &
-         previous%contact_state /= contact_open)
+      call sticking%keep_holding(holds, size(system%interface_start) - 1)
+      do i = 1, size(system%interface_start) - 1
+         is_of = .false.
+         is_of(system%interface_start(i):system%interface_start(i + 1) - 1) = .true.
+         if (.not. any(closes .and. is_of .and. system%tangent > 0)) cycle
+         call find_path(system, previous, state, closes .and. is_of, i, sticking, laws, error)
+         if (allocated(error)) return
+      end do
+   end subroutine find_laws
+
+   !> Closing laws of one interface.
+   !> Error: a singular system.
+   subroutine find_path(system, previous, state, closes, number, sticking, laws, error)
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: previous, state
+      logical, intent(in) :: closes(:)
+      integer, intent(in) :: number            ! of the interface
+      type(contact_workspace_type), intent(inout) :: sticking
+      type(closing_law_type), intent(inout) :: laws(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(closing_path_type) :: path
+      integer :: k
+
+      path%first = system%interface_start(number)
       path%point = pack([(k, k=1, size(closes))], closes)
       allocate (path%is_open(size(path%point)), source=.true.)
       path%last_gap = merge(max(state%gap(path%point), 0.0_dp), 0.0_dp, &
@@ -192,36 +213,69 @@ contains
          previous%tangential(path%point) - state%tangential(path%point)]
       path%lambda = [-state%force(path%point), state%shear_force(path%point)]
       path%least_gap = together*max(maxval(previous%gap(path%point)), 0.0_dp) + system%least_length
-      do k = 1, size(path%point)
-         associate (law => laws(path%point(k)))
-            law = closing_law_type(acts=.true., start=previous%tangential(path%point(k)))
-            allocate (law%compliance(2, size(closes)), law%rate(2, size(closes)), source=0.0_dp)
-         end associate
-      end do
-      call go_freely(system, sticking, sticking_state, path, laws, error)
-      if (allocated(error)) return
-      if (.not. any(path%is_open)) return
-      call find_compliance(system, sticking, path)
+      associate (n => system%interface_start(number + 1) - path%first)
+         do k = 1, size(path%point)
+            associate (law => laws(path%point(k)))
+               law = closing_law_type(acts=.true., start=previous%tangential(path%point(k)), &
+                  first=path%first)
+               allocate (law%compliance(2, n), law%rate(2, n), source=0.0_dp)
+            end associate
+         end do
+      end associate
+      associate (kept => sticking%kept%compliance(number))
+         if (.not. allocated(kept%matrix)) then
+            call go_freely(system, state, sticking, path, laws, error)
+            if (allocated(error)) return
+            if (.not. any(path%is_open)) return
+            path%compliance = compliance_of(system, sticking, path)
+            if (all(path%is_open) .and. size(sticking%unconstrained, 2) == 0) kept%matrix = &
+               path%compliance
+         else
+            path%compliance = kept%matrix
+         end if
+      end associate
+      call go_closing(sticking, path, laws)
+   end subroutine find_path
+
+   !> From event to event, until all have closed.
+   pure subroutine go_closing(sticking, path, laws)
+      type(contact_workspace_type), intent(in) :: sticking
+      type(closing_path_type), intent(inout) :: path
+      type(closing_law_type), intent(inout) :: laws(:)
+      integer :: i
+
+      associate (n => size(path%point))
+         do i = 1, n
+            if (path%is_open(i)) path%compliance(i, i) = path%compliance(i, i) + &
+               sticking%soft%compliance(path%point(i), -path%lambda(i))
+         end do
+         path%own = [(path%compliance(i, i), i=1, 2*n)]
+         allocate (path%law(2*n, 2*n), path%rate(2*n, 2*n), source=0.0_dp)
+      end associate
       do while (any(path%is_open))
          call go_to_event(path, laws)
       end do
-   end subroutine find_laws
+   end subroutine go_closing
 
    !> Bodies that nothing holds go where their forces drive them, until they touch, in no time.
    !> Error: a singular system.
-   subroutine go_freely(system, sticking, sticking_state, path, laws, error)
+   subroutine go_freely(system, state, sticking, path, laws, error)
       type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: state
       type(contact_workspace_type), intent(inout) :: sticking  !! factors at the end of the way out
-      type(contact_state_type), intent(inout) :: sticking_state
       type(closing_path_type), intent(inout) :: path
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
+      type(contact_state_type) :: sticking_state
       real(dp) :: forces(2, size(laws)), on_tail(size(system%schur, 1))
       real(dp) :: motion(size(path%y)), length
       real(dp), allocatable :: drive(:)
       integer :: i, n
 
       n = size(path%point)
+      sticking_state = state
+      sticking_state%contact_state = merge(contact_stick, contact_open, sticking%kept%holds)
+      sticking_state%contact_state(path%point) = contact_open
       do
          call sticking%factor_set(system, sticking_state, error)
          if (allocated(error)) return
@@ -259,43 +313,30 @@ contains
 
    !> Compliance of the contact points on their way, while all others that are closed hold their
    !> positions.
-   pure subroutine find_compliance(system, sticking, path)
+   pure function compliance_of(system, sticking, path) result(compliance)
       type(contact_system_type), intent(in) :: system
-      type(contact_workspace_type), intent(inout) :: sticking   !! factors
-      type(closing_path_type), intent(inout) :: path
-      integer :: i, j, n, rows(2, size(path%point))
+      type(contact_workspace_type), intent(in) :: sticking   !! factors
+      type(closing_path_type), intent(in) :: path
+      real(dp) :: compliance(2*size(path%point), 2*size(path%point))   !! (2n, 2n) [length/force]
+      integer :: rows(2*size(path%point)), i, j, n
       real(dp) :: response(size(system%schur, 1), 2)
+      logical :: moves(size(rows))
 
       n = size(path%point)
-      rows(1, :) = system%normal(path%point)
-      rows(2, :) = system%tangent(path%point)
-      allocate (path%compliance(2*n, 2*n), path%law(2*n, 2*n), path%rate(2*n, 2*n), source=0.0_dp)
-      if (.not. allocated(sticking%point_compliance)) allocate ( &
-         sticking%point_compliance(size(system%normal)))
+      rows = [system%normal(path%point), system%tangent(path%point)]
+      moves = [path%is_open, path%is_open .and. system%tangent(path%point) > 0]
+      compliance = 0.0_dp
       do j = 1, n
          if (.not. path%is_open(j)) cycle
-         associate (point_compliance => sticking%point_compliance(path%point(j)))
-            if (.not. allocated(point_compliance%response)) then
-               response = 0.0_dp
-               response(rows(1, j), 1) = 1.0_dp
-               if (rows(2, j) > 0) response(rows(2, j), 2) = 1.0_dp
-               call sticking%solve_free(response)
-               point_compliance%response = response
-               sticking%compliances_found = sticking%compliances_found + 1
-            end if
-            do i = 1, n
-               if (.not. path%is_open(i)) cycle
-               path%compliance(i, [j, n + j]) = point_compliance%response(rows(1, i), :)
-               if (rows(2, i) > 0) path%compliance(n + i, [j, n + j]) = &
-                  point_compliance%response(rows(2, i), :)
-            end do
-            path%compliance(j, j) = path%compliance(j, &
-               j) + sticking%soft%compliance(path%point(j), &
-               -path%lambda(j))
-         end associate
+         response = 0.0_dp
+         response(rows(j), 1) = 1.0_dp
+         if (moves(n + j)) response(rows(n + j), 2) = 1.0_dp
+         call sticking%solve_free(response)
+         do i = 1, 2*n
+            if (moves(i)) compliance(i, [j, n + j]) = response(rows(i), :)
+         end do
       end do
-      path%own = [(path%compliance(i, i), i=1, 2*n)]
-   end subroutine find_compliance
+   end function compliance_of
 
    !> Goes on until the next contact points close, which have their laws then.
    pure subroutine go_to_event(path, laws)
@@ -328,12 +369,12 @@ contains
       do i = 1, n
          if (.not. path%is_open(i)) cycle
          if (first > 0 .and. i /= first .and. path%last_gap(i) - path%y(i) > path%least_gap) cycle
-         associate (law => laws(path%point(i)))
+         associate (law => laws(path%point(i)), place => path%point - path%first + 1)
             law%fraction = 1.0_dp - path%left
-            law%compliance(1, path%point) = path%law(n + i, :n)
-            law%compliance(2, path%point) = path%law(n + i, n + 1:)
-            law%rate(1, path%point) = -path%rate(n + i, :n)
-            law%rate(2, path%point) = -path%rate(n + i, n + 1:)
+            law%compliance(1, place) = path%law(n + i, :n)
+            law%compliance(2, place) = path%law(n + i, n + 1:)
+            law%rate(1, place) = -path%rate(n + i, :n)
+            law%rate(2, place) = -path%rate(n + i, n + 1:)
          end associate
          path%is_open(i) = .false.
          call hold(path, i)
@@ -413,7 +454,7 @@ contains
       type(contact_state_type), intent(in) :: state
       real(dp), intent(in) :: motion(:, :), lambda(:, :)   ! (tail, n) changes of d and of forces
       type(contact_change_type), intent(inout) :: change
-      integer :: k
+      integer :: i, k
 
       allocate (change%shear, change%slip, source=0.0_dp*change%gap)
       do k = 1, size(state%contact_state)
@@ -421,8 +462,18 @@ contains
          associate (row => system%tangent(k), law => tangent%closing(k))
             change%shear(k, :) = lambda(row, :)
             change%slip(k, :) = motion(row, :)
-            if (law%acts) change%slip(k, :) = (1.0_dp - law%fraction)*motion(row, :) + &
-               matmul(system%on_tail(law%compliance + law%rate), lambda)
+            if (law%acts) then
+               change%slip(k, :) = (1.0_dp - law%fraction)*motion(row, :)
+               do i = 1, size(law%rate, 2)
+                  associate (factor => law%compliance(:, i) + law%rate(:, i), other => law%first + &
+                     i - 1)
+                     change%slip(k, :) = change%slip(k, :) + factor(1)*lambda( &
+                        system%normal(other), :)
+                     if (system%tangent(other) > 0) change%slip(k, :) = change%slip(k, :) + &
+                        factor(2)*lambda(system%tangent(other), :)
+                  end associate
+               end do
+            end if
             change%slip(k, :) = change%slip(k, :) + system%compliance(k)*lambda(row, :)
          end associate
       end do
@@ -436,17 +487,18 @@ contains
       type(contact_workspace_type), intent(out) :: tangent
       logical, intent(out) :: sound                   !! whether the derivative exists
       logical :: moves(size(state%contact_state)), singular
-      integer :: c, k
+      integer :: k
 
       tangent = work
       sound = .true.
       moves = work%closing%acts .and. state%contact_state == contact_stick .and. system%tangent > 0
       if (.not. any(moves)) return
+      call tangent%rows%arm%reserve(count(moves), 8*count(moves))
       do k = 1, size(moves)
-         if (.not. moves(k)) cycle
-         c = findloc(tangent%rows%closing, system%tangent(k), dim=1)
-         tangent%rows%arm(c, :) = tangent%rows%arm(c, :) + system%alone(k)*system%on_tail( &
-            work%closing(k)%rate)
+         associate (law => work%closing(k))
+            if (moves(k)) call system%add_arm(k, law%first, law%compliance + law%rate, &
+               tangent%rows%arm)
+         end associate
       end do
       call tangent%factor_rows(system, singular)
       sound = .not. singular

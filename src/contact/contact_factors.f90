@@ -169,8 +169,8 @@ contains
          j = findloc(b%closing, a%closing(i), dim=1)
          if (j == 0) then
             differ(a%closing(i)) = .true.
-         else if (any(abs(a%arm(i, :) - b%arm(j, :)) > 0.0_dp)) then
-            differ(a%closing(i)) = .true.
+         else
+            differ(a%closing(i)) = differ(a%closing(i)) .or. .not. a%arm%is_sum_of(i, b%arm, j)
          end if
       end do
       do j = 1, size(b%closing)
@@ -185,14 +185,18 @@ contains
       integer, intent(in) :: i
       logical, intent(in) :: is_free(:)
       real(dp) :: row(size(is_free))
-      integer :: c
+      integer :: c, t
 
       row = 0.0_dp
       if (is_free(i)) then
          row = rows%own(i)*system%schur(:, i)
          if (rows%partner(i) > 0) row = row + rows%share(i)*system%schur(:, rows%partner(i))
          c = findloc(rows%closing, i, dim=1)
-         if (c > 0) row = row + matmul(system%schur, rows%arm(c, :))
+         if (c > 0) then
+            do t = rows%arm%start(c), rows%arm%start(c + 1) - 1
+               row = row + rows%arm%coefficient(t)*system%schur(:, rows%arm%value(t))
+            end do
+         end if
          row(i) = row(i) + rows%spring(i)
       else
          row(i) = system%schur(i, i)

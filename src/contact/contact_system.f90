@@ -22,7 +22,7 @@
 !>
 !>    stick  d_n = h           (1 - f) (d_t - d_t,i) + a.lambda = 0,
 !>
-!> lambda being the forces of all contact points that close in the increment.
+!> lambda being the forces of the contact points of its interface that close in the increment.
 !>
 !> Contact points that form cycles have the forces of their links (linear_constraints) among the
 !> unknowns, on which nothing else acts; where such a contact point sticks it has a small
@@ -44,10 +44,11 @@
 !> The answer of a single contact point is here too: contact states, Coulomb's law, eq. (1.6), with
 !> a largest friction, in increments, and the law of one that closes within an increment.
 module contact_system
-   use dense, only: least_squares, null_space, product_of
+   use dense, only: least_squares, null_space
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    use pressure_overclosure, only: pressure_overclosure_type
+   use sum_lists, only: sum_list_type
    implicit none
    private
    public :: contact_system_type, contact_rows_type, rows_of, free_motions, is_driven, &
@@ -64,6 +65,8 @@ module contact_system
 
    !> The reduced system, which no increment changes.
    type :: contact_system_type
+      !> (interfaces + 1) first contact point of each, and behind the last one
+      integer, allocatable :: interface_start(:)
       integer, allocatable :: normal(:)           !! (m) row of d_n on the tail
       integer, allocatable :: tangent(:) !! (m) row of d_t, 0 without friction or held
       real(dp), allocatable :: schur(:, :)        !! (tail, tail) S [force/length]
@@ -77,6 +80,7 @@ module contact_system
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
    contains
       procedure :: on_tail
+      procedure :: add_arm
       procedure :: least_force
    end type contact_system_type
 
@@ -88,7 +92,7 @@ module contact_system
       real(dp), allocatable :: own(:)        !! (tail) factor of the row's own force
       real(dp), allocatable :: spring(:)     !! (tail) factor of the row's displacement
       integer, allocatable :: closing(:)     !! (c) rows of contact points that close and stick
-      real(dp), allocatable :: arm(:, :)     !! (c, tail) factors of all forces in them
+      type(sum_list_type) :: arm             !! (c, tail) factors of forces in them
    contains
       procedure :: combine
    end type contact_rows_type
@@ -119,14 +123,18 @@ module contact_system
 
    !> Where a contact point that closes within the increment sticks: at the reference d_t - slip,
    !> where slip is the left-hand side of the condition in contact_system. Forces are lambda_n and
-   !> lambda_t of the contact points that close in the increment; of others the factors are zero.
+   !> lambda_t of the contact points of its interface; of those that do not close in the increment
+   !> the factors are zero.
    type :: closing_law_type
       logical :: acts = .false.                !! whether the contact point closes in this increment
       real(dp) :: start = 0.0_dp               !! d_t,i [length]
       real(dp) :: fraction = 0.0_dp            !! f, the instant of closing
-      real(dp), allocatable :: compliance(:, :) !! (2, m) a, factors of the forces [length/force]
-      !> (2, m) derivative of the slip by the forces through the instants [length/force]
+      integer :: first = 1                     !! first contact point of the interface
+      real(dp), allocatable :: compliance(:, :) !! (2, n) a, factors of the forces [length/force]
+      !> (2, n) derivative of the slip by the forces through the instants [length/force]
       real(dp), allocatable :: rate(:, :)
+   contains
+      procedure :: lag
    end type closing_law_type
 
    !> Answer of a contact point under its present condition.
@@ -154,7 +162,7 @@ contains
       type(pressure_overclosure_type), intent(in) :: soft           !! tangents of soft faces
       type(contact_rows_type) :: rows
       logical :: sought(2, size(state%contact_state))
-      integer :: c, k, tail
+      integer :: k, tail
 
       tail = size(system%schur, 1)
       allocate (rows%partner(tail), source=0)
@@ -167,8 +175,7 @@ contains
       sought(2, :) = system%tangent > 0
       rows%closing = pack(system%tangent, system%tangent > 0 .and. closing%acts .and. &
          state%contact_state == contact_stick)
-      allocate (rows%arm(size(rows%closing), tail))
-      c = 0
+      call rows%arm%reserve(size(rows%closing), 8*size(rows%closing))
       do k = 1, size(state%contact_state)
          if (system%tangent(k) == 0) cycle
          associate (row => system%tangent(k), law => closing(k), compliance => system%compliance(k))
@@ -179,10 +186,9 @@ contains
                rows%partner(row) = system%normal(k)
                rows%share(row) = state%direction(k)*friction(k)
             else if (law%acts) then
-               c = c + 1
                rows%own(row) = system%alone(k)*compliance
                rows%spring(row) = system%alone(k)*(1.0_dp - law%fraction)
-               rows%arm(c, :) = system%alone(k)*system%on_tail(law%compliance)
+               call system%add_arm(k, law%first, law%compliance, rows%arm)
             else if (compliance > 0.0_dp) then
                rows%spring(row) = 1.0_dp/compliance
             else
@@ -208,6 +214,32 @@ contains
       end do
    end function on_tail
 
+   !> Adds the factors of forces in the row of a contact point that closes, times its stiffness.
+   pure subroutine add_arm(self, k, first, factors, arms)
+      class(contact_system_type), intent(in) :: self
+      integer, intent(in) :: k                        !! the contact point
+      integer, intent(in) :: first                    !! first one of its interface
+      real(dp), intent(in) :: factors(:, :)           !! (2, n) of its interface [length/force]
+      type(sum_list_type), intent(inout) :: arms
+      integer :: i
+
+      associate (last => first + size(factors, 2) - 1)
+         call arms%add([(self%normal(i), self%tangent(i), i=first, last)], self%alone(k)*reshape( &
+            factors, [size(factors)]))
+      end associate
+   end subroutine add_arm
+
+   !> What the forces of a law add to the slip, a.lambda.
+   pure real(dp) function lag(self, state)
+      class(closing_law_type), intent(in) :: self
+      type(contact_state_type), intent(in) :: state   !! [length]
+
+      associate (last => self%first + size(self%compliance, 2) - 1)
+         lag = dot_product(self%compliance(2, :), state%shear_force(self%first:last)) - &
+            dot_product(self%compliance(1, :), state%force(self%first:last))
+      end associate
+   end function lag
+
    !> Force on a contact point that rounding of the coordinates makes, and that counts as none.
    !> Where contact points move a body without strain, their S is rounding of what they have alone.
    pure real(dp) function least_force(self)
@@ -222,7 +254,7 @@ contains
    pure function combine(self, columns) result(rows)
       class(contact_rows_type), intent(in) :: self
       real(dp), intent(in) :: columns(:, :)           !! (tail, columns)
-      real(dp) :: rows(size(columns, 1), size(columns, 2))
+      real(dp) :: rows(size(columns, 1), size(columns, 2)), of_arms(size(self%closing))
       integer :: i, j
 
       do j = 1, size(columns, 2)
@@ -232,8 +264,11 @@ contains
                self%share(i)*columns(self%partner(i), j)
          end do
       end do
-      if (size(self%closing) > 0) rows(self%closing, :) = rows(self%closing, :) + &
-         product_of(self%arm, columns)
+      do j = 1, size(columns, 2)
+         of_arms = 0.0_dp
+         call self%arm%add_totals(columns(:, j), of_arms)
+         rows(self%closing, j) = rows(self%closing, j) + of_arms
+      end do
    end function combine
 
    !> The unsupported motions that no row of the active set holds, orthonormal on the free rows.

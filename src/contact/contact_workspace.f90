@@ -19,11 +19,17 @@ module contact_workspace
    !> remainder of loads that were taken off.
    real(dp), parameter :: unresolved = 1.0e-3_dp
 
-   !> Compliance of one contact point to forces on it.
-   type :: point_compliance_type
-      !> (tail, 2) motion by forces along d_n and d_t, unallocated until it is sought [length/force]
-      real(dp), allocatable :: response(:, :)
-   end type point_compliance_type
+   !> Compliance of the contact points of an interface that close in the increment.
+   type :: compliance_type
+      real(dp), allocatable :: matrix(:, :)   !! (2n, 2n), unallocated until it is sought
+   end type compliance_type
+
+   !> What the ways of closing contact points go by, and the set that it belongs to.
+   type :: kept_compliances_type
+      logical, allocatable :: holds(:)                !! (m) closed in the end
+      real(dp), allocatable :: stiffness(:)           !! (m) of soft faces [force/length]
+      type(compliance_type), allocatable :: compliance(:)   !! (interfaces)
+   end type kept_compliances_type
 
    !> Data of the increment, and the factors for the active set of the last solution.
    type :: contact_workspace_type
@@ -48,8 +54,7 @@ module contact_workspace
       logical :: driven = .false.                 !! whether these are more than rounding
       logical, allocatable :: idle(:)  !! (m) closed contact points that carry nothing (idle_points)
       integer :: factorisations = 0               !! of active sets, so far
-      integer :: compliances_found = 0                      !! found so far
-      type(point_compliance_type), allocatable :: point_compliance(:) !! (m) of the factors
+      type(kept_compliances_type) :: kept         !! where contact points that are closed hold
       logical :: several = .false.                !! whether other states under the load are proven
       type(contact_factors_type) :: factors       !! of these rows
       integer, allocatable, private :: factored(:)   !! (m) state codes of the factors
@@ -64,6 +69,7 @@ module contact_workspace
       procedure :: slip
       procedure :: factor_set
       procedure :: factor_rows
+      procedure :: keep_holding
    end type contact_workspace_type
 
    interface contact_workspace_type
@@ -118,9 +124,7 @@ contains
 
       associate (law => self%closing(k))
          if (law%acts) then
-            slip = (1.0_dp - law%fraction)*(state%tangential(k) - law%start) - dot_product( &
-               law%compliance(1, :), state%force) + dot_product(law%compliance(2, :), &
-               state%shear_force)
+            slip = (1.0_dp - law%fraction)*(state%tangential(k) - law%start) + law%lag(state)
          else
             slip = state%tangential(k) - state%reference(k)
          end if
@@ -343,9 +347,24 @@ contains
       logical, intent(out) :: singular                     !! the rows depend on each other
 
       if (allocated(self%factored)) deallocate (self%factored)
-      if (allocated(self%point_compliance)) deallocate (self%point_compliance)
       call self%factors%factor(system, self%rows, self%hold, self%unconstrained, singular)
    end subroutine factor_rows
+
+   !> Forgets compliances beside other closed contact points than these.
+   pure subroutine keep_holding(self, holds, interfaces)
+      class(contact_workspace_type), intent(inout) :: self
+      logical, intent(in) :: holds(:)                      !! (m)
+      integer, intent(in) :: interfaces                    !! their number
+
+      if (allocated(self%kept%holds)) then
+         if (all(self%kept%holds .eqv. holds) .and. all(abs(self%kept%stiffness - &
+            self%soft%stiffness) <= 0.0_dp)) return
+         deallocate (self%kept%compliance)
+      end if
+      self%kept%holds = holds
+      self%kept%stiffness = self%soft%stiffness
+      allocate (self%kept%compliance(interfaces))
+   end subroutine keep_holding
 
    !> Free displacements that take up forces, with the factors of the last active set.
    pure subroutine solve_free(self, x, unbalanced)

@@ -18,6 +18,7 @@ module sum_lists
       procedure :: renumbered
       procedure :: add_totals
       procedure :: add_shares
+      procedure :: is_sum_of
       procedure :: values_of
       procedure :: coefficients_of
    end type sum_list_type
@@ -144,6 +145,20 @@ contains
          end do
       end do
    end subroutine add_shares
+
+   !> Whether one sum is that of another list.
+   pure logical function is_sum_of(self, i, other, j)
+      class(sum_list_type), intent(in) :: self
+      integer, intent(in) :: i                  !! the sum
+      type(sum_list_type), intent(in) :: other
+      integer, intent(in) :: j                  !! its sum
+
+      associate (a => self%start(i), b => other%start(j), n => self%start(i + 1) - self%start(i))
+         is_sum_of = other%start(j + 1) - b == n
+         if (is_sum_of) is_sum_of = all(self%value(a:a + n - 1) == other%value(b:b + n - 1)) .and. &
+            all(abs(self%coefficient(a:a + n - 1) - other%coefficient(b:b + n - 1)) <= 0.0_dp)
+      end associate
+   end function is_sum_of
 
    !> Values of one sum.
    pure function values_of(self, i) result(values)
