@@ -49,6 +49,7 @@ module constraint_rows
       logical, allocatable :: on_tail(:)        !! (introduced values) those that contact acts on
       !> (dofs) those that it acts on likewise; unallocated where there are none
       logical, allocatable :: dof_on_tail(:)
+      logical :: keeps_all = .false.            !! whether all unknowns are on the tail
       type(row_origin_type), allocatable :: origin(:)   !! (rows) those of one follow each other
       !> (rows) degree of freedom to be written, if left; 0 for any
       integer, allocatable :: choice(:)

@@ -8,7 +8,7 @@ module equilibrium_reduction
    use errors, only: error_type, status_deck
    use field_problem, only: field_problem_type, field_reduction_type
    use kinds, only: dp
-   use linear_constraints, only: node_stiffness
+   use linear_constraints, only: linear_constraints_type, node_stiffness
    use mesh, only: extent_of
    use mesh_bodies, only: body_name
    use model, only: model_type
@@ -61,9 +61,12 @@ contains
       associate (contact => self%contact, map => mechanical%map)
          contact%interface_start = points%interface_start
          contact%normal = map%tail_index(map%introduced(1::2))
-         contact%tangent = map%tail_index(map%introduced(2::2))
-         call move_alloc(self%solver%schur, contact%schur)
-         call set_motions(points, rigid, contact)
+         contact%tangent = merge(map%tail_index(map%introduced(2::2)), 0, map%acts(2::2))
+         call move_alloc(self%schur%full, contact%schur%full)
+         contact%schur%sparse = self%schur%sparse
+         call contact%schur%set_order()
+         contact%own = contact%schur%diagonal()
+         call set_motions(points, map, rigid, contact)
          call set_cycles(mechanical, points, contact)
       end associate
       self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
@@ -71,15 +74,16 @@ contains
 
    !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
    !> force; what S makes of them is rounding, and is taken from it.
-   pure subroutine set_motions(points, rigid, contact)
+   pure subroutine set_motions(points, map, rigid, contact)
       type(connections_type), intent(in) :: points
+      type(linear_constraints_type), intent(in) :: map
       real(dp), intent(in) :: rigid(:, :)
       type(contact_system_type), intent(inout) :: contact
       real(dp), allocatable :: forces(:, :)
       real(dp) :: relative(2, size(points%slave))
       integer :: i, k
 
-      allocate (contact%rigid(size(contact%schur, 1), size(rigid, 2)), source=0.0_dp)
+      allocate (contact%rigid(contact%schur%order, size(rigid, 2)), source=0.0_dp)
       do i = 1, size(rigid, 2)
          relative = points%relative(rigid(:, i))
          do k = 1, size(points%slave)
@@ -88,15 +92,49 @@ contains
                dot_product(points%tangent(:, k), relative(:, k))
          end do
       end do
+      if (contact%schur%is_sparse()) then
+         call move_faces(map, rigid, contact)
+         return
+      end if
       contact%motion = column_space(contact%rigid)
       if (size(contact%motion, 2) == 0) return
       associate (z => contact%motion)
-         forces = matmul(contact%schur, z)
-         contact%schur = contact%schur - matmul(forces, transpose(z)) - &
+         forces = matmul(contact%schur%full, z)
+         contact%schur%full = contact%schur%full - matmul(forces, transpose(z)) - &
             matmul(z, transpose(forces)) + &
             matmul(z, matmul(matmul(transpose(z), forces), transpose(z)))
       end associate
+      contact%own = contact%schur%diagonal()
    end subroutine set_motions
+
+   !> The motions of a sparse tail, whose face nodes move along, each of length 1.
+   pure subroutine move_faces(map, rigid, contact)
+      type(linear_constraints_type), intent(in) :: map
+      real(dp), intent(in) :: rigid(:, :)
+      type(contact_system_type), intent(inout) :: contact
+      logical :: is_face(contact%schur%order), singular
+      real(dp) :: length
+      integer :: dof, i
+
+      is_face = .true.
+      is_face(contact%normal) = .false.
+      is_face(pack(contact%tangent, contact%tangent > 0)) = .false.
+      associate (by => map%by_unknowns)
+         do dof = 1, by%count
+            if (by%start(dof + 1) - by%start(dof) /= 1) cycle
+            associate (k => map%tail_index(by%value(by%start(dof))))
+               if (k == 0) cycle
+               if (is_face(k)) contact%rigid(k, :) = rigid(dof, :)/by%coefficient(by%start(dof))
+            end associate
+         end do
+      end associate
+      contact%motion = contact%rigid
+      do i = 1, size(contact%motion, 2)
+         length = norm2(contact%rigid(:, i))
+         if (length > 0.0_dp) contact%motion(:, i) = contact%motion(:, i)/length
+      end do
+      call contact%products%factor(matmul(transpose(contact%motion), contact%motion), singular)
+   end subroutine move_faces
 
    !> The links of the cycles, the compliance of their stuck contact points, and what each contact
    !> point has for stiffness alone.
@@ -104,14 +142,18 @@ contains
       type(field_problem_type), intent(in) :: mechanical
       type(connections_type), intent(in) :: points
       type(contact_system_type), intent(inout) :: contact
+      logical :: acted(contact%schur%order)
       integer :: k
       real(dp) :: own
 
       associate (map => mechanical%map, cyclic => in_cycle(mechanical%map, size(points%slave)))
-         contact%link = map%tail_index(map%link_force)
+         acted = .false.
+         acted(contact%normal) = .true.
+         acted(pack(contact%tangent, contact%tangent > 0)) = .true.
+         contact%link = pack([(k, k=1, size(acted))], .not. acted)
+         contact%links = size(map%link_force)
          allocate (contact%compliance(size(points%slave)), source=0.0_dp)
-         contact%alone = [(contact%schur(contact%normal(k), contact%normal(k)), &
-            k=1, size(points%slave))]
+         contact%alone = contact%own(contact%normal)
          do k = 1, size(points%slave)
             associate (nodes => points%nodes_of(k))
                own = node_stiffness(mechanical%matrix, nodes, 2)

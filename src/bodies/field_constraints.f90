@@ -16,6 +16,7 @@
 !> of its own; its hat function goes to its neighbour's (Bernardi, Maday and Patera's multipliers,
 !> constant on the last side).
 module field_constraints
+   use body_pieces, only: body_division_type
    use constraint_rows, only: constraint_rows_type, of_contact, of_equation, of_hanging, &
       of_support, of_tie, row_origin_type
    use equations, only: equation_type
@@ -41,7 +42,7 @@ contains
    !> Constraints of the displacements; the normal ones, and with friction the tangential ones, are
    !> on the tail.
    pure subroutine constrain_displacements(used, prescribed, points, has_friction, slave_leads, &
-      constraints)
+      constraints, division)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: prescribed(:)                !! (2 nodes) prescribed displacements
       type(connections_type), intent(in) :: points !! contact points
@@ -49,11 +50,12 @@ contains
       !> (m) whether the slave is to lead where neither node is prescribed; else the master does
       logical, intent(in) :: slave_leads(:)
       type(linear_constraints_type), intent(out) :: constraints
+      type(body_division_type), intent(inout), optional :: division   !! of bodies that are divided
       type(constraint_rows_type) :: rows
 
       rows = displacement_rows(prescribed, points, slave_leads)
       rows%on_tail(2::2) = has_friction
-      call eliminate(rows, in_use(used, points, .false.), constraints)
+      call eliminate_divided(rows, in_use(used, points, .false.), constraints, division)
    end subroutine constrain_displacements
 
    !> The rows of the displacements.
@@ -84,16 +86,45 @@ contains
 
    !> Constraints of the temperatures; all jumps are on the tail, and the nodes of faces
    !> whose heat is integrated to the edge of contact.
-   pure subroutine constrain_temperatures(used, prescribed, points, slave_leads, constraints)
+   pure subroutine constrain_temperatures(used, prescribed, points, slave_leads, &
+      constraints, division)
       logical, intent(in) :: used(:)                !! (nodes) whether elements have them
       logical, intent(in) :: prescribed(:)                !! (nodes) prescribed temperatures
       type(connections_type), intent(in) :: points !! contact points
       logical, intent(in) :: slave_leads(:)         !! (m) as above
       type(linear_constraints_type), intent(out) :: constraints
+      type(body_division_type), intent(inout), optional :: division   !! of bodies that are divided
+      type(constraint_rows_type) :: rows
 
-      call eliminate(temperature_rows(prescribed, points, slave_leads), &
-         in_use(used, points, .true.), constraints)
+      rows = temperature_rows(prescribed, points, slave_leads)
+      call eliminate_divided(rows, in_use(used, points, .true.), constraints, division)
    end subroutine constrain_temperatures
+
+   !> The constraints of rows. Nodes that no row binds are inside of the pieces of divided bodies,
+   !> and all others on the tail.
+   pure subroutine eliminate_divided(rows, used, constraints, division)
+      type(constraint_rows_type), intent(inout) :: rows
+      logical, intent(in) :: used(:)
+      type(linear_constraints_type), intent(out) :: constraints
+      type(body_division_type), intent(inout), optional :: division
+      logical :: is_bound(rows%dofs/rows%components), is_divided
+      integer :: k
+
+      is_divided = .false.
+      if (present(division)) is_divided = allocated(division%graph%value)
+      if (is_divided) then
+         is_bound = .not. used(rows%components::rows%components)
+         do k = 1, rows%start(rows%count + 1) - 1
+            if (rows%value(k) <= rows%dofs) is_bound((rows%value(k) - 1)/rows%components + 1) = &
+               .true.
+         end do
+         call division%divide(is_bound, rows%components)
+         rows%keeps_all = .true.
+         call eliminate(rows, used .and. division%piece == 0, constraints)
+      else
+         call eliminate(rows, used, constraints)
+      end if
+   end subroutine eliminate_divided
 
    !> The rows of the temperatures.
    pure function temperature_rows(prescribed, points, slave_leads) result(rows)

@@ -5,15 +5,20 @@
 !> matrix and of what is added to it, such as films; whoever needs another one makes one of its own.
 !> Loads that were solved for are kept with what became of them: a load that they make up needs no
 !> solution of its own.
+!>
+!> Where many interfaces join many bodies, these are reduced piece by piece (body_pieces), and what
+!> is left of them is the tail, a sparse one; else all unknowns but the contact's are eliminated.
 module field_problem
+   use body_pieces, only: body_division_type, body_pieces_type
    use controls, only: solver_mumps
    use errors, only: check_finite, error_type, status_deck
-   use kinds, only: dp
+   use kinds, only: dp, long
    use linear_constraints, only: linear_constraints_type
    use linear_solver, only: linear_solver_type
    use mumps_solver, only: mumps_solver_type
    use skyline_solver, only: skyline_solver_type
-   use sparse_matrix, only: linear_combination, sparse_matrix_type
+   use sparse_matrix, only: linear_combination, sparse_matrix_type, symmetric
+   use tail_matrix, only: tail_matrix_type
    implicit none
    private
    public :: field_load_type, field_problem_type, field_reduction_type, solved_loads_type
@@ -25,6 +30,7 @@ module field_problem
    !> Loads and prescribed values of a field at the end of an increment.
    type :: field_load_type
       real(dp), allocatable :: given(:)                       !! (dofs) prescribed values
+      real(dp), allocatable :: acting(:)    !! (dofs) forces, those on kept ones condensed there
       real(dp), allocatable :: rhs(:, :)                      !! (equations, 1) right-hand side
       real(dp), allocatable :: condensed(:) !! (tail) right-hand side condensed on the tail
    end type field_load_type
@@ -42,6 +48,7 @@ module field_problem
    type, extends(field_operator_type) :: field_problem_type
       type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
       integer :: numbering = 0                                !! which numbering, counted
+      type(body_division_type) :: division                    !! where bodies are reduced by pieces
    contains
       procedure :: matrix_of_unknowns
    end type field_problem_type
@@ -55,6 +62,8 @@ module field_problem
       !> (leading) the order in which solvers eliminate the unknowns of this numbering, once made
       integer, allocatable :: rank(:)
       class(linear_solver_type), allocatable :: solver        !! pattern and factors
+      type(body_pieces_type) :: pieces                        !! in the place of the solver
+      type(tail_matrix_type) :: schur                         !! what is left on the tail
       integer :: factored = 0                                 !! how often
       integer :: lost_node = 0   !! where a singular matrix shows, if that is known
       logical, private :: is_factored = .false.
@@ -71,6 +80,7 @@ module field_problem
       procedure :: welded_response
       procedure :: condense_forces
       procedure :: release
+      procedure :: full_flops
    end type field_reduction_type
 
    !> Orthonormal loads that were solved for, the latest last, and the reduction that they were
@@ -152,6 +162,10 @@ contains
       self%added = added
       call check_finite(problem%matrix%value, 'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
+      if (allocated(problem%division%piece)) then
+         call reduce_pieces(self, problem, added, error)
+         return
+      end if
       lower = problem%matrix_of_unknowns(added)
       if (.not. allocated(self%solver)) then
          if (solver_kind == solver_mumps) then
@@ -169,12 +183,41 @@ contains
          status_deck, error)
       self%factored = self%factored + 1
       self%is_factored = .not. allocated(error)
-      if (.not. allocated(error)) return
+      if (.not. allocated(error)) then
+         self%schur = tail_matrix_type()
+         call move_alloc(self%solver%schur, self%schur%full)
+         call self%schur%set_order()
+         return
+      end if
       associate (node => problem%map%leading_nodes(), lost => self%solver%lost_unknown)
          if (lost > 0 .and. lost <= size(node)) self%lost_node = node(lost)
       end associate
       call self%release()
    end subroutine factor
+
+   !> Reduces the bodies piece by piece; what is left is the tail.
+   !> Error: as the pieces' reduce.
+   subroutine reduce_pieces(self, problem, added, error)
+      class(field_reduction_type), intent(inout) :: self
+      type(field_problem_type), intent(in) :: problem
+      type(sparse_matrix_type), intent(in) :: added
+      type(error_type), allocatable, intent(out) :: error
+      type(sparse_matrix_type) :: kept
+
+      if (allocated(added%value)) then
+         call self%pieces%reduce(linear_combination(1.0_dp, problem%matrix, 1.0_dp, added), &
+            problem%division%piece, kept, error)
+      else
+         call self%pieces%reduce(problem%matrix, problem%division%piece, kept, error)
+      end if
+      if (allocated(error)) return
+      self%schur%sparse = symmetric(problem%map%transform(kept, &
+         problem%map%link_stiffness(problem%matrix)))
+      if (.not. allocated(self%schur%rank)) call self%schur%set_order()
+      call check_finite(self%schur%sparse%value, 'factors of the bodies', status_deck, error)
+      self%factored = self%factored + 1
+      self%is_factored = .not. allocated(error)
+   end subroutine reduce_pieces
 
    !> Gives the matrix new values.
    subroutine set_matrix(self, matrix)
@@ -203,7 +246,7 @@ contains
    end function matrix_of_unknowns
 
    !> The load of an increment.
-   pure function load_of(self, problem, forces, given) result(load)
+   function load_of(self, problem, forces, given) result(load)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
@@ -215,6 +258,14 @@ contains
       supported = problem%map%supported(given)
       acting = forces
       if (any(abs(supported) > 0.0_dp)) acting = forces - problem%matrix%multiply(supported)
+      if (allocated(problem%division%piece)) then
+         if (allocated(self%added%value)) acting = acting - self%added%multiply(supported)
+         call self%pieces%condense(acting)
+         load%acting = acting
+         load%rhs = reshape(problem%map%load(acting, given, &
+            problem%map%link_stiffness(problem%matrix)), [problem%map%equations, 1])
+         return
+      end if
       load%rhs = reshape(problem%map%load(acting, given, &
          problem%map%link_stiffness(problem%matrix)), [problem%map%equations, 1])
       if (allocated(self%added%value)) load%rhs(:, 1) = load%rhs(:, 1) - &
@@ -232,6 +283,11 @@ contains
       real(dp) :: rest(problem%map%equations, 1), condensed(problem%map%tail, 1)
       real(dp), allocatable :: solution(:, :)
 
+      if (allocated(problem%division%piece)) then
+         load%condensed = load%rhs(:, 1)
+         if (present(welded)) welded = self%recover(problem, load, 0.0_dp*load%condensed)
+         return
+      end if
       if (known%numbering /= self%numbering .or. known%values /= self%values .or. &
          .not. same_values(known%added, self%added)) then
          known = solved_loads_type()
@@ -265,6 +321,11 @@ contains
       real(dp) :: values(problem%matrix%row_count)           !! (dofs)
       real(dp) :: solution(problem%map%equations, 1)
 
+      if (allocated(problem%division%piece)) then
+         values = problem%map%expand(on_tail, load%given)
+         call self%pieces%fill(values, load%acting)
+         return
+      end if
       call self%solver%recover(load%rhs, reshape(on_tail, [size(on_tail), 1]), solution)
       values = problem%map%expand(solution(:, 1), load%given)
    end function recover
@@ -280,9 +341,16 @@ contains
       real(dp), allocatable :: solution(:, :)
       integer :: k
 
+      none = 0.0_dp
+      if (allocated(problem%division%piece)) then
+         do k = 1, size(on_tail, 2)
+            values(:, k) = problem%map%expand(on_tail(:, k), none)
+            call self%pieces%fill(values(:, k))
+         end do
+         return
+      end if
       allocate (solution(problem%map%equations, size(on_tail, 2)))
       call self%solver%extend(on_tail, solution)
-      none = 0.0_dp
       do k = 1, size(on_tail, 2)
          values(:, k) = problem%map%expand(solution(:, k), none)
       end do
@@ -326,9 +394,20 @@ contains
       real(dp), intent(out) :: condensed(:, :)            !! (tail, columns)
       real(dp), intent(out), optional :: welded(:, :)     !! (dofs, columns)
       real(dp) :: rhs(problem%map%equations, size(forces, 2))
-      real(dp), allocatable :: solution(:, :)
+      real(dp), allocatable :: acting(:), solution(:, :)
       integer :: k
 
+      if (allocated(problem%division%piece)) then
+         do k = 1, size(forces, 2)
+            acting = forces(:, k)
+            call self%pieces%condense(acting)
+            condensed(:, k) = problem%map%restrict(acting)
+            if (.not. present(welded)) cycle
+            welded(:, k) = 0.0_dp
+            call self%pieces%fill(welded(:, k), acting)
+         end do
+         return
+      end if
       do k = 1, size(forces, 2)
          rhs(:, k) = problem%map%restrict(forces(:, k))
       end do
@@ -343,11 +422,26 @@ contains
       end do
    end subroutine condense_forces
 
+   !> Operations of a factorisation up to the tail.
+   pure integer(long) function full_flops(self)
+      class(field_reduction_type), intent(in) :: self
+      integer :: i
+
+      full_flops = 0
+      if (allocated(self%solver)) full_flops = self%solver%full_flops
+      if (.not. allocated(self%pieces%piece)) return
+      do i = 1, size(self%pieces%piece)
+         full_flops = full_flops + self%pieces%piece(i)%solver%full_flops
+      end do
+   end function full_flops
+
    !> Frees the factors; the order of the unknowns stays.
    subroutine release(self)
       class(field_reduction_type), intent(inout) :: self
 
       self%is_factored = .false.
+      self%schur = tail_matrix_type()
+      self%pieces = body_pieces_type()
       if (.not. allocated(self%solver)) return
       call self%solver%release()
       deallocate (self%solver)

@@ -2,8 +2,8 @@
 !> changes a reduction that others read: a run and each companion of it own one each, and reduce
 !> keeps what still serves.
 module heat_reduction
-   use contact_system, only: balanced_load
    use controls, only: solver_mumps
+   use dense, only: product_of
    use errors, only: error_type
    use field_constraints, only: in_cycle, stiffness_alone
    use field_problem, only: field_reduction_type
@@ -49,7 +49,9 @@ module heat_reduction
       procedure :: reduce
       procedure :: eliminate
       procedure :: set_node_rank
-      procedure :: load_of_jumps
+      procedure :: is_on_demand
+      procedure :: loads_of_tail
+      procedure :: means_of_tail
       procedure :: conductors
    end type heat_reduction_type
 
@@ -62,9 +64,19 @@ contains
       type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
 
       serves = self%is_of(bodies%thermal, film) .and. (.not. bodies%is_coupled .or. &
-         self%forms_on_demand .or. (has_loads(self, bodies) .and. self%is_balanced .and. &
+         self%is_on_demand(bodies) .or. (has_loads(self, bodies) .and. self%is_balanced .and. &
          has_friction_loads(self, bodies)))
    end function serves
+
+   !> Whether loads of jumps are formed as they are asked for: where the caller says so, and where
+   !> bodies are reduced by pieces.
+   pure logical function is_on_demand(self, bodies)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+
+      is_on_demand = self%forms_on_demand .or. allocated(bodies%thermal%division%piece) .or. &
+         allocated(bodies%mechanical%division%piece)
+   end function is_on_demand
 
    !> Whether the loads of the jumps are those of the bodies' supports.
    pure logical function has_loads(self, bodies)
@@ -113,17 +125,18 @@ contains
          end if
          self%friction_equilibrium = 0
          if (allocated(self%jump_mean)) deallocate (self%jump_mean)
-         if (bodies%points%vary_with_temperature()) call form_jump_mean(self, bodies)
+         if (bodies%points%vary_with_temperature() .and. .not. self%schur%is_sparse()) &
+            call form_jump_mean(self, bodies)
       end if
       if (allocated(of_loads)) call move_alloc(of_loads, error)
-      if (allocated(error) .or. .not. bodies%is_coupled .or. self%forms_on_demand) return
+      if (allocated(error) .or. .not. bodies%is_coupled .or. self%is_on_demand(bodies)) return
       if (.not. has_friction_loads(self, bodies)) call form_friction(self, bodies)
       if (.not. has_loads(self, bodies)) call loads_by_solves(bodies%thermal, self, &
          bodies%mechanical, bodies%equilibrium, bodies%thermal_load, self%jump_load)
       self%equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
       if (self%is_balanced) return
       do k = 1, size(self%jump_load, 2)
-         self%jump_load(:, k) = balanced_jump(self%jump_load(:, k), bodies)
+         self%jump_load(:, k) = bodies%equilibrium%contact%balanced(self%jump_load(:, k))
       end do
       self%is_balanced = .true.
    end subroutine reduce
@@ -141,7 +154,7 @@ contains
 
       call self%renumber_both(bodies)
       if (.not. self%is_for(bodies%thermal, film)) self%equilibrium = 0
-      if (has_loads(self, bodies) .or. .not. bodies%is_coupled .or. self%forms_on_demand) return
+      if (has_loads(self, bodies) .or. .not. bodies%is_coupled .or. self%is_on_demand(bodies)) return
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       self%is_balanced = .false.
       if (model%solver /= solver_mumps) return
@@ -193,18 +206,38 @@ contains
       self%ranked_displacements = bodies%mechanical%numbering
    end subroutine set_node_rank
 
-   !> Condensed mechanical load of given jumps, by a solution of each field.
-   function load_of_jumps(self, bodies, on_tail) result(load)
+   !> Condensed mechanical loads of the thermal tail: from those of its unit values, or by a
+   !> solution of each field.
+   function loads_of_tail(self, bodies, on_tail) result(load)
       class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
-      real(dp), intent(in) :: on_tail(:)                  !! (thermal tail) [temperature]
-      real(dp) :: load(bodies%mechanical%map%tail)        !! (mechanical tail) [force]
-      real(dp) :: condensed(size(load), 1)
+      real(dp), intent(in) :: on_tail(:, :)               !! (thermal tail, n) [temperature]
+      real(dp) :: load(bodies%mechanical%map%tail, size(on_tail, 2))   !! (mechanical tail, n)
 
-      condensed = loads_of_temperatures(bodies, self%extended(bodies%thermal, reshape(on_tail, &
-         [size(on_tail), 1])))
-      load = condensed(:, 1)
-   end function load_of_jumps
+      if (self%is_on_demand(bodies)) then
+         load = loads_of_temperatures(bodies, self%extended(bodies%thermal, on_tail))
+      else
+         load = product_of(self%jump_load, on_tail)
+      end if
+   end function loads_of_tail
+
+   !> Mean temperatures of the faces that the thermal tail makes.
+   function means_of_tail(self, bodies, on_tail) result(mean)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: on_tail(:, :)               !! (thermal tail, n) [temperature]
+      real(dp) :: mean(size(bodies%points%slave), size(on_tail, 2))   !! (m, n)
+      integer :: i, k
+
+      if (.not. self%schur%is_sparse()) then
+         mean = product_of(self%jump_mean, on_tail)
+         return
+      end if
+      do k = 1, size(on_tail, 2)
+         mean(:, k) = bodies%points%means(bodies%thermal%map%expand(on_tail(:, k), [(0.0_dp, &
+            i=1, bodies%thermal%matrix%row_count)]))
+      end do
+   end function means_of_tail
 
    !> Condensed mechanical loads of temperatures, balanced.
    function loads_of_temperatures(bodies, temperature) result(load)
@@ -218,7 +251,7 @@ contains
       call bodies%thermal_load%multiply_columns(temperature, forces)
       call bodies%equilibrium%condense_forces(bodies%mechanical, forces, load)
       do k = 1, size(load, 2)
-         load(:, k) = balanced_jump(load(:, k), bodies)
+         load(:, k) = bodies%equilibrium%contact%balanced(load(:, k))
       end do
    end function loads_of_temperatures
 
@@ -232,25 +265,13 @@ contains
       integer :: k
 
       do k = 1, size(factors, 2)
-         balanced(:, k) = balanced_jump(factors(:, k), bodies)
+         balanced(:, k) = bodies%equilibrium%contact%balanced(factors(:, k))
       end do
       motions = bodies%equilibrium%extended(bodies%mechanical, balanced)
       do k = 1, size(factors, 2)
          by_temperature(:, k) = bodies%thermal_load%multiply_transposed(motions(:, k))
       end do
    end function temperatures_in_loads
-
-   !> The condensed load of jumps balanced: it has no resultant.
-   function balanced_jump(load, bodies) result(balanced)
-      real(dp), intent(in) :: load(:)
-      type(reduced_bodies_type), intent(in) :: bodies
-      real(dp) :: balanced(size(load))
-
-      associate (contact => bodies%equilibrium%contact)
-         balanced = balanced_load(load, contact%rigid, contact%motion, &
-            spread(0.0_dp, 1, size(bodies%rigid, 2)))
-      end associate
-   end function balanced_jump
 
    !> Mean temperature of the faces at all contact points, of a unit jump at each.
    subroutine form_jump_mean(self, bodies)
@@ -320,10 +341,10 @@ contains
 
       conductance = 0.0_dp
       cyclic = in_cycle(bodies%thermal%map, size(cyclic))
-      associate (index => bodies%jump_index)
+      associate (index => bodies%jump_index, own => self%schur%diagonal())
          do k = 1, size(conductance)
             if (index(k) == 0) cycle
-            conductance(k) = self%solver%schur(index(k), index(k))
+            conductance(k) = own(index(k))
             if (.not. cyclic(k)) cycle
             conductance(k) = stiffness_alone(conductance(k), bodies%thermal%matrix, &
                bodies%points%nodes_of(k), 1)

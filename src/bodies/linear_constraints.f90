@@ -31,6 +31,7 @@ module linear_constraints
       integer :: tail = 0                           !! how many of them, the last, are the tail
       integer :: components = 1                     !! degrees of freedom of a node
       integer, allocatable :: introduced(:) !! unknowns of introduced values, 0 where none has them
+      logical, allocatable :: acts(:)               !! (introduced) whether contact acts on them
       type(sum_list_type) :: by_unknowns            !! (dofs, equations) T
       type(sum_list_type) :: by_given               !! (dofs, dofs) B
       type(sum_list_type) :: link_unknowns          !! (links, equations) G
@@ -309,6 +310,7 @@ contains
       call number_unknowns(rows, found, used, constraints, unknown)
       constraints%components = rows%components
       constraints%introduced = unknown(rows%dofs + 1:last)
+      constraints%acts = rows%on_tail
       call set_matrices(rows, found, unknown, constraints)
       call set_ties(rows, found, last, constraints)
    end subroutine eliminate
@@ -340,7 +342,7 @@ contains
             call number_chosen(1, free, unknown, n)
          end if
          call number_chosen(first, enters .and. .not. rows%on_tail, unknown, n)
-         before_tail = n
+         before_tail = merge(0, n, rows%keeps_all)
          if (allocated(rows%dof_on_tail)) call number_chosen(1, free .and. rows%dof_on_tail, &
             unknown, n)
          call number_chosen(first, enters .and. rows%on_tail, unknown, n)

@@ -7,6 +7,7 @@ module reduced_bodies
    use connections, only: connections_type, contact_laws_type, join_points, laws_of_step, &
       match_surfaces, match_tie
    use conductance_laws, only: is_constant
+   use controls, only: start_both
    use contact_points, only: contact_points_type, on_axis
    use dilatation, only: dilatation_type
    use element_kinds, only: element_node_count
@@ -21,7 +22,8 @@ module reduced_bodies
    use point_materials, only: point_materials_type
    use point_rules, only: integration_rules
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
-   use sparse_matrix, only: linear_combination, sparse_matrix_type
+   use mesh, only: nodes_per_element
+   use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use thermal_matrix, only: assemble_capacity, assemble_conduction
@@ -30,6 +32,7 @@ module reduced_bodies
    public :: reduced_bodies_type
 
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
+   integer, parameter :: most_at_once = 200     !! contact points whose matrices are full
 
    !> The reduced bodies.
    type :: reduced_bodies_type
@@ -103,9 +106,59 @@ contains
       call join_points(self%interfaces, self%ties, model, self%points)
       deallocate (self%ties)
       self%laws = laws_of_step(model, self%points, 1)
+      if (has_many_interfaces(model, self%points)) then
+         self%mechanical%division%graph = joined_nodes(model)
+         self%thermal%division%graph = self%mechanical%division%graph
+      end if
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
+
+   !> Whether the bodies are reduced by pieces: there are many contact points between several bodies,
+   !> and no step forms derivatives of all of them.
+   logical function has_many_interfaces(model, points) result(many)
+      type(model_type), intent(in) :: model
+      type(connections_type), intent(in) :: points
+      character(8) :: word
+
+      call get_environment_variable('THERCON_TAIL', word)
+      associate (steps => model%steps)
+         many = model%mesh%body_count > 2 .and. size(points%slave) > most_at_once .and. .not. &
+            (allocated(points%heated) .or. any(points%resolves_edge) .or. &
+            any(steps%continuation%is_on) .or. any(steps%stability_frequency > 0) .or. &
+            any(steps%dilates) .or. any(steps%start%kind == start_both))
+      end associate
+      if (word == 'DENSE') many = .false.
+      if (word == 'SPARSE') many = model%mesh%body_count > 2
+   end function has_many_interfaces
+
+   !> Which nodes elements, springs and trusses join.
+   pure function joined_nodes(model) result(graph)
+      type(model_type), intent(in) :: model
+      type(sparse_matrix_type) :: graph         ! (nodes, nodes)
+      type(triplet_list_type) :: list
+      integer :: e, i
+      real(dp) :: ones(nodes_per_element, nodes_per_element)
+
+      ones = 1.0_dp
+      associate (mesh => model%mesh)
+         call list%reserve(nodes_per_element**2*size(mesh%element_kind))
+         do e = 1, size(mesh%element_kind)
+            associate (n => element_node_count(mesh%element_kind(e)))
+               call list%add_block(mesh%element_nodes(:n, e), mesh%element_nodes(:n, e), &
+                  ones(:n, :n))
+            end associate
+         end do
+         if (allocated(model%bars)) then
+            do i = 1, size(model%bars)
+               associate (nodes => (model%bars(i)%elongation%places() - 1)/2 + 1)
+                  call list%add_block(nodes, nodes, ones(:size(nodes), :size(nodes)))
+               end associate
+            end do
+         end if
+         graph = list%compress(size(mesh%node_number), size(mesh%node_number))
+      end associate
+   end function joined_nodes
 
    !> The contact points of one interface. A body that ends at a line of symmetry goes on beyond it,
    !> as a rigid master does.
@@ -192,12 +245,12 @@ contains
          if (mechanics) then
             call constrain_displacements(used, prescribed, points, &
                self%laws%friction%coefficient > 0.0_dp, slave_is_stiffer(model, points, .true.), &
-               self%mechanical%map)
+               self%mechanical%map, self%mechanical%division)
             self%mechanical%numbering = self%mechanical%numbering + 1
          end if
          if (.not. heat) return
          call constrain_temperatures(used, held_temperature, points, &
-            slave_is_stiffer(model, points, .false.), self%thermal%map)
+            slave_is_stiffer(model, points, .false.), self%thermal%map, self%thermal%division)
          self%thermal%numbering = self%thermal%numbering + 1
          self%jump_index = self%thermal%map%tail_index(self%thermal%map%introduced)
       end associate

@@ -14,7 +14,7 @@
 !> rounding does not decide by itself, because a light load may leave no more than that beside the
 !> thermal forces. The load is judged instead: its resultants along the rigid motions are exact.
 module active_set
-   use contact_system, only: contact_open, contact_state_type, contact_system_type, &
+   use contact_system, only: contact_open, contact_slip, contact_state_type, contact_system_type, &
       next_contact_state, response_type, rounding_type, state_code
    use contact_workspace, only: contact_workspace_type
    use errors, only: error_type, set_error, status_no_convergence
@@ -124,6 +124,19 @@ contains
          return
       end if
       state = guess
+      if (work%driven) then
+         ! Bodies in a row that touch are pushed onto each other one by one, but close at once.
+         where (touches(system, work, guess))
+            state%contact_state = contact_slip
+            state%direction = 0
+         end where
+         call search(system, load, work, state, failure)
+         if (.not. allocated(failure)) then
+            if (allocated(error)) deallocate (error)
+            return
+         end if
+         state = guess
+      end if
       if (size(system%motion, 2) > 0) then
          call hold_softly(system, load, work, state, error)
       else
@@ -131,6 +144,17 @@ contains
          if (.not. allocated(error)) call work%solve_set(system, load, state, error)
       end if
    end subroutine find_state
+
+   !> Open contact points that touch.
+   pure function touches(system, work, state)
+      type(contact_system_type), intent(in) :: system
+      type(contact_workspace_type), intent(in) :: work
+      type(contact_state_type), intent(in) :: state
+      logical :: touches(size(state%gap))
+
+      touches = state%contact_state == contact_open .and. .not. work%removed .and. &
+         state%gap <= barely*system%least_length
+   end function touches
 
    !> Corrects the active set until nothing violates its condition.
    !> Errors: as solve_set; the sets do not settle.
@@ -181,11 +205,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: soft
       real(dp) :: hold, position(size(system%motion, 2)), softest, way(size(system%motion, 2))
-      integer :: i, step
+      integer :: step
 
       position = matmul(positions(system, work, state), system%motion)
       ! Contact points that close a cycle, and those that move a rigid body, have no stiffness.
-      associate (own => [(system%schur(i, i), i=1, size(load)), system%alone])
+      associate (own => [system%own, system%alone])
          softest = minval(own, mask=own > nothing*maxval(own))
       end associate
       do step = 1, soft_steps
@@ -237,10 +261,13 @@ contains
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: work
       type(contact_state_type), intent(in) :: state
-      real(dp) :: d(size(system%schur, 1))
+      real(dp) :: d(system%schur%order)
       integer :: k
 
       d = 0.0_dp
+      if (allocated(state%link)) then
+         if (size(state%link) == size(system%link)) d(system%link) = state%link
+      end if
       do k = 1, size(state%contact_state)
          d(system%normal(k)) = work%initial_gap(k) - state%gap(k)
          if (system%tangent(k) > 0) d(system%tangent(k)) = state%tangential(k)
@@ -323,7 +350,7 @@ contains
       integer, intent(in) :: free(:)                ! rows that are sought
       real(dp), intent(in) :: motion(:)             ! (free) lengths of the motion
       logical :: moved(size(system%normal))         ! (m)
-      logical :: moves(0:size(system%schur, 1))
+      logical :: moves(0:system%schur%order)
 
       moves = .false.
       moves(free) = motion > no_motion*maxval(motion)

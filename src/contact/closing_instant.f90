@@ -2,7 +2,7 @@
 !>
 !> The contact points of an interface are ordered by themselves. Let those that close in the
 !> increment be relieved of their forces, and all others that are closed in the end hold their
-!> positions. Along the straight way from the start of the increment to
+!> positions; those that are part of cycles, whose friction statics leaves open, along the normal. Along the straight way from the start of the increment to
 !> where they then would end, one closes first: there its slip starts to count. From there on it
 !> holds its position; the others go on the straight way to where they would end now; and so on,
 !> until all have closed. Contact points that reach the other face together close together: so a
@@ -36,10 +36,10 @@
 !> with b the derivative of r by lambda through f(lambda) and a(lambda).
 module closing_instant
    use active_set, only: solve_contact
-   use contact_system, only: closing_law_type, contact_open, contact_state_type, contact_stick, &
-      contact_system_type
+   use contact_system, only: closing_law_type, contact_open, contact_slip, contact_state_type, &
+      contact_stick, contact_system_type
    use contact_workspace, only: contact_workspace_type
-   use dense, only: product_of
+   use dense, only: lu_type, null_space
    use errors, only: error_type
    use kinds, only: dp
    implicit none
@@ -130,6 +130,7 @@ contains
       do pass = 1, most_passes
          state%gap = previous%gap
          state%tangential = previous%tangential
+         if (allocated(previous%link)) state%link = previous%link
          call solve_contact(system, load, work, state, error)
          if (allocated(error)) return
          if (work%keeps_laws) exit
@@ -224,16 +225,19 @@ contains
       end associate
       associate (kept => sticking%kept%compliance(number))
          if (.not. allocated(kept%matrix)) then
-            call go_freely(system, state, sticking, path, laws, error)
+            call find_compliance(system, state, sticking, path, error)
             if (allocated(error)) return
-            if (.not. any(path%is_open)) return
-            path%compliance = compliance_of(system, sticking, path)
-            if (all(path%is_open) .and. size(sticking%unconstrained, 2) == 0) kept%matrix = &
-               path%compliance
+            if (allocated(path%compliance)) kept%matrix = path%compliance
          else
             path%compliance = kept%matrix
          end if
       end associate
+      if (.not. allocated(path%compliance)) then
+         call go_freely(system, state, sticking, path, laws, error)
+         if (allocated(error)) return
+         if (.not. any(path%is_open)) return
+         path%compliance = released_compliance(system, sticking, path)
+      end if
       call go_closing(sticking, path, laws)
    end subroutine find_path
 
@@ -267,7 +271,7 @@ contains
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: sticking_state
-      real(dp) :: forces(2, size(laws)), on_tail(size(system%schur, 1))
+      real(dp) :: forces(2, size(laws)), on_tail(system%schur%order)
       real(dp) :: motion(size(path%y)), length
       real(dp), allocatable :: drive(:)
       integer :: i, n
@@ -312,14 +316,88 @@ contains
    end subroutine go_freely
 
    !> Compliance of the contact points on their way, while all others that are closed hold their
-   !> positions.
-   pure function compliance_of(system, sticking, path) result(compliance)
+   !> positions, from what holds them all. Not found where the others do not hold the bodies, and
+   !> where contact points on their way are soft.
+   !>
+   !> With h the rows that the set holds and s those of cycles, which it leaves free, unit
+   !> displacements of h need the forces K and move s by D, and unit forces on s move s by F. The
+   !> compliance then is K^-1 on h, D K^-1 between both, F + D K^-1 D^T on s.
+   !> Error: a singular system.
+   subroutine find_compliance(system, state, sticking, path, error)
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: state
+      type(contact_workspace_type), intent(inout) :: sticking
+      type(closing_path_type), intent(inout) :: path
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_state_type) :: holding
+      integer, allocatable :: free(:), held(:), of_free(:), of_held(:)
+      real(dp), allocatable :: k(:, :), response(:, :), forces(:, :)
+      type(lu_type) :: lu
+      logical :: is_held(system%schur%order), singular
+      integer :: i, n
+
+      if (any(sticking%soft%is_soft(path%point))) return
+      holding = state
+      holding%direction = 0
+      holding%contact_state = merge(contact_stick, contact_open, sticking%kept%holds)
+      where (sticking%kept%holds .and. system%compliance > 0.0_dp) &
+         holding%contact_state = contact_slip
+      call sticking%factor_set(system, holding, error)
+      if (allocated(error)) return
+      n = size(path%point)
+      is_held = .true.
+      is_held(sticking%rows%free) = .false.
+      associate (rows => [system%normal(path%point), system%tangent(path%point)])
+         of_held = pack([(i, i=1, 2*n)], [(is_row(rows(i)), i=1, 2*n)])
+         of_free = pack([(i, i=1, 2*n)], [(rows(i) > 0, i=1, 2*n)] .and. .not. &
+            [(is_row(rows(i)), i=1, 2*n)])
+         held = rows(of_held)
+         free = rows(of_free)
+      end associate
+      response = reshape([-system%schur%columns(held), 0.0_dp*system%schur%columns(free)], &
+         [system%schur%order, size(held) + size(free)])
+      do i = 1, size(free)
+         response(free(i), size(held) + i) = 1.0_dp
+      end do
+      call sticking%solve_free(response)
+      where (spread(is_held, 2, size(response, 2))) response = 0.0_dp
+      forces = system%schur%times(response(:, :size(held)))
+      k = system%schur%block(held) + forces(held, :)
+      if (any(abs(system%motion(held, :)) > 0.0_dp)) then
+         if (size(null_space(k), 2) > 0) return
+      end if
+      call lu%factor(k, singular)
+      if (singular) return
+      k = 0.0_dp
+      do i = 1, size(held)
+         k(i, i) = 1.0_dp
+      end do
+      call lu%solve(k)
+      allocate (path%compliance(2*n, 2*n), source=0.0_dp)
+      path%compliance(of_held, of_held) = k
+      associate (d => response(free, :size(held)))
+         path%compliance(of_free, of_held) = matmul(d, k)
+         path%compliance(of_held, of_free) = transpose(path%compliance(of_free, of_held))
+         path%compliance(of_free, of_free) = response(free, size(held) + 1:) + matmul( &
+            path%compliance(of_free, of_held), transpose(d))
+      end associate
+   contains
+      pure logical function is_row(row)
+         integer, intent(in) :: row
+
+         is_row = .false.
+         if (row > 0) is_row = is_held(row)
+      end function is_row
+   end subroutine find_compliance
+
+   !> The same where the contact points on their way alone hold a body, or are soft.
+   pure function released_compliance(system, sticking, path) result(compliance)
       type(contact_system_type), intent(in) :: system
       type(contact_workspace_type), intent(in) :: sticking   !! factors
       type(closing_path_type), intent(in) :: path
       real(dp) :: compliance(2*size(path%point), 2*size(path%point))   !! (2n, 2n) [length/force]
       integer :: rows(2*size(path%point)), i, j, n
-      real(dp) :: response(size(system%schur, 1), 2)
+      real(dp) :: response(system%schur%order, 2)
       logical :: moves(size(rows))
 
       n = size(path%point)
@@ -336,7 +414,7 @@ contains
             if (moves(i)) compliance(i, [j, n + j]) = response(rows(i), :)
          end do
       end do
-   end function compliance_of
+   end function released_compliance
 
    !> Goes on until the next contact points close, which have their laws then.
    pure subroutine go_to_event(path, laws)
@@ -429,7 +507,7 @@ contains
       call tangent%solve_free(taken_up)
       motion = 0.0_dp
       motion(tangent%rows%free, :) = taken_up(tangent%rows%free, :)
-      taken_up = load - product_of(system%schur, motion)
+      taken_up = load - system%schur%times(motion)
       associate (m => size(state%contact_state), n => size(load, 2))
          allocate (change%gap(m, n), change%force(m, n), source=0.0_dp)
          do k = 1, m
@@ -480,7 +558,7 @@ contains
    end subroutine add_slip
 
    !> The factors of a solution, the instants of closing following its load.
-   pure subroutine make_tangent(system, work, state, tangent, sound)
+   subroutine make_tangent(system, work, state, tangent, sound)
       type(contact_system_type), intent(in) :: system !! the reduced system
       type(contact_workspace_type), intent(in) :: work !! as its last solution left it
       type(contact_state_type), intent(in) :: state   !! that solution

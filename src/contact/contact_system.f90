@@ -44,15 +44,16 @@
 !> The answer of a single contact point is here too: contact states, Coulomb's law, eq. (1.6), with
 !> a largest friction, in increments, and the law of one that closes within an increment.
 module contact_system
-   use dense, only: least_squares, null_space
+   use dense, only: column_space, least_squares, lu_type, null_space, null_space_by_rows
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    use pressure_overclosure, only: pressure_overclosure_type
    use sum_lists, only: sum_list_type
+   use tail_matrix, only: tail_matrix_type
    implicit none
    private
-   public :: contact_system_type, contact_rows_type, rows_of, free_motions, is_driven, &
-      balanced_load, least_drive, contact_state_type, closing_law_type, is_capped, slip_force, &
+   public :: contact_system_type, contact_rows_type, rows_of, least_drive, &
+      contact_state_type, closing_law_type, is_capped, slip_force, &
       state_code, with_cap, contact_open, contact_slip, contact_stick, next_contact_state, &
       response_type, rounding_type
 
@@ -69,19 +70,27 @@ module contact_system
       integer, allocatable :: interface_start(:)
       integer, allocatable :: normal(:)           !! (m) row of d_n on the tail
       integer, allocatable :: tangent(:) !! (m) row of d_t, 0 without friction or held
-      real(dp), allocatable :: schur(:, :)        !! (tail, tail) S [force/length]
+      type(tail_matrix_type) :: schur             !! (tail, tail) S [force/length]
+      real(dp), allocatable :: own(:)             !! (tail) its diagonal [force/length]
       !> (m) of stuck contact points, not zero in cycles [length/force]
       real(dp), allocatable :: compliance(:)
       !> (m) normal stiffness of a contact point alone [force/length]
       real(dp), allocatable :: alone(:)
-      integer, allocatable :: link(:)             !! (links) rows of the links' forces
+      !> Rows of unknowns that no contact point acts on: forces of links, and face nodes
+      integer, allocatable :: link(:)
+      integer :: links = 0                        !! how many of them are forces of links
       real(dp), allocatable :: rigid(:, :)  !! (tail, q) unsupported rigid motions
-      real(dp), allocatable :: motion(:, :) !! (tail, q) the same, orthonormal
+      !> (tail, q) the same, orthonormal; on a sparse tail each of one body and of length 1
+      real(dp), allocatable :: motion(:, :)
+      type(lu_type) :: products             !! of motion^T motion, on a sparse tail
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
    contains
       procedure :: on_tail
       procedure :: add_arm
       procedure :: least_force
+      procedure :: free_motions
+      procedure :: is_driven
+      procedure :: balanced
    end type contact_system_type
 
    !> Rows of an active set.
@@ -164,7 +173,7 @@ contains
       logical :: sought(2, size(state%contact_state))
       integer :: k, tail
 
-      tail = size(system%schur, 1)
+      tail = system%schur%order
       allocate (rows%partner(tail), source=0)
       allocate (rows%share(tail), rows%spring(tail), source=0.0_dp)
       allocate (rows%own(tail), source=1.0_dp)
@@ -204,7 +213,7 @@ contains
    pure function on_tail(self, values)
       class(contact_system_type), intent(in) :: self
       real(dp), intent(in) :: values(:, :)            !! (2, m)
-      real(dp) :: on_tail(size(self%schur, 1))        !! (tail)
+      real(dp) :: on_tail(self%schur%order)        !! (tail)
       integer :: k
 
       on_tail = 0.0_dp
@@ -244,10 +253,8 @@ contains
    !> Where contact points move a body without strain, their S is rounding of what they have alone.
    pure real(dp) function least_force(self)
       class(contact_system_type), intent(in) :: self  !! [force]
-      integer :: i
 
-      least_force = self%least_length*maxval([0.0_dp, self%alone, (self%schur(i, i), &
-         i=1, size(self%schur, 1))])
+      least_force = self%least_length*maxval([0.0_dp, self%alone, self%own])
    end function least_force
 
    !> Forces, or columns of S, as they enter the rows.
@@ -272,54 +279,74 @@ contains
    end function combine
 
    !> The unsupported motions that no row of the active set holds, orthonormal on the free rows.
-   pure function free_motions(motion, free, spring, schur) result(unheld)
-      real(dp), intent(in) :: motion(:, :)   !! (tail, q) unsupported motions, orthonormal
-      integer, intent(in) :: free(:)         !! (n) rows that are sought
-      real(dp), intent(in) :: spring(:)      !! (tail) what holds free rows [force/length]
-      real(dp), intent(in) :: schur(:, :)    !! (tail, tail) S [force/length]
-      real(dp), allocatable :: unheld(:, :) !! (n, l)
-      logical :: supported(size(motion, 1))
+   pure function free_motions(self, rows) result(unheld)
+      class(contact_system_type), intent(in) :: self
+      type(contact_rows_type), intent(in) :: rows
+      real(dp), allocatable :: unheld(:, :) !! (free, l)
+      logical :: supported(self%schur%order)
       integer :: i
 
-      if (size(motion, 2) == 0) then
-         allocate (unheld(size(free), 0))
-         return
-      end if
-      supported = .true.
-      do i = 1, size(free)
-         supported(free(i)) = spring(free(i)) > slack*abs(schur(free(i), free(i)))
-      end do
-      associate (tail_rows => pack([(i, i=1, size(supported))], supported))
-         unheld = matmul(motion(free, :), null_space(motion(tail_rows, :)))
+      associate (free => rows%free)
+         if (size(self%motion, 2) == 0) then
+            allocate (unheld(size(free), 0))
+            return
+         end if
+         supported = .true.
+         do i = 1, size(free)
+            supported(free(i)) = rows%spring(free(i)) > slack*abs(self%own(free(i)))
+         end do
+         associate (tail_rows => pack([(i, i=1, size(supported))], supported))
+            if (.not. self%schur%is_sparse()) then
+               unheld = matmul(self%motion(free, :), null_space(self%motion(tail_rows, :)))
+            else
+               unheld = column_space(matmul(self%motion(free, :), null_space_by_rows( &
+                  self%motion(tail_rows, :))))
+            end if
+         end associate
       end associate
    end function free_motions
 
    !> Whether forces drive the motions, by more than rounding. Each row is judged by the terms
    !> that its own motion collects: those of another body may be far larger.
-   pure logical function is_driven(unheld, unbalanced, terms, least)
+   pure logical function is_driven(self, unheld, unbalanced, terms, least)
+      class(contact_system_type), intent(in) :: self
       real(dp), intent(in) :: unheld(:, :)   !! (n, l) orthonormal motions of the free rows
       real(dp), intent(in) :: unbalanced(:)  !! (l) forces along the motions [force]
       real(dp), intent(in) :: terms(:) !! (n) sums without signs of the forces' terms [force]
       real(dp), intent(in) :: least(:)       !! (n) drive that counts as none [force]
+      real(dp) :: collected(size(terms))
 
-      is_driven = any(abs(matmul(unheld, unbalanced)) > least + &
-         rounding*matmul(abs(matmul(unheld, transpose(unheld))), terms))
+      if (self%schur%is_sparse()) then
+         collected = matmul(abs(unheld), matmul(terms, abs(unheld)))
+      else
+         collected = matmul(abs(matmul(unheld, transpose(unheld))), terms)
+      end if
+      is_driven = any(abs(matmul(unheld, unbalanced)) > least + rounding*collected)
    end function is_driven
 
    !> A condensed load with the exact resultants along the unsupported motions. Temperatures and
    !> prescribed displacements have none; what the elimination makes of theirs is rounding.
-   function balanced_load(load, rigid, motion, resultant) result(balanced)
+   function balanced(self, load, resultant)
+      class(contact_system_type), intent(in) :: self
       real(dp), intent(in) :: load(:)        !! (tail) c [force]
-      real(dp), intent(in) :: rigid(:, :)    !! (tail, q) unsupported motions
-      real(dp), intent(in) :: motion(:, :)   !! (tail, q) the same, orthonormal
-      real(dp), intent(in) :: resultant(:)   !! (q) of the applied forces along `rigid` [force]
+      !> (q) of the applied forces along the rigid motions; absent for none [force]
+      real(dp), intent(in), optional :: resultant(:)
       real(dp) :: balanced(size(load))       !! (tail) [force]
+      real(dp) :: lacking(size(self%motion, 2), 1), wanted(size(self%rigid, 2))
 
       balanced = load
-      if (size(motion, 2) == 0) return
-      balanced = load - matmul(motion, matmul(load, motion)) + &
-         least_squares(transpose(rigid), resultant)
-   end function balanced_load
+      if (size(self%motion, 2) == 0) return
+      wanted = 0.0_dp
+      if (present(resultant)) wanted = resultant
+      if (.not. self%schur%is_sparse()) then
+         balanced = load - matmul(self%motion, matmul(load, self%motion)) + &
+            least_squares(transpose(self%rigid), wanted)
+      else
+         lacking(:, 1) = wanted/norm2(self%rigid, dim=1) - matmul(load, self%motion)
+         call self%products%solve(lacking)
+         balanced = load + matmul(self%motion, lacking(:, 1))
+      end if
+   end function balanced
 
    !> Forces along the unsupported motions that count as none.
    pure function least_drive(rigid, sums) result(least)

@@ -4,8 +4,8 @@
 module contact_workspace
    use contact_factors, only: contact_factors_type
    use contact_system, only: closing_law_type, contact_open, contact_rows_type, contact_slip, &
-      contact_state_type, contact_stick, contact_system_type, free_motions, is_capped, is_driven, &
-      rows_of, slip_force, state_code
+      contact_state_type, contact_stick, contact_system_type, is_capped, rows_of, slip_force, state_code
+   use dense, only: least_squares
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use friction_laws, only: friction_law_type
    use kinds, only: dp
@@ -48,6 +48,8 @@ module contact_workspace
       logical :: keeps_laws = .false.             !! they do not settle in this increment: they stay
       !> (tail) relative displacements that unconstrained motions are least from
       real(dp), allocatable :: anchor(:)
+      !> (tail, 2) displacements of the last solution on a sparse tail, and S times these
+      real(dp), allocatable :: known(:, :)
       type(contact_rows_type) :: rows             !! rows of the active set
       real(dp), allocatable :: unconstrained(:, :) !! (free, l) motions that the set leaves free
       real(dp), allocatable :: drive(:)           !! (l) forces along them that nothing takes up
@@ -93,8 +95,8 @@ contains
       work%friction = friction
       work%removed = removed
       work%soft = pressure_overclosure_type(size(initial_gap), overlap, area)
-      allocate (work%least_drive(size(system%schur, 1)), source=0.0_dp)
-      allocate (work%anchor(size(system%schur, 1)), source=0.0_dp)
+      allocate (work%least_drive(system%schur%order), source=0.0_dp)
+      allocate (work%anchor(system%schur%order), source=0.0_dp)
       allocate (work%closing(size(initial_gap)))
       allocate (work%idle(size(initial_gap)), source=.false.)
    end function new_workspace
@@ -149,6 +151,7 @@ contains
       call self%factor_set(system, state, error)
       if (allocated(error)) return
       d = 0.0_dp
+      if (allocated(self%known)) d(self%rows%free) = self%known(self%rows%free, 1)
       residual = 0.0_dp
       do k = 1, size(state%contact_state)
          if (state%contact_state(k) == contact_open) cycle
@@ -174,6 +177,8 @@ contains
       end if
       terms = abs(load)
       call find_forces(self, system, d, lambda, terms)
+      if (system%schur%is_sparse() .and. self%hold <= 0.0_dp) self%known = reshape([d, lambda], &
+         [size(d), 2])
       lambda = lambda - load
       self%largest_term = maxval(terms)
       call check_finite([d, lambda], 'displacements and forces of the contact', &
@@ -223,22 +228,22 @@ contains
       start_of_slip = merge(self%closing(k)%start, state%reference(k), self%closing(k)%acts)
    end function start_of_slip
 
-   !> S d, with the soft hold.
+   !> S d, with the soft hold. On a sparse tail face nodes have the displacements of their bodies,
+   !> beside which strains are small: forces go by the change from the last solution, so that they
+   !> have the same rounding from pass to pass.
    pure subroutine find_forces(self, system, d, lambda, terms)
       type(contact_workspace_type), intent(in) :: self
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: d(:)
       real(dp), intent(out) :: lambda(:)
       real(dp), intent(inout), optional :: terms(:)   !! receives the moduli of the terms of S d
-      integer :: i
+      real(dp) :: rest(size(d))
 
-      lambda = 0.0_dp
-      do i = 1, size(d)
-         ! Many are zero: contact points that touched at the start, without slip.
-         if (.not. abs(d(i)) > 0.0_dp) cycle
-         lambda = lambda + d(i)*system%schur(:, i)
-         if (present(terms)) terms = terms + abs(d(i))*abs(system%schur(:, i))
-      end do
+      call system%schur%add_product(d, lambda, terms)
+      if (allocated(self%known)) then
+         call system%schur%add_product(d - self%known(:, 1), rest)
+         lambda = self%known(:, 2) + rest
+      end if
       if (self%hold > 0.0_dp) lambda = lambda + &
          self%hold*matmul(system%motion, matmul(d, system%motion))
    end subroutine find_forces
@@ -250,13 +255,12 @@ contains
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:), d(:)
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: least(size(d)), terms(size(d))
-      integer :: i
+      real(dp) :: forces(size(d)), least(size(d)), terms(size(d))
 
-      terms = abs(load) + matmul(abs(system%schur), abs(d))
-      least = self%least_drive + [(unresolved*system%least_length*abs(system%schur(i, i)), &
-         i=1, size(d))]
-      self%driven = is_driven(self%unconstrained, self%drive, terms(self%rows%free), &
+      terms = abs(load)
+      call system%schur%add_product(d, forces, terms)
+      least = self%least_drive + unresolved*system%least_length*abs(system%own)
+      self%driven = system%is_driven(self%unconstrained, self%drive, terms(self%rows%free), &
          least(self%rows%free))
       if (self%driven) call set_error(error, status_no_convergence, &
          'the supports and the closed contact points do not hold what the loads drive')
@@ -264,12 +268,13 @@ contains
 
    !> Moves unconstrained bodies so that contact points slip least, and open ones stay at the
    !> anchor.
-   pure subroutine move_least(self, system, state, d)
+   subroutine move_least(self, system, state, d)
       type(contact_workspace_type), intent(in) :: self
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: state
       real(dp), intent(inout) :: d(:)
       real(dp) :: way(size(d))
+      logical :: counts(size(d))
       integer :: k
 
       way = 0.0_dp
@@ -284,7 +289,16 @@ contains
          end associate
       end do
       associate (free => self%rows%free)
-         d(free) = d(free) - matmul(self%unconstrained, matmul(way(free), self%unconstrained))
+         if (system%schur%is_sparse()) then
+            ! Face nodes follow; their way is no length.
+            counts = .true.
+            counts(system%link) = .false.
+            d(free) = d(free) - matmul(self%unconstrained, least_squares( &
+               spread(merge(1.0_dp, 0.0_dp, counts(free)), 2, size(self%unconstrained, 2))* &
+               self%unconstrained, way(free)))
+         else
+            d(free) = d(free) - matmul(self%unconstrained, matmul(way(free), self%unconstrained))
+         end if
       end associate
    end subroutine move_least
 
@@ -302,8 +316,7 @@ contains
       if (self%hold > 0.0_dp) then
          self%unconstrained = reshape([real(dp) ::], [size(self%rows%free), 0])
       else
-         self%unconstrained = free_motions(system%motion, self%rows%free, self%rows%spring, &
-            system%schur)
+         self%unconstrained = system%free_motions(self%rows)
       end if
       call self%factor_rows(system, singular)
       self%factorisations = self%factorisations + 1
@@ -386,12 +399,13 @@ contains
       type(contact_system_type), intent(in) :: system       !! the reduced system
       integer, intent(in) :: tail_rows(:)                   !! (n) rows that are not free
       real(dp) :: stiffness(size(tail_rows), size(tail_rows)) !! (n, n) [force/length]
-      real(dp) :: response(size(system%schur, 1), size(tail_rows))
+      real(dp), dimension(system%schur%order, size(tail_rows)) :: columns, response
 
-      response = -system%schur(:, tail_rows)
+      columns = system%schur%columns(tail_rows)
+      response = -columns
       call self%solve_free(response)
-      stiffness = system%schur(tail_rows, tail_rows) + &
-         matmul(system%schur(tail_rows, self%rows%free), response(self%rows%free, :))
+      stiffness = columns(tail_rows, :) + &
+         matmul(transpose(columns(self%rows%free, :)), response(self%rows%free, :))
    end function stiffness
 
    !> Whether the set factored last turns the path of contact states back: its determinant is
@@ -406,7 +420,7 @@ contains
       if (any(self%closing%acts)) return
       ! Every link and every unconstrained motion borders a positive matrix, which turns its sign.
       turns_back = self%factors%is_negative() .neqv. &
-         (mod(size(system%link) + size(self%unconstrained, 2), 2) == 1)
+         (mod(system%links + size(self%unconstrained, 2), 2) == 1)
    end function turns_back
 
 end module contact_workspace

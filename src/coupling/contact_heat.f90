@@ -12,13 +12,14 @@
 module contact_heat
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance
-   use dense, only: lu_type, product_of, tail_flops
+   use dense, only: lu_type, product_of
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
+   use tail_factors, only: tail_flops
    use temperature_laws, only: temperature_derivatives
    use text, only: to_text
    implicit none
@@ -58,8 +59,8 @@ contains
       real(dp), allocatable :: of_edge(:)
       integer :: k
 
-      associate (tail_index => bodies%jump_index, solver => heat%solver, &
-         tail => workspace%tail, work => workspace%record%work)
+      associate (tail_index => bodies%jump_index, tail => workspace%tail, &
+         work => workspace%record%work)
          of_point = data%equation%contact_diagonal(omega)
          history = data%equation%contact_history(omega)
          x = data%heat%condensed
@@ -73,14 +74,14 @@ contains
          end do
          if (allocated(workspace%edge%point)) then
             associate (j => tail_index(workspace%edge%point))
-               diagonal(j) = [(solver%schur(j(k), j(k)), k=1, size(j))]
+               diagonal(j) = [(heat%schur%full(j(k), j(k)), k=1, size(j))]
             end associate
          end if
-         call tail%refactor(solver%schur, diagonal)
+         call tail%refactor(heat%schur, diagonal)
          work%columns_again = work%columns_again + size(x) + 1 - tail%first_changed
-         work%columns_full = work%columns_full + solver%order
-         work%flops_again = work%flops_again + tail_flops(size(x), tail%first_changed)
-         work%flops_full = work%flops_full + solver%full_flops + tail_flops(size(x), 1)
+         work%columns_full = work%columns_full + bodies%thermal%map%equations
+         work%flops_again = work%flops_again + tail_flops(tail%first_row, tail%first_changed)
+         work%flops_full = work%flops_full + heat%full_flops() + tail_flops(tail%first_row, 1)
          if (allocated(workspace%edge%point)) then
             call solve_with_edge(bodies, data%heat%given, diagonal, workspace, x, of_edge)
          else
@@ -173,7 +174,7 @@ contains
    end function heat_by_omega
 
    !> Temperatures of the faces with given jumps, and the laws at these.
-   pure subroutine take_temperatures(bodies, heat, data, jump, workspace)
+   subroutine take_temperatures(bodies, heat, data, jump, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
@@ -185,10 +186,17 @@ contains
       associate (faces => workspace%faces)
          faces%mean = data%welded_mean
          faces%jump = jump
-         do k = 1, size(jump)
-            if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
-               heat%jump_mean(:, bodies%jump_index(k))*jump(k)
-         end do
+         if (heat%schur%is_sparse()) then
+            associate (by_tail => heat%means_of_tail(bodies, reshape(workspace%on_tail, &
+               [size(workspace%on_tail), 1])))
+               faces%mean = faces%mean + by_tail(:, 1)
+            end associate
+         else
+            do k = 1, size(jump)
+               if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
+                  heat%jump_mean(:, bodies%jump_index(k))*jump(k)
+            end do
+         end if
          if (allocated(workspace%friction%heat)) faces%mean = faces%mean + &
             matmul(heat%friction_mean, workspace%friction%parts(2, &
             :)*workspace%friction%heat)
@@ -262,6 +270,10 @@ contains
       logical :: singular
       integer :: k
 
+      if (heat%schur%is_sparse()) then
+         step = min(max(log_ratio(wanted, workspace%pass%omega), -longest_step), longest_step)
+         return
+      end if
       call jump_derivatives(bodies, data, workspace, jump, by_omega)
       associate (omega => workspace%pass%omega)
          rest(:, 1) = log_ratio(wanted, omega)
@@ -311,7 +323,7 @@ contains
       real(dp) :: jump(size(coordinate), size(of_tail, 2))
       integer :: k
 
-      change = product_of(heat%jump_mean, of_tail)
+      change = heat%means_of_tail(bodies, of_tail)
       if (present(friction_heat)) change = change + product_of(heat%friction_mean, &
          workspace%friction%entering_part(friction_heat))
       if (present(mean)) change = change + spread(mean, 2, size(change, 2))

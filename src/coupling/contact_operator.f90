@@ -84,7 +84,6 @@ contains
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: load(size(data%no_jump_load))                   ! condensed, with the jumps
-      integer :: k
       logical :: settles
 
       settles = allocated(workspace%pass%coordinate) .and. bodies%points%vary_with_temperature()
@@ -95,14 +94,10 @@ contains
          call check_finite(jump, 'temperature jumps', status_no_convergence, error)
       end if
       if (allocated(error)) return
-      load = data%no_jump_load
-      if (heat%forms_on_demand) then
-         load = load + heat%load_of_jumps(bodies, workspace%on_tail)
-      else
-         do k = 1, size(workspace%on_tail)
-            load = load + heat%jump_load(:, k)*workspace%on_tail(k)
-         end do
-      end if
+      associate (of_tail => heat%loads_of_tail(bodies, reshape(workspace%on_tail, &
+         [size(workspace%on_tail), 1])))
+         load = data%no_jump_load + of_tail(:, 1)
+      end associate
       if (allocated(workspace%friction%heat)) load = load + matmul(heat%friction_load, &
          workspace%friction%parts(2, :)*workspace%friction%heat)
       call solve_increment(bodies%equilibrium%contact, data%previous, load, workspace%contact, &

@@ -324,6 +324,7 @@ contains
       type(friction_tangent_type) :: of_friction
 
       is_unstable = .false.
+      if (heat%schur%is_sparse()) return
       associate (workspace => trial%workspace, next => trial%next, &
          graph => trial%workspace%pass%graph, opening => trial%workspace%pass%opening)
          call jump_derivatives(bodies, trial%data, workspace, next%jump, by_omega)
@@ -392,7 +393,7 @@ contains
             end if
             call workspace%tail%solve_columns(of_tail)
             call opening_changes(bodies, graph, tangent, solution%contact, &
-               product_of(heat%jump_load, of_tail), change)
+               heat%loads_of_tail(bodies, of_tail), change)
             change(:, 1) = slope*change(:, 1)
             if (bodies%points%vary_with_temperature()) change = change + &
                changes_by_temperature(bodies, heat, workspace, coordinate, of_tail)
@@ -411,7 +412,7 @@ contains
             of_tail = of_tail + product_of(heat%friction_heat, entering)
             call workspace%tail%solve_columns(of_tail)
             call opening_changes(bodies, workspace%pass%graph, tangent, solution%contact, &
-               product_of(heat%jump_load, of_tail) + product_of(heat%friction_load, entering), &
+               heat%loads_of_tail(bodies, of_tail) + product_of(heat%friction_load, entering), &
                change, of_contact)
             change(:, 1) = slope*change(:, 1)
             if (bodies%points%vary_with_temperature()) change = change + &

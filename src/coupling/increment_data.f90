@@ -11,8 +11,8 @@ module increment_data
    use load_histories, only: step_clock_type
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
-   use dense, only: tail_factors_type
    use heat_equation, only: heat_equation_type
+   use tail_factors, only: tail_factors_type
    use temperature_laws, only: face_temperatures_type
    implicit none
    private

@@ -88,7 +88,7 @@ contains
          if (.not. allocated(error)) return
          if (error%status /= status_no_convergence) return
          ! Newton's method needs the loads of all jumps.
-         if (heat%forms_on_demand) return
+         if (heat%is_on_demand(bodies)) return
          if (controls%method /= method_newton) then
             if (any(workspace%pass%graph%width > 0.0_dp)) then
                call append(workspace%record%notes, &

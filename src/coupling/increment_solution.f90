@@ -3,10 +3,11 @@
 module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
+   use controls, only: method_anderson, method_newton
    use contact_heat, only: settle_conductance, temperature_jumps
    use contact_operator, only: contact_operator_pass, law_conductance, law_pressure, touches, &
       unstrained_forces
-   use contact_system, only: balanced_load, contact_open, contact_slip, contact_state_type, &
+   use contact_system, only: contact_open, contact_slip, contact_state_type, &
       contact_system_type, least_drive
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
@@ -174,6 +175,9 @@ contains
          data%analysis = step%analysis
          data%start = step%start
          data%fixed_point = step%fixed_point
+         ! Of many interfaces no derivative is formed.
+         if (allocated(bodies%thermal%division%piece) .and. step%fixed_point%method == &
+            method_newton) data%fixed_point%method = method_anderson
          data%follows_branch = step%continuation%is_on
          data%kept_imbalance = before%keeps_imbalance
          data%displacement_scale = maxval(abs(before%displacement))
@@ -360,7 +364,7 @@ contains
             bodies%laws%overlap, bodies%points%weight)
          work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)))
          work%least_drive = least_drive(contact%rigid, matmul(abs(applied), abs(bodies%rigid)))
-         trial%data%no_jump_load = balanced_load(force%condensed, contact%rigid, contact%motion, &
+         trial%data%no_jump_load = contact%balanced(force%condensed, &
             matmul(applied, bodies%rigid))
          call check_finite([force%rhs(:, 1), trial%data%no_jump_load], 'forces', &
             status_no_convergence, error)
@@ -458,7 +462,7 @@ contains
       integer, intent(in) :: k
       real(dp), intent(in) :: gap, force
       real(dp) :: fraction
-      real(dp) :: response(size(system%schur, 1), 1), stiffness(1, 1)
+      real(dp) :: response(system%schur%order, 1), stiffness(1, 1)
 
       fraction = merge(1.0_dp, 0.0_dp, gap > 0.0_dp)
       if (gap <= 0.0_dp .or. force <= 0.0_dp) return

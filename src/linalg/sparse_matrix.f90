@@ -5,7 +5,8 @@ module sparse_matrix
    use kinds, only: dp
    implicit none
    private
-   public :: sparse_matrix_type, triplet_list_type, between_spaces, congruent, linear_combination
+   public :: sparse_matrix_type, triplet_list_type, between_spaces, congruent, linear_combination, &
+      symmetric
 
    !> A matrix in compressed rows, columns ascending in each row.
    type :: sparse_matrix_type
@@ -260,6 +261,20 @@ contains
 
       lower = in_order(product_of(transposed(t), product_of(a, t, .false.), .true.))
    end function congruent
+
+   !> Both triangles of a symmetric matrix.
+   pure function symmetric(lower) result(matrix)
+      type(sparse_matrix_type), intent(in) :: lower !! (n, n) lower triangle by rows
+      type(sparse_matrix_type) :: matrix            !! (n, n)
+      integer :: i, k
+
+      matrix = linear_combination(1.0_dp, lower, 1.0_dp, transposed(lower))
+      do i = 1, matrix%row_count
+         do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+            if (matrix%column(k) == i) matrix%value(k) = 0.5_dp*matrix%value(k)
+         end do
+      end do
+   end function symmetric
 
    !> S^T A T.
    pure function between_spaces(s, a, t) result(c)

@@ -3,7 +3,7 @@
 module shifted_conduction
    use contact_heat, only: temperature_jumps
    use controls, only: implicit_scheme
-   use dense, only: tail_factors_type
+   use tail_factors, only: tail_factors_type
    use errors, only: error_type
    use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type

@@ -125,7 +125,7 @@ contains
          heat => self%heat_reductions(self%in_use))
          film = heat%added
          if (solves_heat(analysis) .and. (heat%numbering /= bodies%thermal%numbering .or. &
-            .not. allocated(heat%solver))) then
+            .not. (allocated(heat%solver) .or. heat%schur%is_sparse()))) then
             call self%loads%move_to(self%control%next_instant(model), model)
             equation = heat_equation_type(model%steps(self%control%step)%scheme, &
                self%state%sources)
