@@ -156,7 +156,7 @@ contains
       do i = 1, size(self%piece)
          associate (own => self%piece(i))
             call take_part(matrix, own, place, lower)
-            if (own%solver%order == 0) then
+            if (.not. allocated(own%solver%row_start)) then
                if (allocated(rank)) deallocate (rank)
                call own%solver%analyse(lower, size(own%around), rank, error)
                if (allocated(error)) return
