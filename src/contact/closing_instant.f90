@@ -78,6 +78,10 @@ module closing_instant
       real(dp) :: left = 1.0_dp              !! 1 - f
       real(dp), allocatable :: y(:)          !! (2n) position less that at the end [length]
       real(dp), allocatable :: lambda(:)     !! (2n) forces at the end [force]
+      integer, allocatable :: held(:), free(:)  !! h and s: which of the 2n rows
+      !> (h, h) K, (s, h) D, (s, s) F and (s) springs that F has
+      real(dp), allocatable :: stiffness(:, :), lever(:, :), flexibility(:, :), spring(:)
+      logical :: is_loose = .false.          !! whether they alone may hold a body
       real(dp), allocatable :: compliance(:, :) !! (2n, 2n) C_R [length/force]
       real(dp), allocatable :: own(:)        !! (2n) diagonal of the first C_R [length/force]
       real(dp), allocatable :: law(:, :)     !! (2n, 2n) A [length/force]
@@ -225,19 +229,15 @@ contains
       end associate
       associate (kept => sticking%kept%compliance(number))
          if (.not. allocated(kept%matrix)) then
-            call find_compliance(system, state, sticking, path, error)
+            call find_stiffness(system, state, sticking, path, error)
             if (allocated(error)) return
-            if (allocated(path%compliance)) kept%matrix = path%compliance
+            call go_freely(system, path, laws)
+            call find_compliance(sticking, path)
+            if (all(path%is_open) .and. .not. path%is_loose) kept%matrix = path%compliance
          else
             path%compliance = kept%matrix
          end if
       end associate
-      if (.not. allocated(path%compliance)) then
-         call go_freely(system, state, sticking, path, laws, error)
-         if (allocated(error)) return
-         if (.not. any(path%is_open)) return
-         path%compliance = released_compliance(system, sticking, path)
-      end if
       call go_closing(sticking, path, laws)
    end subroutine find_path
 
@@ -261,82 +261,22 @@ contains
       end do
    end subroutine go_closing
 
-   !> Bodies that nothing holds go where their forces drive them, until they touch, in no time.
+   !> Forces and motions of the contact points on their way beside what holds all others. With h the
+   !> rows that the set of all holds and s those that it leaves free, of cycles and of soft faces,
+   !> unit displacements of h need the forces K and move s by D, unit forces on s move s by F.
    !> Error: a singular system.
-   subroutine go_freely(system, state, sticking, path, laws, error)
-      type(contact_system_type), intent(in) :: system
-      type(contact_state_type), intent(in) :: state
-      type(contact_workspace_type), intent(inout) :: sticking  !! factors at the end of the way out
-      type(closing_path_type), intent(inout) :: path
-      type(closing_law_type), intent(inout) :: laws(:)
-      type(error_type), allocatable, intent(out) :: error
-      type(contact_state_type) :: sticking_state
-      real(dp) :: forces(2, size(laws)), on_tail(system%schur%order)
-      real(dp) :: motion(size(path%y)), length
-      real(dp), allocatable :: drive(:)
-      integer :: i, n
-
-      n = size(path%point)
-      sticking_state = state
-      sticking_state%contact_state = merge(contact_stick, contact_open, sticking%kept%holds)
-      sticking_state%contact_state(path%point) = contact_open
-      do
-         call sticking%factor_set(system, sticking_state, error)
-         if (allocated(error)) return
-         if (size(sticking%unconstrained, 2) == 0 .or. .not. any(path%is_open)) return
-         forces = 0.0_dp
-         forces(1, path%point) = path%lambda(:n)
-         forces(2, path%point) = path%lambda(n + 1:)
-         on_tail = system%on_tail(forces)
-         associate (free => sticking%rows%free, unheld => sticking%unconstrained)
-            drive = matmul(on_tail(free), unheld)
-            if (norm2(drive) <= undriven*norm2(on_tail)) return
-            on_tail = 0.0_dp
-            on_tail(free) = -matmul(unheld, drive)/norm2(drive)
-         end associate
-         motion(:n) = on_tail(system%normal(path%point))
-         motion(n + 1:) = 0.0_dp
-         do i = 1, n
-            if (system%tangent(path%point(i)) > 0) motion(n + i) = &
-               on_tail(system%tangent(path%point(i)))
-         end do
-         associate (reaches => path%is_open .and. motion(:n) > nothing)
-            if (.not. any(reaches)) return
-            length = max(minval((path%last_gap - path%y(:n))/motion(:n), mask=reaches), 0.0_dp)
-         end associate
-         path%y = path%y + length*motion
-         do i = 1, n
-            if (.not. path%is_open(i)) cycle
-            laws(path%point(i))%start = laws(path%point(i))%start + length*motion(n + i)
-            if (path%last_gap(i) - path%y(i) > path%least_gap) cycle
-            path%is_open(i) = .false.
-            sticking_state%contact_state(path%point(i)) = contact_stick
-         end do
-      end do
-   end subroutine go_freely
-
-   !> Compliance of the contact points on their way, while all others that are closed hold their
-   !> positions, from what holds them all. Not found where the others do not hold the bodies, and
-   !> where contact points on their way are soft.
-   !>
-   !> With h the rows that the set holds and s those of cycles, which it leaves free, unit
-   !> displacements of h need the forces K and move s by D, and unit forces on s move s by F. The
-   !> compliance then is K^-1 on h, D K^-1 between both, F + D K^-1 D^T on s.
-   !> Error: a singular system.
-   subroutine find_compliance(system, state, sticking, path, error)
+   subroutine find_stiffness(system, state, sticking, path, error)
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: state
       type(contact_workspace_type), intent(inout) :: sticking
       type(closing_path_type), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: holding
-      integer, allocatable :: free(:), held(:), of_free(:), of_held(:)
-      real(dp), allocatable :: k(:, :), response(:, :), forces(:, :)
-      type(lu_type) :: lu
-      logical :: is_held(system%schur%order), singular
-      integer :: i, n
+      integer, allocatable :: free(:), held(:)
+      real(dp), allocatable :: columns(:, :), response(:, :)
+      logical :: is_held(0:system%schur%order)
+      integer :: i
 
-      if (any(sticking%soft%is_soft(path%point))) return
       holding = state
       holding%direction = 0
       holding%contact_state = merge(contact_stick, contact_open, sticking%kept%holds)
@@ -344,77 +284,142 @@ contains
          holding%contact_state = contact_slip
       call sticking%factor_set(system, holding, error)
       if (allocated(error)) return
-      n = size(path%point)
       is_held = .true.
+      is_held(0) = .false.
       is_held(sticking%rows%free) = .false.
       associate (rows => [system%normal(path%point), system%tangent(path%point)])
-         of_held = pack([(i, i=1, 2*n)], [(is_row(rows(i)), i=1, 2*n)])
-         of_free = pack([(i, i=1, 2*n)], [(rows(i) > 0, i=1, 2*n)] .and. .not. &
-            [(is_row(rows(i)), i=1, 2*n)])
-         held = rows(of_held)
-         free = rows(of_free)
+         path%held = pack([(i, i=1, size(rows))], is_held(rows))
+         path%free = pack([(i, i=1, size(rows))], rows > 0 .and. .not. is_held(rows))
+         held = rows(path%held)
+         free = rows(path%free)
       end associate
-      response = reshape([-system%schur%columns(held), 0.0_dp*system%schur%columns(free)], &
-         [system%schur%order, size(held) + size(free)])
+      columns = system%schur%columns(held)
+      allocate (response(size(columns, 1), size(held) + size(free)), source=0.0_dp)
+      response(:, :size(held)) = -columns
       do i = 1, size(free)
          response(free(i), size(held) + i) = 1.0_dp
       end do
       call sticking%solve_free(response)
-      where (spread(is_held, 2, size(response, 2))) response = 0.0_dp
-      forces = system%schur%times(response(:, :size(held)))
-      k = system%schur%block(held) + forces(held, :)
-      if (any(abs(system%motion(held, :)) > 0.0_dp)) then
-         if (size(null_space(k), 2) > 0) return
-      end if
-      call lu%factor(k, singular)
-      if (singular) return
-      k = 0.0_dp
-      do i = 1, size(held)
-         k(i, i) = 1.0_dp
+      do i = 1, size(response, 1)
+         if (is_held(i)) response(i, :) = 0.0_dp
       end do
-      call lu%solve(k)
-      allocate (path%compliance(2*n, 2*n), source=0.0_dp)
-      path%compliance(of_held, of_held) = k
-      associate (d => response(free, :size(held)))
-         path%compliance(of_free, of_held) = matmul(d, k)
-         path%compliance(of_held, of_free) = transpose(path%compliance(of_free, of_held))
-         path%compliance(of_free, of_free) = response(free, size(held) + 1:) + matmul( &
-            path%compliance(of_free, of_held), transpose(d))
-      end associate
-   contains
-      pure logical function is_row(row)
-         integer, intent(in) :: row
+      path%stiffness = columns(held, :) + matmul(transpose(columns), response(:, :size(held)))
+      path%lever = response(free, :size(held))
+      path%flexibility = response(free, size(held) + 1:)
+      path%spring = sticking%rows%spring(free)
+      path%is_loose = .false.
+      if (size(held) > 0) path%is_loose = any(abs(system%motion(held, :)) > 0.0_dp)
+   end subroutine find_stiffness
 
-         is_row = .false.
-         if (row > 0) is_row = is_held(row)
-      end function is_row
-   end subroutine find_compliance
-
-   !> The same where the contact points on their way alone hold a body, or are soft.
-   pure function released_compliance(system, sticking, path) result(compliance)
+   !> Bodies that nothing else holds go where their forces drive them, until they touch, in no time.
+   pure subroutine go_freely(system, path, laws)
       type(contact_system_type), intent(in) :: system
-      type(contact_workspace_type), intent(in) :: sticking   !! factors
-      type(closing_path_type), intent(in) :: path
-      real(dp) :: compliance(2*size(path%point), 2*size(path%point))   !! (2n, 2n) [length/force]
-      integer :: rows(2*size(path%point)), i, j, n
-      real(dp) :: response(system%schur%order, 2)
-      logical :: moves(size(rows))
+      type(closing_path_type), intent(inout) :: path
+      type(closing_law_type), intent(inout) :: laws(:)
+      real(dp) :: motion(size(path%y)), length
+      real(dp), allocatable :: drive(:), forces(:), unheld(:, :)
+      integer, allocatable :: open(:)
+      integer :: i, n
 
       n = size(path%point)
-      rows = [system%normal(path%point), system%tangent(path%point)]
-      moves = [path%is_open, path%is_open .and. system%tangent(path%point) > 0]
-      compliance = 0.0_dp
-      do j = 1, n
-         if (.not. path%is_open(j)) cycle
-         response = 0.0_dp
-         response(rows(j), 1) = 1.0_dp
-         if (moves(n + j)) response(rows(n + j), 2) = 1.0_dp
-         call sticking%solve_free(response)
-         do i = 1, 2*n
-            if (moves(i)) compliance(i, [j, n + j]) = response(rows(i), :)
+      do while (path%is_loose .and. any(path%is_open))
+         open = open_rows(path)
+         unheld = null_space(path%stiffness(open, open))
+         path%is_loose = size(unheld, 2) > 0
+         if (.not. path%is_loose) return
+         forces = path%lambda(path%held(open))
+         drive = matmul(forces, unheld)
+         if (norm2(drive) <= undriven*norm2(forces)) return
+         motion = 0.0_dp
+         motion(path%held(open)) = -matmul(unheld, drive)/norm2(drive)
+         motion(path%free) = matmul(path%lever, motion(path%held))
+         associate (reaches => path%is_open .and. motion(:n) > nothing)
+            if (.not. any(reaches)) return
+            length = max(minval((path%last_gap - path%y(:n))/motion(:n), mask=reaches), 0.0_dp)
+         end associate
+         path%y = path%y + length*motion
+         do i = 1, n
+            if (.not. path%is_open(i)) cycle
+            if (system%tangent(path%point(i)) > 0) laws(path%point(i))%start = &
+               laws(path%point(i))%start + length*motion(n + i)
+            if (path%last_gap(i) - path%y(i) <= path%least_gap) path%is_open(i) = .false.
          end do
       end do
-   end function released_compliance
+   end subroutine go_freely
+
+   !> Those of the held rows whose contact points are open.
+   pure function open_rows(path) result(open)
+      type(closing_path_type), intent(in) :: path
+      integer, allocatable :: open(:)
+      integer :: i
+
+      associate (n => size(path%point))
+         open = pack([(i, i=1, size(path%held))], [(path%is_open(modulo(path%held(i) - 1, n) + 1), &
+            i=1, size(path%held))])
+      end associate
+   end function open_rows
+
+   !> Compliance of the contact points that are open, relieved of all springs: K^-1 on h, D K^-1
+   !> between both, F + D K^-1 D^T on s. Motions that nothing holds or drives do not count.
+   subroutine find_compliance(sticking, path)
+      type(contact_workspace_type), intent(in) :: sticking
+      type(closing_path_type), intent(inout) :: path
+      real(dp), allocatable :: inverse(:, :)
+      integer, allocatable :: open(:), h(:)
+      real(dp) :: relieved(size(path%y), size(path%y))
+      integer :: i, n
+
+      n = size(path%point)
+      open = open_rows(path)
+      inverse = inverse_without(path%stiffness(open, open), path%is_loose)
+      relieved = 0.0_dp
+      h = path%held(open)
+      relieved(h, h) = inverse
+      associate (s => path%free, d => path%lever(:, open))
+         relieved(s, h) = matmul(d, inverse)
+         relieved(h, s) = transpose(relieved(s, h))
+         relieved(s, s) = path%flexibility + matmul(relieved(s, h), transpose(d))
+         do i = 1, size(s)
+            if (.not. path%is_open(modulo(s(i) - 1, n) + 1)) then
+               relieved(s(i), :) = 0.0_dp
+               relieved(:, s(i)) = 0.0_dp
+            else if (path%spring(i) > 0.0_dp) then
+               ! What is left of the compliance of the spring, where the spring alone holds a body,
+               ! is rounding: the contact point closes at once.
+               relieved = relieved + spread(relieved(:, s(i)), 2, 2*n)*spread(relieved(s(i), :), &
+                  1, 2*n)/max(1.0_dp/path%spring(i) - relieved(s(i), s(i)), &
+                  epsilon(1.0_dp)/path%spring(i))
+            end if
+         end do
+      end associate
+      path%compliance = relieved
+   end subroutine find_compliance
+
+   !> Inverse of a stiffness, on what its null space leaves where it has one.
+   function inverse_without(stiffness, is_loose) result(inverse)
+      real(dp), intent(in) :: stiffness(:, :)      ! (n, n)
+      logical, intent(in) :: is_loose
+      real(dp), allocatable :: inverse(:, :)       ! (n, n)
+      real(dp), allocatable :: motions(:, :), rows(:, :), unit(:, :)
+      type(lu_type) :: lu
+      logical :: singular
+      integer :: i, l, n
+
+      n = size(stiffness, 1)
+      allocate (motions(n, 0))
+      if (is_loose .and. n > 0) motions = null_space(stiffness)
+      l = size(motions, 2)
+      allocate (rows(n + l, n + l), unit(n + l, n), source=0.0_dp)
+      rows(:n, :n) = stiffness
+      rows(:n, n + 1:) = motions*maxval([tiny(1.0_dp), abs(stiffness)])
+      rows(n + 1:, :n) = transpose(rows(:n, n + 1:))
+      do i = 1, n
+         unit(i, i) = 1.0_dp
+      end do
+      call lu%factor(rows, singular)
+      call lu%solve(unit)
+      inverse = unit(:n, :)
+   end function inverse_without
 
    !> Goes on until the next contact points close, which have their laws then.
    pure subroutine go_to_event(path, laws)
