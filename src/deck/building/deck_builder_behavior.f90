@@ -16,7 +16,7 @@ contains
    !> Reads one *SURFACE BEHAVIOR.
    subroutine build_behavior(card, deck, law)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(overlap_law_type), intent(out) :: law           !! of hard faces, or of soft ones
       character(:), allocatable :: kind
 

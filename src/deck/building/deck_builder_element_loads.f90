@@ -8,8 +8,7 @@ module deck_builder_element_loads
    use element_kinds, only: axisymmetric, element_corner_count, side_nodes
    use kinds, only: dp
    use load_requests, only: request_type
-   use mesh, only: mesh_type, surface_type
-   use model, only: model_type
+   use mesh, only: surface_type
    use spelling, only: known_choices
    use steps, only: centrifugal_round, load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_film_sink, load_gravity, load_pressure, &
@@ -24,22 +23,20 @@ module deck_builder_element_loads
 contains
 
    !> Takes one data card.
-   subroutine build_element_load(keyword, data, request, film_amplitude, model, deck)
+   subroutine build_element_load(keyword, data, request, film_amplitude, deck)
       character(*), intent(in) :: keyword                  !! DLOAD, DFLUX or FILM
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
-      type(model_type), intent(in) :: model                !! mesh and sets
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: label, labels
       real(dp) :: values(9)
       integer :: surface
       logical :: known, valid
 
       known = .true.
-      surface = named_surface(data, deck, model%mesh)
-      if (surface == 0) call deck%need_elements(data, 1, model%mesh%element_sets, &
-         request%target_type, known)
+      surface = named_surface(data, deck)
+      if (surface == 0) call deck%need_elements(data, 1, request%target_type, known)
       call need_field(data, 2, 'label of the load', deck, label, known)
       if (len(label) == 0) return
       label = to_upper(label)
@@ -63,13 +60,13 @@ contains
       request%component = 1
       if (scan(label(2:), '1234') == 1) then
          request%component = index('1234', label(2:2))
-         call check_face(data, request, model, deck, known)
+         call check_face(data, request, deck, known)
       end if
-      if (label == 'BR' .or. label == 'BZ') call check_axis(data, request, model%mesh, deck, known)
+      if (label == 'BR' .or. label == 'BZ') call check_axis(data, request, deck, known)
       call read_values(data, '@element or set', label, deck, values, valid)
       if (.not. (known .and. valid)) return
       if (surface > 0) then
-         call add_on_faces(label, values, model%mesh%surfaces(surface), request, film_amplitude, &
+         call add_on_faces(label, values, deck%mesh%surfaces(surface), request, film_amplitude, &
             deck)
       else if (label == 'GRAV') then
          call add_gravity(data, values, request, deck)
@@ -81,17 +78,16 @@ contains
    end subroutine build_element_load
 
    !> Index of the surface that a card names in place of an element or a set; else 0.
-   integer function named_surface(data, deck, mesh)
+   integer function named_surface(data, deck)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(in) :: deck
-      type(mesh_type), intent(in) :: mesh
       integer :: set
 
       named_surface = deck%surfaces%find(data%text(1))
       if (.not. data%has(1)) named_surface = 0
       set = deck%element_index%sets%find(data%text(1))
       if (set == 0) return
-      if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
+      if (.not. deck%mesh%element_sets(set)%of_lines) named_surface = 0
    end function named_surface
 
    !> Loads of one kind on all faces of a surface.
@@ -101,7 +97,7 @@ contains
       type(surface_type), intent(in) :: surface            !! the faces
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
-      type(deck_type), intent(inout) :: deck               !! receives the requests
+      type(deck_type), intent(inout) :: deck
       integer :: i
 
       request%set = 0
@@ -150,7 +146,7 @@ contains
       character(*), intent(in) :: label                    !! what was written
       character(*), intent(in) :: labels                   !! what is known, separated by slashes
       type(data_card_type), intent(in) :: data             !! the card; the label is field 2
-      type(deck_type), intent(inout) :: deck               !! receives the error
+      type(deck_type), intent(inout) :: deck
       type(string_type), allocatable :: names(:)
       integer :: first, slash
 
@@ -166,23 +162,22 @@ contains
    end subroutine report_label
 
    !> Every element of the request has the side.
-   subroutine check_face(data, request, model, deck, valid)
+   subroutine check_face(data, request, deck, valid)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer, allocatable :: elements(:)
       integer :: i
 
       if (.not. valid) return
-      elements = request%members(model%mesh%element_sets)
+      elements = request%members(deck%mesh%element_sets)
       do i = 1, size(elements)
          if (.not. deck%element_valid(elements(i))) cycle
-         associate (sides => element_corner_count(model%mesh%element_kind(elements(i))))
+         associate (sides => element_corner_count(deck%mesh%element_kind(elements(i))))
             if (request%component <= sides) cycle
-            call deck%error(data%place(2), 'element '// &
-               to_text(model%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
+            call deck%error(data%place(2), 'element '//to_text(deck%mesh%element_number(elements( &
+               i)))//' has '//to_text(sides)//' sides')
          end associate
          valid = .false.
          return
@@ -190,17 +185,16 @@ contains
    end subroutine check_face
 
    !> Every element of the request is axisymmetric.
-   subroutine check_axis(data, request, mesh, deck, valid)
+   subroutine check_axis(data, request, deck, valid)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(in) :: request
-      type(mesh_type), intent(in) :: mesh
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer, allocatable :: elements(:)
 
       if (.not. valid) return
-      elements = request%members(mesh%element_sets)
-      valid = all(mesh%element_plane(elements) == axisymmetric)
+      elements = request%members(deck%mesh%element_sets)
+      valid = all(deck%mesh%element_plane(elements) == axisymmetric)
       if (.not. valid) call deck%error(data%place(2), 'BR and BZ are forces on axisymmetric '// &
          'elements; those of a plane are BX and BY')
    end subroutine check_axis
@@ -247,7 +241,7 @@ contains
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: values(:)                    ! (fields)
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck
       real(dp) :: vector(2)
       integer :: i
 
@@ -268,7 +262,7 @@ contains
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: values(:)                    ! (fields)
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck
       real(dp) :: point(3), direction(3), loads(4)
       integer :: i
 
@@ -298,13 +292,12 @@ contains
    end subroutine add_rotation
 
    !> Takes one data card.
-   subroutine build_surface_load(keyword, data, request, film_amplitude, model, deck)
+   subroutine build_surface_load(keyword, data, request, film_amplitude, deck)
       character(*), intent(in) :: keyword                  !! DSLOAD, DSFLUX or SFILM
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
-      type(model_type), intent(in) :: model                !! surfaces
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: advice, label, labels
       real(dp) :: values(9), vector(2)
       integer :: i, surface
@@ -313,7 +306,7 @@ contains
       advice = 'load its reference node by *CLOAD'
       if (keyword /= 'DSLOAD') advice = 'prescribe the temperature of its reference node'
       call deck%need_surface(data, 1, 'surface', surface)
-      call need_faces(model%mesh, data%place(1), advice, deck, surface)
+      call need_faces(data%place(1), advice, deck, surface)
       labels = 'P/TRVEC/TRSHR'
       if (keyword == 'DSFLUX') labels = 'S'
       if (keyword == 'SFILM') labels = 'F'
@@ -334,20 +327,19 @@ contains
          call plane_vector(data, 3, values(3:6), deck, vector)
          do i = 1, 2
             request%value = vector(i)
-            call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, deck)
+            call add_faces(deck%mesh%surfaces(surface), request, 2, i - 2, deck)
          end do
       case ('TRSHR')
          call plane_vector(data, 3, values(3:6), deck, vector)
-         call add_shear(model%mesh, model%mesh%surfaces(surface), vector, data, request, deck)
+         call add_shear(deck%mesh%surfaces(surface), vector, data, request, deck)
       case default
-         call add_on_faces(label, values, model%mesh%surfaces(surface), request, film_amplitude, &
+         call add_on_faces(label, values, deck%mesh%surfaces(surface), request, film_amplitude, &
             deck)
       end select
    end subroutine build_surface_load
 
    !> Tractions of one magnitude along straight sides, in the sense of a vector.
-   subroutine add_shear(mesh, surface, vector, data, request, deck)
-      type(mesh_type), intent(in) :: mesh
+   subroutine add_shear(surface, vector, data, request, deck)
       type(surface_type), intent(in) :: surface
       real(dp), intent(in) :: vector(2)                    ! of that magnitude
       type(data_card_type), intent(in) :: data
@@ -360,19 +352,20 @@ contains
       do i = 1, size(surface%faces, 2)
          associate (element => surface%faces(1, i), face => surface%faces(2, i))
             if (.not. deck%element_valid(element)) cycle
-            nodes = mesh%element_nodes(side_nodes(mesh%element_kind(element), face), element)
+            nodes = deck%mesh%element_nodes(side_nodes(deck%mesh%element_kind(element), face), &
+               element)
             n = size(nodes)
-            chord = mesh%coordinates(:, nodes(n)) - mesh%coordinates(:, nodes(1))
+            chord = deck%mesh%coordinates(:, nodes(n)) - deck%mesh%coordinates(:, nodes(1))
             chord = chord/norm2(chord)
-            bow = mesh%coordinates(:, nodes(n - 1)) - mesh%coordinates(:, nodes(1))
+            bow = deck%mesh%coordinates(:, nodes(n - 1)) - deck%mesh%coordinates(:, nodes(1))
             along = dot_product(chord, vector)
             if (abs(chord(1)*bow(2) - chord(2)*bow(1)) > straight*norm2(bow)) then
                call deck%error(data%place(2), 'TRSHR acts on straight sides, but that of '// &
-                  'element '//to_text(mesh%element_number(element))//' is curved; give TRVEC')
+                  'element '//to_text(deck%mesh%element_number(element))//' is curved; give TRVEC')
                return
             else if (abs(along) <= straight*norm2(vector) .and. norm2(vector) > 0.0_dp) then
                call deck%error(data%place(4), 'the direction is normal to the side of element '// &
-                  to_text(mesh%element_number(element)))
+                  to_text(deck%mesh%element_number(element)))
                return
             end if
             do j = 1, 2

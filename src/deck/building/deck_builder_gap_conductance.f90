@@ -31,7 +31,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       logical, intent(in) :: is_open                       !! whether it is over the clearance
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives the open or the closed side
       type(gap_table_type) :: table
       character(:), allocatable :: title
@@ -167,7 +167,7 @@ contains
    subroutine join_gap_conductance(table, name, deck, law)
       type(conductance_law_type), intent(in) :: table      !! what build_gap_conductance made
       character(*), intent(in) :: name                     !! name of the surface interaction
-      type(deck_type), intent(inout) :: deck               !! receives notes
+      type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives the closed side
 
       if (table%closed_kind == law_none) return
@@ -190,7 +190,7 @@ contains
    subroutine read_table(card, noun, deck, table)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(gap_table_type), intent(out) :: table
       character(:), allocatable :: layout
       real(dp) :: values(3, size(card%data))
@@ -293,7 +293,7 @@ contains
       character(*), intent(in) :: name                     !! name of the surface interaction
       character(*), intent(in) :: noun                     !! gaps, pressures or temperatures
       real(dp), intent(in) :: abscissas(:)                 !! (rows) ascending
-      type(deck_type), intent(inout) :: deck               !! receives the note
+      type(deck_type), intent(inout) :: deck
 
       call deck%note(what//' of '//name//': the table holds its end values outside the '//noun// &
          ' '//to_text(abscissas(1))//' to '//to_text(abscissas(size(abscissas))))

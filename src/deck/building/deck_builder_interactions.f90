@@ -17,7 +17,6 @@ module deck_builder_interactions
    use deck_structure, only: card_count
    use friction_laws, only: friction_law_type, rough_coefficient
    use kinds, only: dp
-   use model, only: model_type
    use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
       radiation_ends
    use text, only: to_text
@@ -31,14 +30,13 @@ module deck_builder_interactions
 contains
 
    !> Builds all surface interactions; a law belongs to the last *SURFACE INTERACTION before it.
-   subroutine build_interactions(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors and warnings
-      type(model_type), intent(inout) :: model             !! receives the interactions
+   subroutine build_interactions(deck)
+      type(deck_type), intent(inout) :: deck
       type(interaction_type) :: interaction
       type(place_type) :: law_place
       integer :: k, n, errors
 
-      allocate(model%interactions(card_count(deck%cards, 'SURFACE INTERACTION')))
+      allocate(deck%model%interactions(card_count(deck%cards, 'SURFACE INTERACTION')))
       n = 0
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
@@ -48,14 +46,14 @@ contains
                errors = deck%error_count()
                n = n + 1
                call take_name(deck%cards, k, 'surface interaction', deck%interactions, &
-                  deck%deck_report_type, model%interactions(n)%name)
+                  deck%deck_report_type, deck%model%interactions(n)%name)
                law_place = card%place
                call ignore_thickness(card, deck)
-               interaction = model%interactions(n)
-               call build_laws(k, model, deck, interaction, law_place)
-               model%interactions(n) = interaction
+               interaction = deck%model%interactions(n)
+               call build_laws(k, deck, interaction, law_place)
+               deck%model%interactions(n) = interaction
                if (deck%error_count() > errors .or. card%flawed) cycle
-               call check_law(card, law_place, model%interactions(n), deck)
+               call check_law(card, law_place, deck%model%interactions(n), deck)
             case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'GAP HEAT GENERATION', &
                'GAP RADIATION', 'SURFACE BEHAVIOR')
                if (n == 0 .and. len(card%meant) == 0) then
@@ -84,9 +82,8 @@ contains
    end subroutine ignore_thickness
 
    !> Reads the laws behind one *SURFACE INTERACTION.
-   subroutine build_laws(place, model, deck, interaction, law_place)
+   subroutine build_laws(place, deck, interaction, law_place)
       integer, intent(in) :: place
-      type(model_type), intent(in) :: model          ! with its mesh
       type(deck_type), intent(inout) :: deck
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
@@ -114,11 +111,11 @@ contains
                call build_behavior(card, deck, interaction%overlap)
             case ('GAP HEAT GENERATION')
                call count_once(k, heat, deck)
-               call build_friction_heat(card, model, deck, interaction%heat)
+               call build_friction_heat(card, deck, interaction%heat)
             case ('GAP RADIATION')
                call count_once(k, radiation, deck)
             case ('GAP LAW')
-               call build_gap_law(card, interaction%name, model%constants, deck, interaction%law)
+               call build_gap_law(card, interaction%name, deck, interaction%law)
             case ('GAP CONDUCTANCE')
                if (is_of_clearance(card, has_pressure(deck%cards, place))) then
                   call build_gap_conductance(card, interaction%name, .true., deck, interaction%law)
@@ -131,8 +128,8 @@ contains
          end associate
       end do
       call join_gap_conductance(table, interaction%name, deck, interaction%law)
-      if (radiation > 0) call build_gap_radiation(deck%cards%keywords(radiation), model%constants, &
-         deck, interaction%law)
+      if (radiation > 0) call build_gap_radiation(deck%cards%keywords(radiation), deck, &
+         interaction%law)
    end subroutine build_laws
 
    !> Whether the laws behind a *SURFACE INTERACTION have a *GAP CONDUCTANCE, PRESSURE.
@@ -165,7 +162,7 @@ contains
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
    subroutine build_friction(card, deck, friction)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(friction_law_type), intent(out) :: friction
 
       call take_parameter(card, 'TAUMAX', deck, friction%largest_shear)

@@ -35,11 +35,10 @@ module deck_builder_loads
 contains
 
    !> Takes one card of loads or prescribed values.
-   subroutine build_load_card(card, step, model, deck)
+   subroutine build_load_card(card, step, deck)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
-      type(model_type), intent(inout) :: model   !! mesh, sets, amplitudes; the step takes OP=NEW
-      type(deck_type), intent(inout) :: deck     !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck
       type(request_type) :: request
       character(:), allocatable :: kind
       integer :: j, errors, film_amplitude
@@ -49,7 +48,7 @@ contains
       request%step = step
       film_amplitude = 0
       kind = choice(card, 'TYPE', 'DISPLACEMENT', deck, 'DISPLACEMENT')
-      call read_operation(card, step, model, deck)
+      call read_operation(card, step, deck)
       call deck%take_named(card, 'AMPLITUDE', 'amplitude', request%amplitude)
       request%keeps = card%has('FIXED')
       if (request%keeps .and. request%amplitude > 0) call deck%error(card%place_of('AMPLITUDE'), &
@@ -57,28 +56,29 @@ contains
          'one of the two out')
       call deck%take_named(card, 'FILM AMPLITUDE', 'amplitude', film_amplitude)
       if (film_amplitude > 0) then
-         associate (film => model%amplitudes(film_amplitude))
+         associate (film => deck%model%amplitudes(film_amplitude))
             if (any(film%values < 0.0_dp)) call deck%error(card%place_of('FILM AMPLITUDE'), &
                'amplitude '//film%name//' becomes negative ('//to_text(minval(film%values))// &
                '), but a film coefficient must not; give factors of at least 0')
          end associate
       end if
-      if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, model%steps(step)%ramped, deck)
+      if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, &
+         deck%model%steps(step)%ramped, deck)
       do j = 1, size(card%data)
          request%place = card%data(j)%place(1)
          if (card%name == 'BOUNDARY') then
-            call build_boundary(card%data(j), request, model, deck)
+            call build_boundary(card%data(j), request, deck)
             cycle
          end if
          deck%load_cards = deck%load_cards + 1
          request%card = deck%load_cards
          select case (card%name)
          case ('DSLOAD', 'DSFLUX', 'SFILM')
-            call build_surface_load(card%name, card%data(j), request, film_amplitude, model, deck)
+            call build_surface_load(card%name, card%data(j), request, film_amplitude, deck)
          case ('DLOAD', 'DFLUX', 'FILM')
-            call build_element_load(card%name, card%data(j), request, film_amplitude, model, deck)
+            call build_element_load(card%name, card%data(j), request, film_amplitude, deck)
          case default
-            call build_nodal_load(card%name, card%data(j), request, model, deck)
+            call build_nodal_load(card%name, card%data(j), request, deck)
          end select
       end do
       if (card%name == 'BOUNDARY' .and. (card%flawed .or. deck%error_count() > errors)) then
@@ -87,10 +87,9 @@ contains
    end subroutine build_load_card
 
    !> OP=NEW on the first card of its keyword in a step ends what former steps gave by it.
-   subroutine read_operation(card, step, model, deck)
+   subroutine read_operation(card, step, deck)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step
-      type(model_type), intent(inout) :: model
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: operation
       logical :: first
@@ -104,7 +103,7 @@ contains
             card%name//' of a step')
          return
       end if
-      call end_loads(card%name, model%steps(step))
+      call end_loads(card%name, deck%model%steps(step))
    end subroutine read_operation
 
    pure subroutine end_loads(keyword, step)
@@ -163,11 +162,10 @@ contains
    end subroutine note_film
 
    !> *CLOAD, *CFLUX: node or set, degree of freedom, value; *TEMPERATURE: node or set, value.
-   subroutine build_nodal_load(keyword, data, request, model, deck)
+   subroutine build_nodal_load(keyword, data, request, deck)
       character(*), intent(in) :: keyword
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       real(dp) :: given(3)
       integer :: dof
@@ -188,15 +186,15 @@ contains
          call read_row(data, '@node or set/#degree of freedom/power', deck, given, valid)
          request%value = given(3)
       end select
-      call deck%need_nodes(data, 1, model%mesh%node_sets, request%target_type, valid)
+      call deck%need_nodes(data, 1, request%target_type, valid)
       dof = 1
       if (keyword /= 'TEMPERATURE') dof = nint(given(2))
       if (.not. valid) return
       request%component = dof
-      if (keyword == 'CLOAD') request%component = place_in_plane(request, model, dof)
+      if (keyword == 'CLOAD') request%component = place_in_plane(request, deck%model, dof)
       if (keyword == 'CLOAD' .and. (dof == dof_rotation .or. (dof == dof_turn .and. &
-         names_rotation(request, model)))) then
-         call add_moment(data, request, model, deck)
+         names_rotation(request, deck%model)))) then
+         call add_moment(data, request, deck)
       else if (keyword == 'CLOAD' .and. all(request%component /= [1, 2])) then
          call deck%error(data%place(2), 'a force acts on degree of freedom 1 or 2')
       else if (keyword == 'CFLUX' .and. dof /= dof_temperature) then
@@ -208,35 +206,32 @@ contains
    end subroutine build_nodal_load
 
    !> Puts a moment on the rotation of the reference node of a coupling.
-   subroutine add_moment(data, request, model, deck)
+   subroutine add_moment(data, request, deck)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       integer :: i, node
 
-      node = single_node(request, model)
-      i = findloc((model%couplings%reference == node .or. model%couplings%rotation_node == node) &
-         .and. .not. model%couplings%is_section(), &
-         .true., dim=1)
+      node = single_node(request, deck%model)
+      i = findloc((deck%model%couplings%reference == node .or. deck%model%couplings%rotation_node &
+         == node) .and. .not. deck%model%couplings%is_section(), .true., dim=1)
       if (i == 0 .or. node == 0) then
          call deck%error(data%place(2), 'a moment acts on the reference node of a *COUPLING or '// &
             '*RIGID BODY; forces act on 1 and 2')
          return
       end if
       request%set = 0
-      request%item = model%couplings(i)%rotation
+      request%item = deck%model%couplings(i)%rotation
       request%component = 1
       call deck%loads%add(request)
    end subroutine add_moment
 
    !> Takes one data card: node or set, first and last degree of freedom, value; or node or set and
    !> the name of a support. 0 on the degrees 3 to 6, which a plane does not have, is ignored.
-   subroutine build_boundary(data, request, model, deck)
+   subroutine build_boundary(data, request, deck)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, place
-      type(model_type), intent(in) :: model                !! mesh and its sets
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck
       integer :: first, last, dof, support
       logical :: valid
 
@@ -245,9 +240,9 @@ contains
          deck%boundaries%items(deck%boundaries%count)%card + 1
       valid = .true.
       request%value = 0.0_dp
-      call deck%need_nodes(data, 1, model%mesh%node_sets, request%target_type, valid)
+      call deck%need_nodes(data, 1, request%target_type, valid)
       if (valid) then
-         if (place_in_plane(request, model, 1) == 0) then
+         if (place_in_plane(request, deck%model, 1) == 0) then
             call deck%error(data%place(1), 'these nodes have axes by *TRANSFORM that differ in '// &
                'which one is out of the plane; name the nodes of each on a card')
             return
@@ -256,7 +251,7 @@ contains
       support = findloc(support_names == to_upper(data%text(2)), .true., dim=1)
       if (support > 0) then
          call check_extra(data, 2, 'node or set, '//trim(support_names(support)), deck)
-         if (valid) call hold(trim(support_degrees(support)), request, model, deck)
+         if (valid) call hold(trim(support_degrees(support)), request, deck)
          return
       end if
       call check_name(data, deck, valid)
@@ -264,15 +259,15 @@ contains
       call read_degrees(data, deck, first, last, request%value, valid)
       if (.not. valid) return
       do dof = first, last
-         if (is_rotation(dof, request, model)) then
-            call add_rotations(request, model, deck)
+         if (is_rotation(dof, request, deck%model)) then
+            call add_rotations(request, deck)
             call warn_of_turn(data, request%value, deck)
             cycle
-         else if (names_rotation(request, model)) then
+         else if (names_rotation(request, deck%model)) then
             call deck%note(out_of_plane)
             cycle
          end if
-         request%component = place_in_plane(request, model, dof)
+         request%component = place_in_plane(request, deck%model, dof)
          select case (request%component)
          case (1, 2, dof_temperature)
             call deck%boundaries%add(request)
@@ -283,7 +278,7 @@ contains
                return
             end if
             call deck%note(out_of_plane)
-            if (place_in_plane(request, model, first) /= 3) cycle
+            if (place_in_plane(request, deck%model, first) /= 3) cycle
             if (first == 3 .and. dof == last) call deck%warning(data%place(2), 'degree of '// &
                'freedom 3 does not exist in a plane model: this support is ignored')
          case default
@@ -347,18 +342,17 @@ contains
    end subroutine check_name
 
    !> Requests those of some degrees of freedom at 0 that the plane has.
-   subroutine hold(degrees, request, model, deck)
+   subroutine hold(degrees, request, deck)
       character(*), intent(in) :: degrees                  ! a digit for each
       type(request_type), intent(inout) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       integer :: dof, i
 
       do i = 1, len(degrees)
          dof = index('123456', degrees(i:i))
-         request%component = place_in_plane(request, model, dof)
-         if (dof == dof_rotation .and. turns(request, model)) then
-            call add_rotations(request, model, deck)
+         request%component = place_in_plane(request, deck%model, dof)
+         if (dof == dof_rotation .and. turns(request, deck%model)) then
+            call add_rotations(request, deck)
          else if (request%component > 2) then
             call deck%note(out_of_plane)
          else
@@ -439,9 +433,8 @@ contains
    end subroutine warn_of_turn
 
    !> Requests the rotations of reference nodes.
-   subroutine add_rotations(request, model, deck)
+   subroutine add_rotations(request, deck)
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       type(request_type) :: rotation
       integer :: i
@@ -449,11 +442,11 @@ contains
       rotation = request
       rotation%set = 0
       rotation%component = 1
-      do i = 1, size(model%couplings)
-         if (model%couplings(i)%is_section()) cycle
-         if (.not. (is_target(model%couplings(i)%reference, request, model) .or. &
-            is_target(model%couplings(i)%rotation_node, request, model))) cycle
-         rotation%item = model%couplings(i)%rotation
+      do i = 1, size(deck%model%couplings)
+         if (deck%model%couplings(i)%is_section()) cycle
+         if (.not. (is_target(deck%model%couplings(i)%reference, request, deck%model) .or. &
+            is_target(deck%model%couplings(i)%rotation_node, request, deck%model))) cycle
+         rotation%item = deck%model%couplings(i)%rotation
          call deck%boundaries%add(rotation)
       end do
    end subroutine add_rotations

@@ -15,8 +15,6 @@ module deck_builder_materials
    use kinds, only: dp
    use materials, only: anisotropic, engineering, isotropic, material_type, orientation_type, &
       orthotropic, property_keywords, property_type, set_property
-   use mesh, only: mesh_type
-   use model, only: model_type
    use text, only: to_text
    implicit none
    private
@@ -39,13 +37,12 @@ module deck_builder_materials
 contains
 
    !> Builds all materials; a property belongs to the last *MATERIAL before it.
-   subroutine build_materials(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives places and notes and errors
-      type(model_type), intent(inout) :: model             !! receives the materials
+   subroutine build_materials(deck)
+      type(deck_type), intent(inout) :: deck
       integer :: k, n
 
       n = card_count(deck%cards, 'MATERIAL')
-      allocate(model%materials(n), deck%material_place(n))
+      allocate(deck%model%materials(n), deck%material_place(n))
       n = 0
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
@@ -54,7 +51,7 @@ contains
                n = n + 1
                deck%material_place(n) = card%place
                call take_name(deck%cards, k, 'material', deck%materials, deck%deck_report_type, &
-                  model%materials(n)%name)
+                  deck%model%materials(n)%name)
                if (.not. deck%has_lost('material')) cycle
                call deck%lose('*ELASTIC')   ! another material may have these
                call deck%lose('*CONDUCTIVITY')
@@ -64,7 +61,7 @@ contains
                   if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')
                else if (size(card%data) > 0) then
-                  call build_property(card, deck, model%materials(n))
+                  call build_property(card, deck, deck%model%materials(n))
                end if
             case default
                cycle
@@ -340,7 +337,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(property_type), intent(in) :: property         !! as read
       integer, intent(in) :: which(:)                     !! indexes of those that must be positive
-      type(deck_type), intent(inout) :: deck              !! receives errors
+      type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid                     !! false where one is not
       integer :: i, row
 
@@ -356,19 +353,18 @@ contains
    end subroutine refuse_not_positive
 
    !> Builds all orientations.
-   subroutine build_orientations(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives their names and errors
-      type(model_type), intent(inout) :: model             !! receives the orientations
+   subroutine build_orientations(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       integer :: n
 
       places = cards_of(deck%cards, 'ORIENTATION')
-      allocate(model%orientations(size(places)))
+      allocate(deck%model%orientations(size(places)))
       do n = 1, size(places)
          associate (card => deck%cards%keywords(places(n)))
             call take_name(deck%cards, places(n), 'orientation', deck%orientations, &
-               deck%deck_report_type, model%orientations(n)%name)
-            if (size(card%data) > 0) call build_axes(card, model%orientations(n), deck)
+               deck%deck_report_type, deck%model%orientations(n)%name)
+            if (size(card%data) > 0) call build_axes(card, deck%model%orientations(n), deck)
          end associate
       end do
    end subroutine build_orientations
@@ -437,21 +433,20 @@ contains
    end subroutine turn_axes
 
    !> Builds all sections, and gives the elements theirs.
-   subroutine build_sections(deck, model)
-      type(deck_type), intent(inout) :: deck   !! receives notes, whether all is sound and errors
-      type(model_type), intent(inout) :: model             !! receives the sections
+   subroutine build_sections(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       real(dp) :: thickness(1)
       integer :: n, set
       logical :: valid
 
       places = cards_of(deck%cards, 'SOLID SECTION')
-      allocate(model%sections(size(places)))
+      allocate(deck%model%sections(size(places)))
       deck%sections_sound = &
          .not. (has_stand_in(deck%cards, 'SOLID SECTION') .or. deck%has_lost('element set'))
       valid = .true.
       do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)), section => model%sections(n))
+         associate (card => deck%cards%keywords(places(n)), section => deck%model%sections(n))
             call deck%need_named(card, 'MATERIAL', 'material', section%material)
             call deck%take_named(card, 'ORIENTATION', 'orientation', section%orientation)
             if (size(card%data) > 0) then
@@ -465,39 +460,38 @@ contains
                   end if
                end associate
             end if
-            call give_section(card, n, deck, model%mesh, set)
+            call give_section(card, n, deck, set)
             if (size(card%data) > 0 .or. set == 0) cycle
-            if (any(model%mesh%element_plane( &
-               model%mesh%element_sets(set)%members) /= axisymmetric)) call deck%note('*SOLID '// &
-               'SECTION without a thickness: '//to_text(section%thickness))
+            if (any(deck%mesh%element_plane(deck%mesh%element_sets(set)%members) /= &
+               axisymmetric)) call deck%note('*SOLID SECTION without a thickness: '// &
+               to_text(section%thickness))
          end associate
       end do
    end subroutine build_sections
 
    !> Gives the elements of its set a section; its trusses take it later. Sections are not sound
    !> where that set is not known.
-   subroutine give_section(card, section, deck, mesh, set)
+   subroutine give_section(card, section, deck, set)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: section
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(inout) :: mesh
       integer, intent(out) :: set        ! that of the card; 0 after an error
       integer, allocatable :: kinds(:)   ! of the lines of the set
 
       call deck%need_named(card, 'ELSET', 'element set', set)
       if (set > 0) then
          kinds = deck%line_kind(deck%line_sets(set)%members)
-         if (all(kinds /= truss)) call deck%need_element_set(card, mesh%element_sets, set)
+         if (all(kinds /= truss)) call deck%need_element_set(card, set)
       end if
       deck%sections_sound = deck%sections_sound .and. set > 0
       if (set == 0) return
       if (size(kinds) > 0 .and. all(kinds /= truss)) call deck%warning(card%place_of('ELSET'), &
-         'element set '//mesh%element_sets(set)%name//' also has lines, which are ignored')
-      associate (members => mesh%element_sets(set)%members)
-         if (any(mesh%element_section(members) > 0)) call deck%warning(card%place, 'this '// &
+         'element set '//deck%mesh%element_sets(set)%name//' also has lines, which are ignored')
+      associate (members => deck%mesh%element_sets(set)%members)
+         if (any(deck%mesh%element_section(members) > 0)) call deck%warning(card%place, 'this '// &
             'section replaces an earlier one; elements concerned: '// &
-            to_text(count(mesh%element_section(members) > 0)))
-         mesh%element_section(members) = section
+            to_text(count(deck%mesh%element_section(members) > 0)))
+         deck%mesh%element_section(members) = section
       end associate
    end subroutine give_section
 

@@ -10,7 +10,8 @@ module deck_context
    use keywords, only: known_keywords
    use kinds, only: dp
    use load_requests, only: request_list_type, target_type
-   use mesh, only: set_type
+   use mesh, only: mesh_type, set_type
+   use model, only: model_type
    use name_index, only: name_index_type
    use quantity_types, only: quantity_type
    use sorting, only: number_index_type
@@ -44,6 +45,8 @@ module deck_context
    !> A deck and what is wrong with it.
    type, extends(deck_report_type) :: deck_type
       type(cards_type), pointer :: cards => null()        !! its cards, which nobody changes
+      type(model_type), pointer :: model => null()        !! what its cards make
+      type(mesh_type), pointer :: mesh => null()          !! its mesh
       type(quantity_type), allocatable :: verifiable(:)   !! what *VERIFY may name
       type(item_index_type) :: node_index                 !! numbers of nodes -> indexes
       type(item_index_type) :: element_index              !! numbers of elements -> indexes
@@ -238,43 +241,41 @@ contains
    end subroutine report_other_kind
 
    !> Index of the element set that ELSET= of a card names; 0 after an error.
-   subroutine need_element_set(self, card, sets, set)
+   subroutine need_element_set(self, card, set)
       class(deck_type), intent(inout) :: self           !! receives errors
       type(keyword_card_type), intent(in) :: card
-      type(set_type), intent(in) :: sets(:)             !! element sets
       integer, intent(out) :: set
       logical :: valid
 
       call self%need_named(card, 'ELSET', 'element set', set)
       if (set == 0) return
-      if (.not. sets(set)%of_lines) return
-      call report_lines(sets(set)%name, card%place_of('ELSET'), self, valid)
+      if (.not. self%mesh%element_sets(set)%of_lines) return
+      call report_lines(self%mesh%element_sets(set)%name, card%place_of('ELSET'), self, valid)
       set = 0
    end subroutine need_element_set
 
    !> Reads the field of a card that names a node or a set of nodes.
-   subroutine need_nodes(self, data, position, sets, target, valid)
+   subroutine need_nodes(self, data, position, target, valid)
       class(deck_type), intent(inout) :: self           !! receives errors
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
-      type(set_type), intent(in) :: sets(:)             !! node sets
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
 
-      call read_target(data, position, self%node_index, sets, self%deck_report_type, target, valid)
+      call read_target(data, position, self%node_index, self%mesh%node_sets, &
+         self%deck_report_type, target, valid)
    end subroutine need_nodes
 
    !> Reads the field of a card that names an element or a set of elements.
-   subroutine need_elements(self, data, position, sets, target, valid)
+   subroutine need_elements(self, data, position, target, valid)
       class(deck_type), intent(inout) :: self           !! receives errors
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
-      type(set_type), intent(in) :: sets(:)             !! element sets
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
 
-      call read_target(data, position, self%element_index, sets, self%deck_report_type, target, &
-         valid)
+      call read_target(data, position, self%element_index, self%mesh%element_sets, &
+         self%deck_report_type, target, valid)
    end subroutine need_elements
 
    !> Reports an element set that has lines only where elements or their faces are due.
