@@ -130,8 +130,6 @@ contains
       errors = deck%error_count()
       call build_sets('node', deck, sets)
       call move_alloc(sets, deck%mesh%node_sets)
-      deck%node_index%sets%others = deck%element_index%sets%name_index_type
-      deck%element_index%sets%others = deck%node_index%sets%name_index_type
       call build_node_surfaces(deck)
       deck%sets_sound = deck%sets_sound .and. deck%error_count() == errors .and. &
          .not. deck%has_lost('node set')

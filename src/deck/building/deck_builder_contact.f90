@@ -148,7 +148,7 @@ contains
       if (several .and. contacts(n)%slave > 0) contacts(n)%name = contacts(n)%name//'-'// &
          deck%mesh%surfaces(contacts(n)%slave)%name
       if ((several .or. .not. card%has('NAME')) .and. contacts(n)%master > 0) then
-         is_taken = deck%contacts%find(contacts(n)%name) > 0
+         is_taken = deck%index_of('contact pair', contacts(n)%name) > 0
          if (is_taken) contacts(n)%name = contacts(n)%name//'-'// &
             deck%mesh%surfaces(contacts(n)%master)%name
          call deck%note('*CONTACT PAIR '// &
@@ -156,9 +156,9 @@ contains
             contacts(n)%name//', '//trim(merge('its surfaces     ', 'the slave surface', is_taken)))
       end if
       associate (place => card%place_of('NAME'), name => contacts(n)%name)
-         if (deck%contacts%find(name) > 0) call deck%error(place, 'contact pair '//name//' is '// &
-            'defined twice')
-         call deck%contacts%add(name)
+         if (deck%index_of('contact pair', name) > 0) call deck%error(place, 'contact pair '// &
+            name//' is defined twice')
+         call deck%add_name('contact pair', name)
          if (scan(name, '/@') > 0) call deck%error(place, 'the name of a contact pair must not '// &
             'contain / or @')
          if (name == '.' .or. name == '..') call deck%error(place, 'a contact pair must not be '// &

@@ -239,14 +239,14 @@ contains
       keys = element_keys
       if (card%name == 'NODE PRINT') then
          keys = node_keys
-         call take_set(card, 'NSET', 'node set', deck%node_index%sets%find(card%text('NSET')), &
+         call take_set(card, 'NSET', 'node set', deck%index_of('node set', card%text('NSET')), &
             deck, request%set, is_known)
          if (is_dropped(card, deck, request%set)) is_known = .false.
          totals = choice(card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
          request%each_node = totals /= 'ONLY'
          request%totals = totals /= 'NO'
       else
-         call take_set(card, 'ELSET', 'element set', deck%element_index%sets%find( &
+         call take_set(card, 'ELSET', 'element set', deck%index_of('element set', &
             card%text('ELSET')), deck, request%set, is_known)
          if (request%set > 0) then
             if (deck%mesh%element_sets(request%set)%of_lines) then

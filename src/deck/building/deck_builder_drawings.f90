@@ -175,7 +175,7 @@ contains
          set = findloc(deck%line_number, number, dim=1)
          if (set > 0) lines = [set]
       else
-         set = deck%element_index%sets%find(name)
+         set = deck%index_of('element set', name)
          if (set > 0) lines = deck%line_sets(set)%members
       end if
    end function lines_of

@@ -83,9 +83,9 @@ contains
       type(deck_type), intent(in) :: deck
       integer :: set
 
-      named_surface = deck%surfaces%find(data%text(1))
+      named_surface = deck%index_of('surface', data%text(1))
       if (.not. data%has(1)) named_surface = 0
-      set = deck%element_index%sets%find(data%text(1))
+      set = deck%index_of('element set', data%text(1))
       if (set == 0) return
       if (.not. deck%mesh%element_sets(set)%of_lines) named_surface = 0
    end function named_surface

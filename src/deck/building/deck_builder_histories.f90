@@ -6,7 +6,7 @@ module deck_builder_histories
    use card_parameters, only: choice, chosen, take_parameter, take_within
    use card_values, only: decimal_comma, need_field, read_row, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
-   use deck_context, only: deck_type, take_name
+   use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_kinds, only: kind_count, plane_stress
    use kinds, only: dp
@@ -40,8 +40,7 @@ contains
       places = cards_of(deck%cards, 'AMPLITUDE')
       allocate(deck%model%amplitudes(size(places)))
       do n = 1, size(places)
-         call take_name(deck%cards, places(n), 'amplitude', deck%amplitudes, &
-            deck%deck_report_type, deck%model%amplitudes(n)%name)
+         call deck%take_name(places(n), 'amplitude', deck%model%amplitudes(n)%name)
          call build_amplitude(deck%cards%keywords(places(n)), deck, deck%model%amplitudes(n))
       end do
    end subroutine build_amplitudes
@@ -57,8 +56,7 @@ contains
       places = cards_of(deck%cards, 'TIME POINTS')
       allocate (deck%time_points(size(places)))
       do n = 1, size(places)
-         call take_name(deck%cards, places(n), 'time points', deck%time_point_names, &
-            deck%deck_report_type, deck%time_points(n)%name)
+         call deck%take_name(places(n), 'time points', deck%time_points(n)%name)
          associate (card => deck%cards%keywords(places(n)), points => deck%time_points(n))
             points%total_time = &
                choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'

@@ -11,7 +11,7 @@ module deck_builder_interactions
       join_gap_conductance
    use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
    use deck_builder_gap_laws, only: build_gap_law
-   use deck_context, only: deck_type, take_name
+   use deck_context, only: deck_type
    use deck_report, only: frictionless
    use deck_source, only: place_type
    use deck_structure, only: card_count
@@ -45,8 +45,7 @@ contains
             case ('SURFACE INTERACTION')
                errors = deck%error_count()
                n = n + 1
-               call take_name(deck%cards, k, 'surface interaction', deck%interactions, &
-                  deck%deck_report_type, deck%model%interactions(n)%name)
+               call deck%take_name(k, 'surface interaction', deck%model%interactions(n)%name)
                law_place = card%place
                call ignore_thickness(card, deck)
                interaction = deck%model%interactions(n)

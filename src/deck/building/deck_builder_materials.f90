@@ -5,7 +5,7 @@ module deck_builder_materials
    use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
       read_row, take_field
    use cards, only: data_card_type, keyword_card_type
-   use deck_context, only: deck_type, take_name
+   use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: card_count, cards_of, has_stand_in
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
@@ -50,8 +50,7 @@ contains
             case ('MATERIAL')
                n = n + 1
                deck%material_place(n) = card%place
-               call take_name(deck%cards, k, 'material', deck%materials, deck%deck_report_type, &
-                  deck%model%materials(n)%name)
+               call deck%take_name(k, 'material', deck%model%materials(n)%name)
                if (.not. deck%has_lost('material')) cycle
                call deck%lose('*ELASTIC')   ! another material may have these
                call deck%lose('*CONDUCTIVITY')
@@ -362,8 +361,7 @@ contains
       allocate(deck%model%orientations(size(places)))
       do n = 1, size(places)
          associate (card => deck%cards%keywords(places(n)))
-            call take_name(deck%cards, places(n), 'orientation', deck%orientations, &
-               deck%deck_report_type, deck%model%orientations(n)%name)
+            call deck%take_name(places(n), 'orientation', deck%model%orientations(n)%name)
             if (size(card%data) > 0) call build_axes(card, deck%model%orientations(n), deck)
          end associate
       end do

@@ -164,7 +164,7 @@ contains
       if (comma == 0) comma = len(deck%load_set) + 1
       name = deck%load_set(:comma - 1)
       call read_integer(deck%load_set(min(comma + 1, len(deck%load_set) + 1):), dof, valid)
-      set = deck%node_index%sets%find(name)
+      set = deck%index_of('node set', name)
       if (valid .and. set > 0) dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
          deck%mesh%node_sets(set)%members, dof)
       if (.not. valid .or. .not. any(dof == [1, 2, dof_temperature])) then

@@ -6,7 +6,7 @@ module deck_builder_sets
    use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side
    use deck_builder_lines, only: is_line_card
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_type, item_index_type, place_list_type, read_target, take_name
+   use deck_context, only: deck_type, item_index_type, place_list_type, read_target
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
    use element_sides, only: element_sides_type, find_sides
@@ -22,7 +22,7 @@ module deck_builder_sets
 
    !> Sets of nodes or of elements while they grow.
    type :: draft_type
-      type(item_index_type) :: numbers   !! numbers of nodes or of elements, names -> indexes
+      type(item_index_type) :: numbers   !! of nodes or of elements
       integer :: sets = 0                       !! number of sets
       type(set_type), allocatable :: items(:)   !! (capacity) their names
       type(number_list_type), allocatable :: members(:)   !! (capacity) some more than once
@@ -67,8 +67,6 @@ contains
          end associate
       end do
       allocate(sets(draft%sets))
-      if (noun == 'node') deck%node_index%sets = draft%numbers%sets
-      if (noun == 'element') deck%element_index%sets = draft%numbers%sets
       do i = 1, draft%sets
          call move_alloc(draft%items(i)%name, sets(i)%name)
          sets(i)%members = unique_sorted(draft%members(i)%numbers())
@@ -103,12 +101,12 @@ contains
       logical :: is_number
 
       name = to_upper(card%text(parameter))
-      set = draft%numbers%sets%find(name)
+      set = deck%index_of(draft%numbers%noun//' set', name)
       if (set > 0) return
       call read_integer(name, number, is_number)
       if (is_number) call deck%error(card%place_of(parameter), 'the name of a set must not be '// &
          'a number')
-      call draft%numbers%sets%add(name)
+      call deck%add_name(draft%numbers%noun//' set', name)
       draft%sets = draft%sets + 1
       set = draft%sets
       draft%items(set)%name = name
@@ -232,8 +230,7 @@ contains
       places = cards_of(deck%cards, 'SURFACE')
       allocate(deck%mesh%surfaces(size(places)), deck%face_places(size(places)))
       do n = 1, size(places)
-         call take_name(deck%cards, places(n), 'surface', deck%surfaces, deck%deck_report_type, &
-            deck%mesh%surfaces(n)%name)
+         call deck%take_name(places(n), 'surface', deck%mesh%surfaces(n)%name)
          call build_surface(deck%cards%keywords(places(n)), deck, deck%mesh%surfaces(n), &
             deck%face_places(n))
       end do
@@ -305,7 +302,7 @@ contains
       type(deck_type), intent(in) :: deck
       integer :: set
 
-      set = deck%element_index%sets%find(data%text(1))
+      set = deck%index_of('element set', data%text(1))
       has_lines = set > 0
       if (has_lines) has_lines = size(deck%line_sets(set)%members) > 0
    end function has_lines
@@ -323,7 +320,7 @@ contains
 
       call check_extra(data, 1, 'element set of lines', deck)
       if (.not. all(deck%element_valid)) return
-      members = deck%line_sets(deck%element_index%sets%find(data%text(1)))%members
+      members = deck%line_sets(deck%index_of('element set', data%text(1)))%members
       allocate (uses(size(members)), source=0)
       sides = find_sides(deck%mesh)
       do i = 1, size(members)

@@ -6,11 +6,10 @@ module deck_structure
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use keywords, only: built, in_model, in_step, keyword_type, known_keywords, not_needed
-   use text, only: to_text, to_upper
+   use text, only: to_text
    implicit none
    private
    public :: check_structure, cards_of, card_count, data_count, has_stand_in, is_keyword
-   public :: report_twice
 
 contains
 
@@ -51,23 +50,6 @@ contains
       is_keyword = .false.
       if (k >= 1 .and. k <= size(cards%keywords)) is_keyword = cards%keywords(k)%name == name
    end function is_keyword
-
-   !> Reports a card whose name another card of its keyword has before it.
-   subroutine report_twice(cards, k, what, report)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: k                            !! index of the card
-      character(*), intent(in) :: what                    !! such as material STEEL
-      class(deck_report_type), intent(inout) :: report    !! receives the error
-      integer :: first
-
-      associate (card => cards%keywords(k))
-         do first = 1, k - 1
-            if (cards%keywords(first)%name == card%name .and. &
-               to_upper(cards%keywords(first)%text('NAME')) == to_upper(card%text('NAME'))) exit
-         end do
-         call report%twice(card%place_of('NAME'), what, cards%keywords(first)%place)
-      end associate
-   end subroutine report_twice
 
    !> Whether a misspelt or refused keyword stands for another one.
    pure logical function has_stand_in(cards, name)
