@@ -53,7 +53,7 @@ contains
       logical :: has_dofs, sound, valid
 
       call take_lines(card, deck, members)
-      if (.not. allocated(members)) return
+      if (.not. allocated(members) .or. size(card%data) == 0) return
       valid = size(members) > 0 .and. all(deck%line_kind(members) > truss)
       if (.not. valid) call deck%error(card%place_of('ELSET'), 'this set has elements that are '// &
          'no springs')
@@ -79,7 +79,6 @@ contains
             'freedom for SPRING1 and SPRING2')
          return
       end if
-      stiffness = 0.0_dp
       call read_row(card%data(size(card%data)), 'spring constant >0', deck, stiffness, sound)
       if (.not. (valid .and. sound)) return
       do i = 1, size(members)

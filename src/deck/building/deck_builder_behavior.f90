@@ -51,7 +51,6 @@ contains
       real(dp) :: values(2)
       logical :: valid
 
-      values = 1.0_dp
       call read_row(card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)
       law%clearance = values(1)
       law%touching_pressure = values(2)
@@ -68,7 +67,6 @@ contains
       integer :: i
       logical :: valid
 
-      values = 0.0_dp
       call read_rows(rows, 'pressure/overlap', deck, values, valid)
       law%pressure = values(1, :)
       law%overlap = values(2, :)

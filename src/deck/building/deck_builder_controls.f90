@@ -134,7 +134,6 @@ contains
       real(dp) :: given(8), sums(3)
       logical :: valid
 
-      given = 0.0_dp
       call read_row(data, 'a1 >0/a2 >=0/a3 >=0/b1/b2/b3/c1/c2', deck, given, valid)
       if (.not. valid) return
       sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
@@ -199,7 +198,6 @@ contains
       logical :: sound, valid
 
       given = 0.0_dp
-      value = 0.0_dp
       sound = .true.
       do k = 1, size(card%data)
          associate (data => card%data(k))

@@ -73,7 +73,6 @@ contains
       integer :: i, n
       logical :: valid
 
-      given = 0.0_dp
       place = card%data(data)%place(1)
       call read_row(card%data(data), '#number of terms >0', deck, given, valid)
       n = nint(given(1))
@@ -304,7 +303,6 @@ contains
       integer :: dof, first, last
       logical :: valid
 
-      range = 0.0_dp
       call read_row(data, '#first degree of freedom/#last degree of freedom?', deck, range, valid)
       first = nint(range(1))
       last = first
@@ -365,7 +363,6 @@ contains
       real(dp) :: given(6), x(3, 2)
       logical :: valid
 
-      given = 0.0_dp
       call read_row(data, 'x of point a/y of point a/z of point a?/x of point b/y of point b/'// &
          'z of point b?', deck, given, valid)
       x = reshape(given, shape(x))

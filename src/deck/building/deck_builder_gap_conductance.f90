@@ -199,7 +199,6 @@ contains
 
       layout = 'conductance >=0/'//noun//' >=0'
       if (card%name == 'GAP CONDUCTANCE') layout = layout//'/temperature?'
-      values = 0.0_dp
       call read_rows(card%data, layout, deck, values, valid)
       table%omega = values(1, :)
       table%abscissa = values(2, :)

@@ -28,14 +28,11 @@ contains
 
       heat%efficiency = 1.0_dp
       if (size(card%data) > 0) then
-         values = [heat%efficiency, heat%slave_share, heat%speed]
-         call read_row(card%data(1), 'eta (heat per work of friction)? >=0 <=1/f (share of the '// &
-            'slave)? >=0 <=1/sliding speed?', deck, values, valid)
-         if (valid) then
-            heat%efficiency = values(1)
-            heat%slave_share = values(2)
-            heat%speed = values(3)
-         end if
+         call read_row(card%data(1), 'eta (heat per work of friction)? >=0 <=1 =1/f (share of '// &
+            'the slave)? >=0 <=1 =0.5/sliding speed? =-1', deck, values, valid)
+         heat%efficiency = values(1)
+         heat%slave_share = values(2)
+         heat%speed = values(3)
          if (card%has('ANGULAR VELOCITY') .and. card%data(1)%has(3)) call deck%error( &
             card%data(1)%place(3), 'a sliding speed and ANGULAR VELOCITY= exclude each other; '// &
             'give one of them')
@@ -106,8 +103,8 @@ contains
       real(dp), allocatable :: gap(:), view_factor(:)
       logical :: valid
 
-      emissivity = 1.0_dp
-      call read_row(card%data(1), 'emissivity >0 <=1/emissivity >0 <=1', deck, emissivity, valid)
+      call read_row(card%data(1), 'emissivity >0 <=1 =1/emissivity >0 <=1 =1', deck, &
+         emissivity, valid)
       call read_view_factors(card%data(2:), deck, gap, view_factor)
       if (size(card%data) > 1 .and. view_factor(size(view_factor)) > 0.0_dp) call deck%note( &
          '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last view '// &
@@ -139,7 +136,7 @@ contains
 
       values(1, :) = 1.0_dp
       values(2, :) = 0.0_dp
-      call read_rows(rows, 'view factor >=0 <=1/clearance? >=0', deck, values, valid)
+      call read_rows(rows, 'view factor >=0 <=1 =1/clearance? >=0', deck, values, valid)
       view_factor = values(1, :)
       gap = values(2, :)
       do i = 2, size(rows)

@@ -77,7 +77,6 @@ contains
       real(dp) :: values(3)
       logical :: valid
 
-      values = 1.0_dp
       call read_row(data, 'C0 >=0/C1 >=0/n >0', deck, values, valid)
       if (valid .and. values(3) > largest_exponent) call deck%error(data%place(3), &
          'n must not exceed '//to_text(largest_exponent)//'; for rough faces it is about 0.95')
@@ -96,7 +95,6 @@ contains
       real(dp) :: value(5), magnitude
       logical :: valid
 
-      value = 1.0_dp
       if (kind == 'CMY') then
          call read_row(data, 'conductivity >0/conductivity >0/slope >0/roughness >0/hardness >0', &
             deck, value, valid)
@@ -154,7 +152,6 @@ contains
       if (law%added_length > 0.0_dp) layout = layout(:index(layout, 'B'))//'? >=0'
       layout = layout//'/temperature'
       if (size(card%data) == 1) layout = layout//'?'
-      values = 0.0_dp
       do i = 1, size(card%data)
          call read_row(card%data(i), layout, deck, values(:, i), valid)
          if (valid) call check_values(card%data(i), values(:2, i), law%added_length, deck)

@@ -64,7 +64,6 @@ contains
             do j = 1, size(card%data)
                valid = .true.
                if (card%has('GENERATE')) then
-                  values = 0.0_dp
                   call read_row(card%data(j), 'start/end/interval', deck, values, valid)
                   if (valid .and. .not. (values(3) > 0.0_dp .and. &
                      values(2) >= values(1))) call deck%error(card%data(j)%place(3), 'time '// &
@@ -207,7 +206,6 @@ contains
       logical :: valid
       real(dp) :: given(2)
 
-      given = 0.0_dp
       places = cards_of(deck%cards, 'INITIAL CONDITIONS')
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
@@ -272,7 +270,6 @@ contains
       integer :: i, number
       logical :: is_flat, valid
 
-      given = 0.0_dp
       call read_row(data, '@element or set/s11/s22?/s33?/s12?', deck, given, valid)
       call deck%need_elements(data, 1, target, valid)
       stress = given(2:)
@@ -311,7 +308,6 @@ contains
       integer :: next, point
       logical :: valid
 
-      given = 0.0_dp
       next = 1
       call read_row(data, '@element/#integration point/s11/s22?/s33?/s12?/s13?/s23?', deck, given, &
          valid)

@@ -74,7 +74,6 @@ contains
       logical :: valid
 
       if (size(card%data) == 0) return
-      thickness = 1.0_dp
       call read_row(card%data(1), 'thickness? >0', deck, thickness, valid)
       call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of *SOLID SECTION '// &
          'is taken')
@@ -187,7 +186,6 @@ contains
       real(dp) :: values(2)
       logical :: valid
 
-      values = 0.0_dp
       call read_row(data, 'coefficient of friction >=0/stick slope?', deck, values, valid)
       coefficient = values(1)
       if (coefficient > rough_coefficient) then

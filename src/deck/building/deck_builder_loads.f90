@@ -171,7 +171,6 @@ contains
       integer :: dof
       logical :: valid
 
-      given = 0.0_dp
       select case (keyword)
       case ('TEMPERATURE')
          request%kind = load_temperature

@@ -379,7 +379,6 @@ contains
 
       system = choice(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, 'RECTANGULAR')
       associate (data => card%data(1))
-         given = 0.0_dp
          call read_row(data, 'x of a/y of a/z of a/x of b/y of b/z of b', deck, given, valid)
          a = given(:3)
          b = given(4:)
@@ -415,7 +414,6 @@ contains
       real(dp) :: angle, given(2)
       logical :: valid
 
-      given = 0.0_dp
       call read_row(data, '#axis/angle in degrees?', deck, given, valid)
       if (.not. valid) return
       if (nint(given(1)) /= 3) then
@@ -449,8 +447,7 @@ contains
             call deck%take_named(card, 'ORIENTATION', 'orientation', section%orientation)
             if (size(card%data) > 0) then
                associate (data => card%data(1))
-                  thickness = section%thickness
-                  call read_row(data, 'thickness? >0/@points', deck, thickness, valid)
+                  call read_row(data, 'thickness? >0 =1/@points', deck, thickness, valid)
                   section%thickness = thickness(1)
                   if (size(data%fields) > 1) then
                      call check_unneeded(data, 2, 'a number of points', deck)

@@ -48,7 +48,6 @@ contains
       logical :: valid
       real(dp) :: area(2)
 
-      area = 0.0_dp
       allocate (named(size(deck%mesh%node_number)), source=.false.)
       do j = 1, size(card%data)
          associate (data => card%data(j))

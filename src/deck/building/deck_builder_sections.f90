@@ -101,7 +101,6 @@ contains
       real(dp) :: given(3)
       logical :: sound
 
-      given = 0.0_dp
       call read_row(data, 'x of the normal/y of the normal/z of the normal?', deck, given, sound)
       valid = valid .and. sound
       if (.not. sound) return

@@ -188,8 +188,7 @@ contains
       integer :: first, last, step, number, count, found, first_missing, k
       logical :: valid
 
-      given = [0.0_dp, 0.0_dp, 1.0_dp]
-      call read_row(data, '#first number/#last number/#increment?', deck, given, valid)
+      call read_row(data, '#first number/#last number/#increment? =1', deck, given, valid)
       first = nint(given(1))
       last = nint(given(2))
       step = nint(given(3))

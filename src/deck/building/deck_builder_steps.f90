@@ -367,9 +367,8 @@ contains
       logical :: valid
 
       most = merge(5, 4, step%analysis == analysis_heat)
-      given = [step%first_increment, step%period, 0.0_dp, 0.0_dp, 0.0_dp]
-      call read_row(data, 'first increment?/period?/smallest increment?/largest increment?'// &
-         trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
+      call read_row(data, 'first increment? =1/period? =1/smallest increment?/largest '// &
+         'increment?'//trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
       step%first_increment = given(1)
       step%period = given(2)
       step%smallest_increment = min(smallest_part*step%period, step%first_increment)

@@ -93,7 +93,6 @@ contains
          call check_where(data, deck%verifiable(quantity)%kind, deck, check)
       end if
       if (deck%analyses_sound) call read_when(data, deck, check)
-      values = 0.0_dp
       call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', deck, values, &
          valid)
       check%value = values(4)
@@ -323,7 +322,6 @@ contains
       call read_quantity(data, estimated, 'no error of '//data%text(1)//' is estimated', deck, i)
       target%quantity = ''
       if (i > 0) target%quantity = trim(estimated(i)%name)
-      values = 0.0_dp
       call read_row(data, '@quantity/target >0/@REL or ABS/@contact pair', deck, values, valid)
       target%bound = values(2)
       select case (to_upper(data%text(3)))

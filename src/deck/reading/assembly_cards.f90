@@ -292,7 +292,6 @@ contains
       integer :: n
       logical :: sound, valid
 
-      x = 0.0_dp
       valid = .true.
       sound = .true.
       n = size(card%data)

@@ -16,7 +16,7 @@ module copied_cards
    integer, parameter :: most_intervals = 10000   !! of *NFILL
 
    character(*), parameter :: axis_layout = 'x of point 1?/y of point 1?/z of point 1?/'// &
-      'x of point 2?/y of point 2?/z of point 2?'
+      'x of point 2?/y of point 2?/z of point 2? =1'
 
    real(dp), parameter :: same_place = 1.0e-6_dp   !! distance, by the largest coordinate
    real(dp), parameter :: degree = acos(-1.0_dp)/180.0_dp
@@ -54,8 +54,7 @@ contains
       integer :: i, intervals, k, step
       logical :: valid
 
-      given = 1.0_dp
-      call read_row(data, '@set or node/@set or node/#number of intervals >0/#increment? >0', &
+      call read_row(data, '@set or node/@set or node/#number of intervals >0/#increment? >0 =1', &
          report, given, valid)
       intervals = nint(given(3))
       step = nint(given(4))
@@ -177,7 +176,6 @@ contains
       if (.not. valid) return
       shift = 0.0_dp
       angle = 0.0_dp
-      moved = 0.0_dp
       points = [0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp, 0.0_dp]
       if (kind == 'LINE') then
          call read_row(rows(1), axis_layout, report, points, valid)

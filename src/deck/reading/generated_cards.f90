@@ -97,14 +97,12 @@ contains
       integer :: step, i, n
       logical :: valid
 
-      given = 0.0_dp
-      given(3) = 1.0_dp
       if (card%has('LINE')) then
-         call read_row(data, '#first node/#last node/#increment?/#center?/x of the center?/'// &
+         call read_row(data, '#first node/#last node/#increment? =1/#center?/x of the center?/'// &
             'y of the center?/z of the center?/x of the normal?/y of the normal?/z of the '// &
             'normal?', report, given, valid)
       else
-         call read_row(data, '#first node/#last node/#increment?', report, given, valid)
+         call read_row(data, '#first node/#last node/#increment? =1', report, given, valid)
       end if
       step = nint(given(3))
       do i = 1, 2
@@ -220,10 +218,9 @@ contains
       integer :: steps(2, 2)    ! increments of nodes and elements, of both
       logical :: valid
 
-      given = 1.0_dp
-      call read_row(data, '#master element/#number of elements? >0/#increment of nodes?/'// &
-         '#increment of elements?/#number of rows? >0/#increment of nodes?/'// &
-         '#increment of elements?', report, given, valid)
+      call read_row(data, '#master element/#number of elements? >0 =1/#increment of nodes? =1/'// &
+         '#increment of elements? =1/#number of rows? >0 =1/#increment of nodes? =1/'// &
+         '#increment of elements? =1', report, given, valid)
       master = nint(given(1))
       counts = nint(given([2, 5]))
       steps = nint(reshape(given([3, 4, 6, 7]), [2, 2]))
