@@ -3,7 +3,7 @@ module deck_builder_loads
    use card_parameters, only: choice
    use card_values, only: check_extra, need_field, read_row, take_field
    use cards, only: data_card_type, keyword_card_type
-   use deck_builder_element_loads, only: build_element_load, build_surface_load
+   use deck_builder_element_loads, only: build_element_load
    use deck_context, only: deck_type
    use kinds, only: dp
    use load_requests, only: request_type
@@ -21,9 +21,6 @@ module deck_builder_loads
    integer, parameter :: dof_rotation = 6   !! about z, of the reference node of a coupling
    integer, parameter :: dof_turn = 3       !! the same, of CalculiX' node of the rotation
    real(dp), parameter :: large_turn = 0.1_dp   !! [rad]; the motion errs by half of it
-
-   character(*), parameter :: out_of_plane = &
-      '*BOUNDARY: 0 on degrees of freedom 3 to 6 is ignored'
 
    !> Supports that are known by a name, and the degrees of freedom that each holds at 0, rotations
    !> about x, y and z as 4 to 6 among them.
@@ -73,12 +70,10 @@ contains
          deck%load_cards = deck%load_cards + 1
          request%card = deck%load_cards
          select case (card%name)
-         case ('DSLOAD', 'DSFLUX', 'SFILM')
-            call build_surface_load(card%name, card%data(j), request, film_amplitude, deck)
-         case ('DLOAD', 'DFLUX', 'FILM')
-            call build_element_load(card%name, card%data(j), request, film_amplitude, deck)
-         case default
+         case ('CLOAD', 'CFLUX', 'TEMPERATURE')
             call build_nodal_load(card%name, card%data(j), request, deck)
+         case default
+            call build_element_load(card%name, card%data(j), request, film_amplitude, deck)
          end select
       end do
       if (card%name == 'BOUNDARY' .and. (card%flawed .or. deck%error_count() > errors)) then
@@ -167,6 +162,7 @@ contains
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
       type(deck_type), intent(inout) :: deck
+      character(:), allocatable :: layout
       real(dp) :: given(3)
       integer :: dof
       logical :: valid
@@ -174,21 +170,20 @@ contains
       select case (keyword)
       case ('TEMPERATURE')
          request%kind = load_temperature
-         call read_row(data, '@node or set/temperature', deck, given(:2), valid)
-         request%value = given(2)
+         layout = '@node or set/temperature'
       case ('CLOAD')
          request%kind = load_force
-         call read_row(data, '@node or set/#degree of freedom/force', deck, given, valid)
-         request%value = given(3)
+         layout = '@node or set/#degree of freedom/force'
       case default
          request%kind = load_nodal_heat
-         call read_row(data, '@node or set/#degree of freedom/power', deck, given, valid)
-         request%value = given(3)
+         layout = '@node or set/#degree of freedom/power'
       end select
+      call read_row(data, layout, deck, given, valid)
       call deck%need_nodes(data, 1, request%target_type, valid)
+      if (.not. valid) return
       dof = 1
       if (keyword /= 'TEMPERATURE') dof = nint(given(2))
-      if (.not. valid) return
+      request%value = given(merge(2, 3, keyword == 'TEMPERATURE'))
       request%component = dof
       if (keyword == 'CLOAD') request%component = place_in_plane(request, deck%model, dof)
       if (keyword == 'CLOAD' .and. (dof == dof_rotation .or. (dof == dof_turn .and. &
@@ -226,12 +221,13 @@ contains
    end subroutine add_moment
 
    !> Takes one data card: node or set, first and last degree of freedom, value; or node or set and
-   !> the name of a support. 0 on the degrees 3 to 6, which a plane does not have, is ignored.
+   !> the name of a support.
    subroutine build_boundary(data, request, deck)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, place
-      type(deck_type), intent(inout) :: deck
-      integer :: first, last, dof, support
+      type(deck_type), intent(inout) :: deck               !! receives the requests
+      integer, allocatable :: dofs(:)
+      integer :: i
       logical :: valid
 
       request%card = 1
@@ -247,55 +243,35 @@ contains
             return
          end if
       end if
-      support = findloc(support_names == to_upper(data%text(2)), .true., dim=1)
-      if (support > 0) then
-         call check_extra(data, 2, 'node or set, '//trim(support_names(support)), deck)
-         if (valid) call hold(trim(support_degrees(support)), request, deck)
-         return
-      end if
-      call check_name(data, deck, valid)
-      if (.not. valid) return
-      call read_degrees(data, deck, first, last, request%value, valid)
-      if (.not. valid) return
-      do dof = first, last
-         if (is_rotation(dof, request, deck%model)) then
-            call add_rotations(request, deck)
-            call warn_of_turn(data, request%value, deck)
-            cycle
-         else if (names_rotation(request, deck%model)) then
-            call deck%note(out_of_plane)
-            cycle
-         end if
-         request%component = place_in_plane(request, deck%model, dof)
-         select case (request%component)
-         case (1, 2, dof_temperature)
-            call deck%boundaries%add(request)
-         case (3:6)
-            if (abs(request%value) > 0.0_dp) then
-               call deck%error(data%place(4), 'degree of freedom '//to_text(dof)//' can only '// &
-                  'be 0 in the plane')
-               return
-            end if
-            call deck%note(out_of_plane)
-            if (place_in_plane(request, deck%model, first) /= 3) cycle
-            if (first == 3 .and. dof == last) call deck%warning(data%place(2), 'degree of '// &
-               'freedom 3 does not exist in a plane model: this support is ignored')
-         case default
-            call deck%error(data%place(merge(2, 3, dof == first)), 'degree of freedom '// &
-               to_text(dof)//'; the plane has 1, 2 and 11')
-            return
-         end select
+      call read_degrees(data, deck, dofs, request%value, valid)
+      do i = 1, size(dofs)
+         if (valid) call add_support(data, dofs(i), request, deck, valid)
       end do
    end subroutine build_boundary
 
-   !> First and last degree of freedom, and the value.
-   subroutine read_degrees(data, deck, first, last, value, valid)
+   !> Degrees of freedom from the first to the last, and the value; or those of a support.
+   subroutine read_degrees(data, deck, dofs, value, valid)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
-      integer, intent(out) :: first, last
+      integer, allocatable, intent(out) :: dofs(:)
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
+      integer :: dof, first, i, last
 
+      dofs = [integer ::]
+      i = findloc(support_names == to_upper(data%text(2)), .true., dim=1)
+      if (i > 0) then
+         call check_extra(data, 2, 'node or set, '//trim(support_names(i)), deck)
+         dofs = [(index('123456', support_degrees(i)(dof:dof)), dof=1, &
+            len_trim(support_degrees(i)))]
+         return
+      end if
+      i = findloc([(is_slip(to_upper(data%text(2)), trim(support_names(i))), i=1, &
+         size(support_names))], .true., dim=1)
+      if (i > 0) call deck%error(data%place(2), 'unknown support '//to_upper(data%text(2))//'; '// &
+         'the nearest known is '//trim(support_names(i)))
+      valid = valid .and. i == 0
+      if (.not. valid) return
       first = 0
       call need_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
          deck, first, valid)
@@ -304,6 +280,7 @@ contains
       call take_field(data, 3, 'last degree of freedom'//value_advice(data), deck, last, valid)
       call take_field(data, 4, 'value', deck, value, valid)
       call check_extra(data, 4, 'node or set, first and last degree of freedom, value', deck)
+      dofs = [(dof, dof=first, last)]
       if (last >= first .or. .not. valid) return
       call deck%error(data%place(3), 'the last degree of freedom is below the first')
       valid = .false.
@@ -322,43 +299,44 @@ contains
          data%text(1)//', '//data%text(2)//', '//data%text(2)//', '//data%text(3)
    end function value_advice
 
-   !> Reports a likely misspelling of the name of a support.
-   subroutine check_name(data, deck, valid)
+   !> Requests a degree of freedom. 0 on 3 to 6, which a plane does not have, is ignored.
+   subroutine add_support(data, dof, request, deck, valid)
       type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
-      character(:), allocatable :: name
-      integer :: i
-
-      name = to_upper(data%text(2))
-      do i = 1, size(support_names)
-         if (.not. is_slip(name, trim(support_names(i)))) cycle
-         call deck%error(data%place(2), 'unknown support '//name//'; the nearest known is '// &
-            trim(support_names(i)))
-         valid = .false.
-         return
-      end do
-   end subroutine check_name
-
-   !> Requests those of some degrees of freedom at 0 that the plane has.
-   subroutine hold(degrees, request, deck)
-      character(*), intent(in) :: degrees                  ! a digit for each
+      integer, intent(in) :: dof
       type(request_type), intent(inout) :: request
       type(deck_type), intent(inout) :: deck
-      integer :: dof, i
+      logical, intent(inout) :: valid
+      character(*), parameter :: ignored = '*BOUNDARY: 0 on degrees of freedom 3 to 6 is ignored'
 
-      do i = 1, len(degrees)
-         dof = index('123456', degrees(i:i))
-         request%component = place_in_plane(request, deck%model, dof)
-         if (dof == dof_rotation .and. turns(request, deck%model)) then
-            call add_rotations(request, deck)
-         else if (request%component > 2) then
-            call deck%note(out_of_plane)
-         else
-            call deck%boundaries%add(request)
+      if (is_rotation(dof, request, deck%model)) then
+         call add_rotations(request, deck)
+         call warn_of_turn(data, request%value, deck)
+         return
+      else if (names_rotation(request, deck%model)) then
+         call deck%note(ignored)
+         return
+      end if
+      request%component = place_in_plane(request, deck%model, dof)
+      select case (request%component)
+      case (1, 2, dof_temperature)
+         call deck%boundaries%add(request)
+      case (3:6)
+         valid = abs(request%value) <= 0.0_dp
+         if (.not. valid) then
+            call deck%error(data%place(4), 'degree of freedom '//to_text(dof)//' can only be 0 '// &
+               'in the plane')
+            return
          end if
-      end do
-   end subroutine hold
+         call deck%note(ignored)
+         if (request%component == 3 .and. dof == 3 .and. data%text(2) == '3') call deck%warning( &
+            data%place(2), 'degree of freedom 3 does not exist in a plane model: this support '// &
+            'is ignored')
+      case default
+         call deck%error(data%place(merge(2, 3, to_text(dof) == data%text(2))), 'degree of '// &
+            'freedom '//to_text(dof)//'; the plane has 1, 2 and 11')
+         valid = .false.
+      end select
+   end subroutine add_support
 
    !> The component of a request for a degree of freedom, as axis_in_plane.
    pure integer function place_in_plane(request, model, dof)
