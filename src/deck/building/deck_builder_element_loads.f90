@@ -22,7 +22,7 @@ module deck_builder_element_loads
       character(7) :: name        !! without the number of a side
       character(12) :: cards      !! that have it: of elements, of surfaces
       integer :: kind             !! load_pressure, ...
-      integer :: component        !! of the load; 0 for a side of an element
+      integer :: component        !! of the load, R as X and Z as Y; 0 for a side of an element
       character(118) :: layout    !! fields behind it, as read_row
    end type label_type
 
@@ -34,7 +34,7 @@ module deck_builder_element_loads
       label_type('TRSHR', 'DSLOAD', load_traction, 1, vector_layout), &
       label_type('BX', 'DLOAD', load_body_force, 1, 'force per volume'), &
       label_type('BY', 'DLOAD', load_body_force, 2, 'force per volume'), &
-      label_type('BR', 'DLOAD', load_body_force, 1, 'force per volume'), &   ! x is the radius
+      label_type('BR', 'DLOAD', load_body_force, 1, 'force per volume'), &
       label_type('BZ', 'DLOAD', load_body_force, 2, 'force per volume'), &
       label_type('GRAV', 'DLOAD', load_gravity, 1, vector_layout), &
       label_type('CENTRIF', 'DLOAD', load_centrifugal, 1, 'speed squared >=0/x of the axis/'// &
