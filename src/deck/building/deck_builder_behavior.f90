@@ -19,6 +19,8 @@ contains
       type(deck_type), intent(inout) :: deck
       type(overlap_law_type), intent(out) :: law           !! of hard faces, or of soft ones
       character(:), allocatable :: kind
+      real(dp) :: values(2)
+      logical :: valid
 
       kind = to_upper(card%text('PRESSURE-OVERCLOSURE'))
       if (kind == 'TIED') then
@@ -34,7 +36,12 @@ contains
                ' has no data: '//trim(merge('c0, p0                                ', &
                'pressure, overlap; a card for each row', kind == 'EXPONENTIAL')))
          else if (kind == 'EXPONENTIAL') then
-            call read_exponential(card, deck, law)
+            ! The pressure at the clearance c0 is a hundredth of p0.
+            call read_row(card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)
+            law%clearance = values(1)
+            law%touching_pressure = values(2)
+            if (size(card%data) > 1) call deck%error(card%data(2)%place(1), &
+               'an exponential law has one card: c0, p0')
          else
             call read_table(card%data, deck, law)
          end if
@@ -42,21 +49,6 @@ contains
          call deck%note('*SURFACE BEHAVIOR is ignored: contact is exact')
       end select
    end subroutine build_behavior
-
-   !> c0, at which the pressure is a hundredth of p0, and p0.
-   subroutine read_exponential(card, deck, law)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(overlap_law_type), intent(inout) :: law
-      real(dp) :: values(2)
-      logical :: valid
-
-      call read_row(card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)
-      law%clearance = values(1)
-      law%touching_pressure = values(2)
-      if (size(card%data) > 1) call deck%error(card%data(2)%place(1), &
-         'an exponential law has one card: c0, p0')
-   end subroutine read_exponential
 
    !> Rows of pressure, from 0 on, and overlap; both rise.
    subroutine read_table(rows, deck, law)

@@ -243,17 +243,9 @@ contains
       allocate (line%is_arc(size(lines)), source=.false.)
       line%centre = 0.0_dp*line%start
       line%closed = ends(1, order(1)) == ends(2, order(size(order)))
-      call check_smooth(spread_place(card%place, size(lines)), surface%name, line, deck)
+      call check_smooth([(card%place, i=1, size(lines))], surface%name, line, deck)
       call turn_round(line)
       surface%drawing = line
    end subroutine join_lines
-
-   pure function spread_place(place, n) result(places)
-      type(place_type), intent(in) :: place
-      integer, intent(in) :: n
-      type(place_type) :: places(n)
-
-      places = place
-   end function spread_place
 
 end module deck_builder_drawings

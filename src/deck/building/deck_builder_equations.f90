@@ -338,22 +338,16 @@ contains
       places = cards_of(deck%cards, 'TRANSFORM')
       allocate (deck%model%transforms(size(places)))
       do n = 1, size(places)
-         call build_transform(deck%cards%keywords(places(n)), deck, deck%model%transforms(n))
-         call check_nodes(deck%cards%keywords(places(n)), n, deck)
+         associate (card => deck%cards%keywords(places(n)), transform => deck%model%transforms(n))
+            transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
+            transform%card = card%place%image
+            call deck%need_named(card, 'NSET', 'node set', transform%set)
+            transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
+            if (size(card%data) > 0) call read_points(card%data(1), deck, transform)
+            call check_nodes(card, n, deck)
+         end associate
       end do
    end subroutine build_transforms
-
-   subroutine build_transform(card, deck, transform)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(transform_type), intent(out) :: transform
-
-      transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
-      transform%card = card%place%image
-      call deck%need_named(card, 'NSET', 'node set', transform%set)
-      transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
-      if (size(card%data) > 0) call read_points(card%data(1), deck, transform)
-   end subroutine build_transform
 
    !> Two points: on the first axis and in the plane of the first two; or on the axis of a cylinder.
    subroutine read_points(data, deck, transform)

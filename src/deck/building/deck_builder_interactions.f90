@@ -7,8 +7,7 @@ module deck_builder_interactions
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
    use deck_builder_behavior, only: build_behavior
-   use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance, &
-      join_gap_conductance
+   use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance
    use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
    use deck_builder_gap_laws, only: build_gap_law
    use deck_context, only: deck_type
@@ -85,13 +84,13 @@ contains
       type(deck_type), intent(inout) :: deck
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
-      type(conductance_law_type) :: table
-      integer :: behavior, friction, heat, k, radiation
+      integer :: behavior, friction, heat, k, radiation, table
 
       behavior = 0
       friction = 0
       heat = 0
       radiation = 0
+      table = 0
       do k = place + 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
@@ -118,14 +117,21 @@ contains
                if (is_of_clearance(card, has_pressure(deck%cards, place))) then
                   call build_gap_conductance(card, interaction%name, .true., deck, interaction%law)
                else
-                  call build_gap_conductance(card, interaction%name, .false., deck, table)
+                  if (table > 0) then
+                     call deck%error(card%place, 'a second *GAP CONDUCTANCE in one surface '// &
+                        'interaction')
+                     call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
+                        .false., deck, interaction%law)
+                  end if
+                  table = k
                end if
             case default
                cycle
             end select
          end associate
       end do
-      call join_gap_conductance(table, interaction%name, deck, interaction%law)
+      if (table > 0) call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
+         .false., deck, interaction%law)
       if (radiation > 0) call build_gap_radiation(deck%cards%keywords(radiation), deck, &
          interaction%law)
    end subroutine build_laws

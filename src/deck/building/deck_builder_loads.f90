@@ -310,7 +310,10 @@ contains
 
       if (is_rotation(dof, request, deck%model)) then
          call add_rotations(request, deck)
-         call warn_of_turn(data, request%value, deck)
+         if (abs(request%value) > large_turn) call deck%warning(data%place(4), 'a rotation of '// &
+            to_text(request%value)//' rad is large: points move along their tangents, and gaps '// &
+            'and normals stay those of the undeformed model; turn the drawing, and let the '// &
+            'rotation be below '//to_text(large_turn))
          return
       else if (names_rotation(request, deck%model)) then
          call deck%note(ignored)
@@ -348,22 +351,14 @@ contains
          request%members(model%mesh%node_sets), dof)
    end function place_in_plane
 
-   !> Whether the reference node of a coupling is among the nodes of a request.
-   pure logical function turns(request, model)
-      type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-
-      turns = any(is_target(model%couplings%reference, request, model) .and. .not. &
-         model%couplings%is_section())
-   end function turns
-
    !> Whether a degree of freedom of a request is the rotation of a coupling.
    pure logical function is_rotation(dof, request, model)
       integer, intent(in) :: dof
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
 
-      is_rotation = dof == dof_rotation .and. turns(request, model)
+      is_rotation = dof == dof_rotation .and. any(is_target(model%couplings%reference, request, &
+         model) .and. .not. model%couplings%is_section())
       if (names_rotation(request, model)) is_rotation = dof == dof_turn
    end function is_rotation
 
@@ -396,18 +391,6 @@ contains
       is_target = node > 0 .and. node == request%item
       if (request%set > 0) is_target = any(model%mesh%node_sets(request%set)%members == node)
    end function is_target
-
-   !> Warns of a rotation that is not small.
-   subroutine warn_of_turn(data, angle, deck)
-      type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: angle                        ! [rad]
-      type(deck_type), intent(inout) :: deck
-
-      if (abs(angle) > large_turn) call deck%warning(data%place(4), 'a rotation of '// &
-         to_text(angle)//' rad is large: points move along their tangents, and gaps and '// &
-         'normals stay those of the undeformed model; turn the drawing, and let the rotation '// &
-         'be below '//to_text(large_turn))
-   end subroutine warn_of_turn
 
    !> Requests the rotations of reference nodes.
    subroutine add_rotations(request, deck)

@@ -60,9 +60,7 @@ contains
                counts = card_counts_type(has_amplitude=card%has('AMPLITUDE'))
                deck%step_place(n) = card%place
                if (n > 1) before = deck%model%steps(n - 1)
-               call begin_step(card, before, deck, deck%model%steps(n))
-               if (card%has('PERTURBATION')) call check_perturbation(card, n > 1, &
-                  size(deck%model%contacts) > 0, deck)
+               call begin_step(card, n > 1, before, deck, deck%model%steps(n))
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
                call begin_analysis(card, n, counts, deck, deck%model%steps)
@@ -173,8 +171,9 @@ contains
    end subroutine build_output
 
    !> Reads *STEP; output goes on as in the step before.
-   subroutine begin_step(card, before, deck, step)
+   subroutine begin_step(card, is_later, before, deck, step)
       type(keyword_card_type), intent(in) :: card
+      logical, intent(in) :: is_later
       type(step_type), intent(in) :: before
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
@@ -194,22 +193,16 @@ contains
       if (allocated(before%node_prints)) step%node_prints = before%node_prints
       if (allocated(before%element_prints)) step%element_prints = before%element_prints
       step%nlgeom = is_on(card, 'NLGEOM', deck)
-   end subroutine begin_step
-
-   !> A perturbation of the initial state is a step, unless contact changes with the load.
-   subroutine check_perturbation(card, is_later, has_contact, deck)
-      type(keyword_card_type), intent(in) :: card
-      logical, intent(in) :: is_later, has_contact
-      type(deck_type), intent(inout) :: deck
-
-      if (is_later .or. has_contact) then
+      ! A perturbation of the initial state is a step, unless contact changes with the load.
+      if (.not. card%has('PERTURBATION')) return
+      if (is_later .or. size(deck%model%contacts) > 0) then
          call deck%error(card%place_of('PERTURBATION'), 'PERTURBATION is refused on *STEP: '// &
             trim(merge('steps go on from the one before', 'contact changes with the load  ', &
             is_later))//'; leave it out')
       else
          call deck%note('*STEP: PERTURBATION is ignored: the step begins with the initial state')
       end if
-   end subroutine check_perturbation
+   end subroutine begin_step
 
    !> Reads the analysis of step n, the only one that it may have.
    subroutine begin_analysis(card, n, counts, deck, steps)
@@ -250,7 +243,6 @@ contains
       step%direct = is_on(card, 'DIRECT', deck)
       if (size(card%data) > 0) then
          call build_increments(card%data(1), deck, step)
-         if (card%name == 'HEAT TRANSFER') call check_rate(card%data(1), deck)
       else
          call deck%note('*'//card%name//' without data: one increment, period 1')
       end if
@@ -375,6 +367,9 @@ contains
       step%largest_increment = step%first_increment
       if (data%has(3)) step%smallest_increment = given(3)
       if (data%has(4)) step%largest_increment = given(4)
+      ! With it Abaqus ends a step early.
+      if (most == 5 .and. data%has(5)) call deck%warning(data%place(5), 'the fifth field, the '// &
+         'rate of temperature at which END=SS ends a step, is ignored: the step lasts its period')
       if (.not. data%has(1)) call deck%note('first increment not given: 1')
       if (.not. data%has(2)) call deck%note('period not given: 1')
       if (step%direct .and. (data%has(3) .or. data%has(4))) call deck%note('smallest and '// &
@@ -402,15 +397,6 @@ contains
             ': a smaller part of the period is lost in rounding')
       end if
    end subroutine build_increments
-
-   !> Warns of the fifth field of *HEAT TRANSFER, with which Abaqus ends a step early.
-   subroutine check_rate(data, deck)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-
-      if (data%has(5)) call deck%warning(data%place(5), 'the fifth field, the rate of '// &
-         'temperature at which END=SS ends a step, is ignored: the step lasts its period')
-   end subroutine check_rate
 
    !> Whether the times of a step are positive, and the first increment lies between the smallest
    !> and the period.

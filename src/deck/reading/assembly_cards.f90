@@ -4,7 +4,7 @@
 !> become INSTANCE.NAME. Nodes and elements of the first instance keep their numbers; those of the
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
-   use card_parameters, only: chosen, surface_kinds
+   use card_parameters, only: chosen, need_parameter, surface_kinds
    use card_values, only: read_row
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
       keyword_card_type, replace_cards
@@ -142,6 +142,7 @@ contains
       type(reading_type), intent(inout) :: open
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: name
       integer :: level
 
       associate (card => cards%keywords(k))
@@ -170,7 +171,8 @@ contains
             open%level = level
             open%opened = k
             if (level == at_part) then
-               call append(open%parts, to_upper(name_of(card, report)))
+               call need_parameter(card, 'NAME', report, name)
+               call append(open%parts, name)
                open%first = [open%first, k + 1]
                open%last = [open%last, k]
             else if (level == at_instance) then
@@ -181,16 +183,6 @@ contains
          end if
       end associate
    end subroutine take_card
-
-   function name_of(card, report) result(name)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: name
-
-      name = card%text('NAME')
-      if (len(name) == 0 .and. .not. card%flawed) call report%error(card%place, '*'//card%name// &
-         ' needs NAME=')
-   end function name_of
 
    !> Begins an instance with the cards of its part.
    subroutine open_instance(cards, card, open, all, report)
@@ -203,7 +195,7 @@ contains
       character(:), allocatable :: part
       integer :: i, k
 
-      instance%name = to_upper(name_of(card, report))
+      call need_parameter(card, 'NAME', report, instance%name)
       instance%offset = size(open%instances)*open%step
       do i = 1, size(open%instances)
          if (open%instances(i)%name == instance%name) call report%error(card%place_of('NAME'), &
@@ -214,11 +206,8 @@ contains
       if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name// &
          ': numbers of its nodes and elements are those of the part plus '// &
          to_text(instance%offset))
-      part = to_upper(card%text('PART'))
-      if (len(part) == 0) then
-         if (.not. card%flawed) call report%error(card%place, '*INSTANCE needs PART=')
-         return
-      end if
+      call need_parameter(card, 'PART', report, part)
+      if (len(part) == 0) return
       do i = 1, size(open%parts)
          if (open%parts(i)%value /= part) cycle
          do k = open%first(i), open%last(i)
