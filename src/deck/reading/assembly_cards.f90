@@ -376,50 +376,45 @@ contains
       type(instance_type), intent(in) :: instance
       type(field_type), intent(inout) :: fields(:)
       type(instance_type) :: motion
-      integer :: i, n
+      integer :: i, last, step
 
-      n = size(fields)
+      ! Fields that are names or numbers of nodes and elements: those up to the last, by this step.
+      last = size(fields)
+      step = 1
+      motion = instance
       select case (card%name)
       case ('NODE')
-         call prefix_fields(1, min(1, n), 1)
-         if (instance%moves) call move_point(data, 2, instance, fields)
+         last = 1
+         call move_point(data, 2, motion, fields)
       case ('ELEMENT')
-         call prefix_fields(1, n, 1)
+         continue
       case ('NSET', 'ELSET')
-         if (card%has('GENERATE')) n = min(2, n)
-         call prefix_fields(1, n, 1)
-      case ('NGEN')
-         call prefix_fields(1, min(2, n), 1)
+         if (card%has('GENERATE')) last = 2
+      case ('NGEN', 'TIE', 'CONTACT PAIR')
+         last = 2
       case ('ELGEN', 'SURFACE')
+         last = 1
          if (chosen(card, 'TYPE', surface_kinds) == 'SEGMENTS') then
-            if (instance%moves) call move_point(data, 2, instance, fields)
-            if (instance%moves .and. n > 3) call move_point(data, 4, instance, fields)
-         else
-            call prefix_fields(1, min(1, n), 1)
+            last = 0
+            call move_point(data, 2, motion, fields)
+            if (size(fields) > 3) call move_point(data, 4, motion, fields)
          end if
       case ('EQUATION')
-         if (n > 1) call prefix_fields(1, n, 3)
-      case ('TIE', 'CONTACT PAIR')
-         call prefix_fields(1, min(2, n), 1)
+         step = 3
+         if (last == 1) last = 0
       case ('ORIENTATION')
-         ! Points from the origin, or on the axis of a cylindrical system.
-         if (.not. instance%moves .or. position > 1) return
-         motion = instance
+         last = 0
+         ! Points from the origin, or on the axis of a cylindrical system; then an angle.
          if (.not. card%has('SYSTEM')) motion%shift = 0.0_dp
+         motion%moves = motion%moves .and. position == 1
          call move_point(data, 1, motion, fields)
          call move_point(data, 4, motion, fields)
       case default
-         continue
+         last = 0
       end select
-
-   contains
-      subroutine prefix_fields(first, last, step)
-         integer, intent(in) :: first, last, step
-
-         do i = first, last, step
-            call prefix(instance, fields(i)%text)
-         end do
-      end subroutine prefix_fields
+      do i = 1, min(last, size(fields)), step
+         call prefix(instance, fields(i)%text)
+      end do
    end subroutine convert
 
    !> Turns and shifts the point whose x is a field; what is no number is reported elsewhere.
@@ -432,6 +427,7 @@ contains
       integer :: i
       logical :: valid
 
+      if (.not. instance%moves) return
       do i = 1, 2
          x(i) = 0.0_dp
          if (len(data%text(at + i - 1)) == 0) cycle

@@ -30,7 +30,7 @@ module deck_report
 
    !> Something whose definition a reported error may hide.
    type :: lost_type
-      character(:), allocatable :: noun   !! its kind, such as node set; empty for any
+      character(:), allocatable :: noun   !! its kind in upper case, such as NODE SET; empty for any
       character(:), allocatable :: name   !! in upper case; empty for any
    end type lost_type
 
@@ -203,7 +203,7 @@ contains
       integer :: i
 
       lost = lost_type('', '')
-      if (present(noun)) lost%noun = noun
+      if (present(noun)) lost%noun = to_upper(noun)
       if (present(name)) lost%name = to_upper(name)
       if (.not. allocated(self%lost)) allocate (self%lost(0))
       do i = 1, size(self%lost)
@@ -223,7 +223,7 @@ contains
       integer :: i
 
       kind = ''
-      if (present(noun)) kind = noun
+      if (present(noun)) kind = to_upper(noun)
       has_lost = .false.
       if (self%errors == 0 .or. .not. allocated(self%lost)) return
       do i = 1, size(self%lost)
