@@ -237,15 +237,13 @@ contains
       keys = element_keys
       if (card%name == 'NODE PRINT') then
          keys = node_keys
-         call take_set(card, 'NSET', 'node set', deck%index_of('node set', card%text('NSET')), &
-            deck, request%set, is_known)
+         call take_set(card, 'NSET', 'node set', deck, request%set, is_known)
          if (is_dropped(card, deck, request%set)) is_known = .false.
          totals = choice(card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
          request%each_node = totals /= 'ONLY'
          request%totals = totals /= 'NO'
       else
-         call take_set(card, 'ELSET', 'element set', deck%index_of('element set', &
-            card%text('ELSET')), deck, request%set, is_known)
+         call take_set(card, 'ELSET', 'element set', deck, request%set, is_known)
          if (request%set > 0) then
             if (deck%mesh%element_sets(request%set)%of_lines) then
                call deck%warning(card%place_of('ELSET'), 'element set '// &
@@ -271,15 +269,15 @@ contains
    end subroutine build_print
 
    !> Takes the set of a table. One that is not known is no error where the cards of sets have some.
-   subroutine take_set(card, parameter, noun, found, deck, set, is_known)
+   subroutine take_set(card, parameter, noun, deck, set, is_known)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter, noun
-      integer, intent(in) :: found                        ! its index, 0 for none
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: set
       logical, intent(out) :: is_known
 
-      if (deck%sets_sound .or. found > 0) call deck%take_named(card, parameter, noun, set)
+      if (deck%sets_sound .or. deck%index_of(noun, card%text(parameter)) > 0) call &
+         deck%take_named(card, parameter, noun, set)
       is_known = set > 0 .or. card%lacks(parameter)
    end subroutine take_set
 

@@ -73,7 +73,7 @@ contains
       else
          target = 'element or set'
          surface = named_surface(data, deck)
-         if (surface == 0) call deck%need_elements(data, 1, request%target_type, known)
+         if (surface == 0) call deck%need_target('element', data, 1, request%target_type, known)
       end if
       names = names_of(keyword, of_surfaces)
       what = 'label of the load'

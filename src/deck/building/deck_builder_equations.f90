@@ -105,7 +105,7 @@ contains
       integer :: dof
 
       term%place = card%place(position)
-      call deck%need_nodes(card, position, term%target_type, valid)
+      call deck%need_target('node', card, position, term%target_type, valid)
       call need_field(card, position + 1, 'degree of freedom', deck, dof, valid)
       call need_field(card, position + 2, 'coefficient', deck, term%coefficient, valid)
       if (.not. valid) return

@@ -220,7 +220,7 @@ contains
             do j = 1, size(card%data)
                request%place = card%data(j)%place(1)
                call read_row(card%data(j), '@node or set/temperature', deck, given, valid)
-               call deck%need_nodes(card%data(j), 1, request%target_type, valid)
+               call deck%need_target('node', card%data(j), 1, request%target_type, valid)
                request%value = given(2)
                if (valid) call deck%temperatures%add(request)
             end do
@@ -271,7 +271,7 @@ contains
       logical :: is_flat, valid
 
       call read_row(data, '@element or set/s11/s22?/s33?/s12?', deck, given, valid)
-      call deck%need_elements(data, 1, target, valid)
+      call deck%need_target('element', data, 1, target, valid)
       stress = given(2:)
       if (.not. valid) return
       members = target%members(deck%mesh%element_sets)
@@ -311,7 +311,7 @@ contains
       next = 1
       call read_row(data, '@element/#integration point/s11/s22?/s33?/s12?/s13?/s23?', deck, given, &
          valid)
-      call deck%need_elements(data, 1, target, valid)
+      call deck%need_target('element', data, 1, target, valid)
       point = nint(given(2))
       stress = given(3:)
       associate (item => target%item)

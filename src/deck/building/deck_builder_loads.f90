@@ -179,7 +179,7 @@ contains
          layout = '@node or set/#degree of freedom/power'
       end select
       call read_row(data, layout, deck, given, valid)
-      call deck%need_nodes(data, 1, request%target_type, valid)
+      call deck%need_target('node', data, 1, request%target_type, valid)
       if (.not. valid) return
       dof = 1
       if (keyword /= 'TEMPERATURE') dof = nint(given(2))
@@ -235,7 +235,7 @@ contains
          deck%boundaries%items(deck%boundaries%count)%card + 1
       valid = .true.
       request%value = 0.0_dp
-      call deck%need_nodes(data, 1, request%target_type, valid)
+      call deck%need_target('node', data, 1, request%target_type, valid)
       if (valid) then
          if (place_in_plane(request, deck%model, 1) == 0) then
             call deck%error(data%place(1), 'these nodes have axes by *TRANSFORM that differ in '// &

@@ -54,7 +54,7 @@ contains
             call read_row(data, '@node or set/area?', deck, area, valid)
             if (data%has(2)) call deck%note('*SURFACE, TYPE=NODE: areas are ignored: those of '// &
                'the faces are taken')
-            call deck%need_nodes(data, 1, target, valid)
+            call deck%need_target('node', data, 1, target, valid)
             if (.not. valid) cycle
             named(target%members(deck%mesh%node_sets)) = .true.
          end associate

@@ -274,7 +274,7 @@ contains
             cycle
          end if
          valid = .true.
-         call deck%need_elements(card%data(j), 1, target, valid)
+         call deck%need_target('element', card%data(j), 1, target, valid)
          ! An unknown set may be one of lines, which has no face.
          if (valid .or. card%data(j)%has(2)) call read_face(card%data(j), deck, face, valid)
          call check_extra(card%data(j), 2, 'element or set, face', deck)

@@ -183,7 +183,7 @@ contains
       logical :: valid
 
       valid = .true.
-      call deck%need_nodes(data, 2, target, valid)
+      call deck%need_target('node', data, 2, target, valid)
       if (.not. valid) return
       used = .false.
       if (kind == of_sections) then

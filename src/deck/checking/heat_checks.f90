@@ -28,7 +28,6 @@ contains
       integer :: i
 
       call check_expansion(deck)
-      call check_secants(deck)
       if (.not. any(solves_heat(deck%model%steps%analysis))) return
       do i = 1, size(deck%model%contacts)
          associate (contact => deck%model%contacts(i), interaction => &
@@ -106,56 +105,44 @@ contains
          'value 0 where temperatures are rises')
    end subroutine check_no_start
 
-   !> Warns of the first *EXPANSION that is too large for small strains.
+   !> Warns of the first *EXPANSION that is too large for small strains, and of tables whose secants
+   !> begin far from the initial temperature: farther than a quarter of what the table spans.
    subroutine check_expansion(deck)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: ends(2), range, strain
-      integer :: k, m
+      real(dp) :: ends(2), initial, range, strain
+      integer :: e, i, k, m
+      logical :: is_told
 
       ends = temperature_range(deck%model)
       range = ends(2) - ends(1)
-      m = 0
-      do k = 1, size(deck%cards%keywords)
-         if (deck%cards%keywords(k)%name == 'MATERIAL') m = m + 1
-         if (deck%cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
-         if (.not. any(deck%model%sections%material == m)) cycle
-         strain = maxval(abs(deck%model%materials(m)%expansion))*range
-         if (strain <= small_strain) cycle
-         call deck%warning(deck%cards%keywords(k)%place, 'the expansion of '// &
-            deck%model%materials(m)%name//' over the range of the temperatures, '// &
-            to_text(range)//', is a strain of '//to_text(strain)//', but the theory assumes '// &
-            'small strains; check the unit of *EXPANSION, 1/temperature')
-         return
-      end do
-   end subroutine check_expansion
-
-   !> Warns of tables of expansion coefficients whose secants begin far from the initial
-   !> temperature: farther than a quarter of what the table spans.
-   subroutine check_secants(deck)
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: initial
-      integer :: e, i, k, m
-
+      is_told = .false.
       m = 0
       do k = 1, size(deck%cards%keywords)
          if (deck%cards%keywords(k)%name == 'MATERIAL') m = m + 1
          if (deck%cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
          e = findloc(deck%model%sections(deck%mesh%element_section)%material, m, dim=1)
-         if (e == 0) cycle
-         if (.not. follows_temperature(deck%model%materials(m), of_expansion)) cycle
-         associate (material => deck%model%materials(m))
+         associate (material => deck%model%materials(m), place => deck%cards%keywords(k)%place)
+            strain = maxval(abs(material%expansion))*range
+            if (strain > small_strain .and. .not. is_told .and. &
+               any(deck%model%sections%material == m)) then
+               call deck%warning(place, 'the expansion of '//material%name//' over the range '// &
+                  'of the temperatures, '//to_text(range)//', is a strain of '//to_text(strain)// &
+                  ', but the theory assumes small strains; check the unit of *EXPANSION, '// &
+                  '1/temperature')
+               is_told = .true.
+            end if
+            if (e == 0 .or. .not. follows_temperature(material, of_expansion)) cycle
             i = findloc(material%given%kind, of_expansion, dim=1)
             initial = deck%model%initial_temperature(deck%mesh%element_nodes(1, e))
             associate (rows => material%given(i)%temperature)
                if (abs(initial - material%no_strain) <= far*(rows(size(rows)) - rows(1))) cycle
             end associate
-            call deck%warning(deck%cards%keywords(k)%place, 'the coefficients of '// &
-               material%name//' are secants from ZERO='//to_text(material%no_strain)//' on, '// &
-               'far from the initial temperature '//to_text(initial)//'; give the ZERO= that '// &
-               'they were measured from')
+            call deck%warning(place, 'the coefficients of '//material%name//' are secants from '// &
+               'ZERO='//to_text(material%no_strain)//' on, far from the initial temperature '// &
+               to_text(initial)//'; give the ZERO= that they were measured from')
          end associate
       end do
-   end subroutine check_secants
+   end subroutine check_expansion
 
    !> Least and largest of the temperatures that the deck gives: initial ones, prescribed ones and
    !> sinks of films, with the extreme factors of their amplitudes.

@@ -92,8 +92,7 @@ module deck_context
       procedure :: take_named
       procedure :: need_surface
       procedure :: need_element_set
-      procedure :: need_nodes
-      procedure :: need_elements
+      procedure :: need_target
       procedure :: look_up
    end type deck_type
 
@@ -238,28 +237,20 @@ contains
       set = 0
    end subroutine need_element_set
 
-   !> Reads the field of a card that names a node or a set of nodes.
-   subroutine need_nodes(self, data, position, target, valid)
+   !> Reads the field of a card that names a node or an element, or a set of them.
+   subroutine need_target(self, noun, data, position, target, valid)
       class(deck_type), intent(inout) :: self           !! receives errors
+      character(*), intent(in) :: noun                  !! node or element
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
 
-      call read_target(data, position, self%node_index, self%mesh%node_sets, self, target, valid)
-   end subroutine need_nodes
-
-   !> Reads the field of a card that names an element or a set of elements.
-   subroutine need_elements(self, data, position, target, valid)
-      class(deck_type), intent(inout) :: self           !! receives errors
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position                   !! position of the field
-      type(target_type), intent(out) :: target
-      logical, intent(inout) :: valid                   !! becomes false after an error
-
-      call read_target(data, position, self%element_index, self%mesh%element_sets, self, target, &
-         valid)
-   end subroutine need_elements
+      if (noun == 'node') call read_target(data, position, self%node_index, self%mesh%node_sets, &
+         self, target, valid)
+      if (noun == 'element') call read_target(data, position, self%element_index, &
+         self%mesh%element_sets, self, target, valid)
+   end subroutine need_target
 
    !> Reports an element set that has lines only where elements or their faces are due.
    subroutine report_lines(name, place, report, valid)

@@ -116,8 +116,11 @@ contains
       integer :: i
 
       if (root_cause_of(self, place) > 0) return
-      i = first_error_of(self, place)
-      if (i == 0) then
+      do i = 1, self%count
+         if (self%diagnostics(i)%place%image == place%image .and. &
+            self%diagnostics(i)%severity == severity_error) exit
+      end do
+      if (i > self%count) then
          call add(self, severity_warning, place, message)
          i = self%count
       end if
@@ -162,21 +165,6 @@ contains
             self%diagnostics(root_cause_of)%place%image == place%image) return
       end do
    end function root_cause_of
-
-   !> Index of the first error of a card image; 0 where there is none.
-   pure integer function first_error_of(self, place)
-      class(deck_report_type), intent(in) :: self
-      type(place_type), intent(in) :: place
-      integer :: i
-
-      first_error_of = 0
-      do i = 1, self%count
-         if (self%diagnostics(i)%place%image /= place%image) cycle
-         if (self%diagnostics(i)%severity /= severity_error) cycle
-         first_error_of = i
-         return
-      end do
-   end function first_error_of
 
    !> Reports that something is not there, unless a reported error may hide its definition; one name
    !> is told once.
