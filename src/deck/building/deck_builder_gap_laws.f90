@@ -154,7 +154,15 @@ contains
       if (size(card%data) == 1) layout = layout//'?'
       do i = 1, size(card%data)
          call read_row(card%data(i), layout, deck, values(:, i), valid)
-         if (valid) call check_values(card%data(i), values(:2, i), law%added_length, deck)
+         ! The conductance at gap 0 is a number.
+         associate (least => values(2, i) + law%added_length)
+            if (valid .and. least <= 0.0_dp) then
+               call deck%error(card%data(i)%place(2), 'B must be positive')
+            else if (valid .and. values(1, i) > largest_magnitude*least) then
+               call deck%error(card%data(i)%place(1), 'the conductance A/B at gap 0 exceeds '// &
+                  to_text(largest_magnitude))
+            end if
+         end associate
          if (values(2, i) + law%added_length <= 0.0_dp) values(2, i) = 1.0_dp
          if (valid .and. any(values(3, :i - 1) >= values(3, i))) call deck%error( &
             card%data(i)%place(3), 'temperatures must ascend')
@@ -168,21 +176,6 @@ contains
       law%by_temperature%gas_b = values(2, :)
       call note_ends('*GAP LAW, TYPE=GAS', name, 'mean temperatures', values(3, :), deck)
    end subroutine build_gas_law
-
-   !> B with the lengths that add to it is positive, and the conductance at gap 0 a number.
-   subroutine check_values(data, given, added, deck)
-      type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: given(2)    ! A and B
-      real(dp), intent(in) :: added       ! to B [length]
-      type(deck_type), intent(inout) :: deck
-
-      if (given(2) + added <= 0.0_dp) then
-         call deck%error(data%place(2), 'B must be positive')
-      else if (given(1) > largest_magnitude*(given(2) + added)) then
-         call deck%error(data%place(1), 'the conductance A/B at gap 0 exceeds '// &
-            to_text(largest_magnitude))
-      end if
-   end subroutine check_values
 
    !> sigma eps of the radiation between the faces.
    subroutine take_emissivity(card, deck, law)

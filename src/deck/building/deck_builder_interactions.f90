@@ -33,7 +33,9 @@ contains
       type(deck_type), intent(inout) :: deck
       type(interaction_type) :: interaction
       type(place_type) :: law_place
+      real(dp) :: thickness(1)
       integer :: k, n, errors
+      logical :: valid
 
       allocate(deck%model%interactions(card_count(deck%cards, 'SURFACE INTERACTION')))
       n = 0
@@ -46,7 +48,12 @@ contains
                n = n + 1
                call deck%take_name(k, 'surface interaction', deck%model%interactions(n)%name)
                law_place = card%place
-               call ignore_thickness(card, deck)
+               if (size(card%data) > 0) then
+                  ! Out of the plane; Abaqus needs it for surfaces of nodes alone.
+                  call read_row(card%data(1), 'thickness? >0 =1', deck, thickness, valid)
+                  call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of '// &
+                     '*SOLID SECTION is taken')
+               end if
                interaction = deck%model%interactions(n)
                call build_laws(k, deck, interaction, law_place)
                deck%model%interactions(n) = interaction
@@ -64,19 +71,6 @@ contains
          end associate
       end do
    end subroutine build_interactions
-
-   !> Thickness of the contact out of the plane, which Abaqus needs for surfaces of nodes alone.
-   subroutine ignore_thickness(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: thickness(1)
-      logical :: valid
-
-      if (size(card%data) == 0) return
-      call read_row(card%data(1), 'thickness? >0', deck, thickness, valid)
-      call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of *SOLID SECTION '// &
-         'is taken')
-   end subroutine ignore_thickness
 
    !> Reads the laws behind one *SURFACE INTERACTION.
    subroutine build_laws(place, deck, interaction, law_place)

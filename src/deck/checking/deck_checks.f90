@@ -2,8 +2,9 @@
 !> whether the deck uses all that it defines, for whole steps; what it does not may be a slip.
 module deck_checks
    use amplitudes, only: amplitude_type, amplitude_value
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: keyword_card_type
    use deck_context, only: deck_type
+   use deck_structure, only: cards_of
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
    use kinds, only: dp, long
@@ -235,9 +236,11 @@ contains
       logical, intent(inout) :: told(:)
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
+      integer, allocatable :: cards(:)
       real(dp) :: start, last
       integer :: a, i, s
 
+      cards = cards_of(deck%cards, 'AMPLITUDE')
       do i = 1, requests%count
          a = requests%items(i)%amplitude
          if (a == 0) cycle
@@ -263,7 +266,7 @@ contains
                to_text(curve%values(size(curve%values)))//', is kept'
             if (message == '') cycle
             told(a) = .true.
-            call deck%warning(deck%cards%keywords(card_of(deck%cards, a))%place, message)
+            call deck%warning(deck%cards%keywords(cards(a))%place, message)
          end associate
       end do
    end subroutine check_amplitudes
@@ -319,18 +322,5 @@ contains
 
       is_level = all(abs(curve%values - curve%values(1)) <= 0.0_dp)
    end function is_level
-
-   !> Index of the card that defines the n-th amplitude.
-   pure integer function card_of(cards, n)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: n
-      integer :: found
-
-      found = 0
-      do card_of = 1, size(cards%keywords)
-         if (cards%keywords(card_of)%name == 'AMPLITUDE') found = found + 1
-         if (found == n) return
-      end do
-   end function card_of
 
 end module deck_checks
