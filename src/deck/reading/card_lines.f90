@@ -217,20 +217,15 @@ contains
       type(card_lines_type), intent(inout) :: self
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
-      integer :: i, width
+      integer :: width
       logical :: valid
 
-      do i = 1, size(card%parameters)
-         if (card%parameters(i)%name /= 'WIDTH') cycle
-         call read_integer(card%parameters(i)%text, width, valid)
-         if (valid) valid = width >= least_width
-         if (valid) then
-            self%width = max(self%width, width)
-         else
-            call report%error(card%parameters(i)%value_place, &
-               'WIDTH= needs a whole number of at least '//to_text(least_width))
-         end if
-      end do
+      if (.not. card%has('WIDTH')) return
+      call read_integer(card%text('WIDTH'), width, valid)
+      if (valid) valid = width >= least_width
+      if (valid) self%width = max(self%width, width)
+      if (.not. valid) call report%error(card%place_of('WIDTH'), 'WIDTH= needs a whole number '// &
+         'of at least '//to_text(least_width))
    end subroutine take_width
 
    subroutine take_data_line(self, line, image, cards, report)

@@ -228,12 +228,11 @@ contains
       class(deck_type), intent(inout) :: self           !! receives errors
       type(keyword_card_type), intent(in) :: card
       integer, intent(out) :: set
-      logical :: valid
 
       call self%need_named(card, 'ELSET', 'element set', set)
       if (set == 0) return
       if (.not. self%mesh%element_sets(set)%of_lines) return
-      call report_lines(self%mesh%element_sets(set)%name, card%place_of('ELSET'), self, valid)
+      call report_lines(self%mesh%element_sets(set)%name, card%place_of('ELSET'), self)
       set = 0
    end subroutine need_element_set
 
@@ -253,15 +252,13 @@ contains
    end subroutine need_target
 
    !> Reports an element set that has lines only where elements or their faces are due.
-   subroutine report_lines(name, place, report, valid)
+   subroutine report_lines(name, place, report)
       character(*), intent(in) :: name                  !! the set
       type(place_type), intent(in) :: place             !! where it is
       class(deck_report_type), intent(inout) :: report  !! receives the error
-      logical, intent(inout) :: valid                   !! becomes false
 
       call report%error(place, 'element set '//name// &
          ' contains only lines, springs or trusses; make a *SURFACE or an *NSET of lines')
-      valid = .false.
    end subroutine report_lines
 
    !> Reads the field of a card that names one node or element by its number, or a set by its name.
@@ -287,8 +284,10 @@ contains
          if (target%set > size(sets)) target%set = 0
       end if
       if (target%set > 0) then
-         if (sets(target%set)%of_lines) call report_lines(sets(target%set)%name, &
-            data%place(position), deck, valid)
+         if (sets(target%set)%of_lines) then
+            call report_lines(sets(target%set)%name, data%place(position), deck)
+            valid = .false.
+         end if
       end if
       if (target%item > 0 .or. target%set > 0) return
       valid = .false.
