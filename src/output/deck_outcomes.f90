@@ -9,7 +9,6 @@ module deck_outcomes
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
    use text, only: append, counted, string_type, to_text, with_decimals
-   use utf8, only: printable
    implicit none
    private
    public :: deck_outcome_type, end_of_run, counts_of_checks
@@ -54,7 +53,6 @@ module deck_outcomes
       procedure :: words
       procedure :: is_earlier
       procedure :: print => print_outcome
-      procedure :: round_summary
       procedure :: print_failed_checks
    end type deck_outcome_type
 
@@ -209,33 +207,7 @@ contains
       call print_line(output_unit, self%path//': '//self%words()//', '// &
          counted(self%increments, 'increment')//' in '//with_decimals(self%seconds, 2)//' s'// &
          doubts)
-      lines = lines_below(self, results)
-      do i = 1, size(lines)
-         call print_line(output_unit, '  '//lines(i)%value)
-      end do
-   end subroutine print_outcome
-
-   !> Lines on the last whole round, printed behind `deck: interrupted`.
-   function round_summary(self, results) result(words)
-      class(deck_outcome_type), intent(in) :: self    !! the run, whose last round was whole
-      character(*), intent(in) :: results             !! path of its results without extension
-      character(:), allocatable :: words              !! lines with their ends
-      type(string_type), allocatable :: lines(:)
-      integer :: i
-
-      words = ', '//counted(self%increments, 'increment')//new_line('a')
-      lines = lines_below(self, results)
-      do i = 1, size(lines)
-         words = words//printable('  '//lines(i)%value)//new_line('a')
-      end do
-   end function round_summary
-
-   !> Summary of the run, where its results are, and how many checks passed.
-   function lines_below(self, results) result(lines)
-      class(deck_outcome_type), intent(in) :: self
-      character(*), intent(in) :: results
-      type(string_type), allocatable :: lines(:)
-
+      ! Where its results are, and how many checks passed.
       allocate (lines(0))
       if (allocated(self%summary)) lines = self%summary
       if (self%files > 0 .and. (self%keeps_round .or. self%status /= status_deck .and. &
@@ -243,7 +215,10 @@ contains
          trim(extensions(self%files)))
       if (self%verify_passed + self%verify_failed > 0) call append(lines, &
          counts_of_checks(self%verify_passed, self%verify_failed))
-   end function lines_below
+      do i = 1, size(lines)
+         call print_line(output_unit, '  '//lines(i)%value)
+      end do
+   end subroutine print_outcome
 
    !> Prints the checks that failed on stderr, one line each.
    subroutine print_failed_checks(self)

@@ -14,7 +14,7 @@ module deck_run
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
    use interruption, only: caught_signal, end_after_grace, end_at_once, end_by_increments, &
-      run_end_type
+      prepare_end
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use messages, only: print_error, print_line
@@ -40,7 +40,6 @@ module deck_run
       type(read_deck_type), pointer :: deck => null()
       type(deck_outcome_type), pointer :: outcome => null()
       integer :: lock = -1                    !! as run_output_type's reserve
-      type(run_end_type) :: end               !! of an increment that takes too long
       ! Of the present round.
       type(model_type), pointer :: model => null()
       type(simulation_type), pointer :: simulation => null()
@@ -103,9 +102,7 @@ contains
          ! Shortcomings of the round before count no longer.
          outcome%known_to = 0.0_dp
          if (allocated(outcome%reason)) deallocate (outcome%reason)
-         if (outcome%keeps_round .and. .not. self%command%quiet) call self%end%prepare_summary( &
-            outcome%round_summary(results_of(self%path, self%command)))
-         call prepare_end(self, end_at_once)
+         call may_end(self, end_at_once)
          call begin_round(self, rounds%variation)
          if (outcome%status == status_ok .and. allocated(model%steps)) then
             output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
@@ -207,10 +204,9 @@ contains
       self%output%run%deck_path = self%path
       call make_folder(self%command%folder, error)
       if (allocated(error)) return
-      call self%end%hold(.true.)
+      call may_end(self, end_by_increments)
       call self%output%reserve(results_of(self%path, self%command), self%lock, error)
-      call prepare_end(self, end_at_once)
-      call self%end%hold(.false.)
+      call may_end(self, end_at_once)
    end subroutine reserve_files
 
    !> All increments, with their output.
@@ -224,7 +220,7 @@ contains
 
       associate (model => self%model, output => self%output, outcome => self%outcome, &
          cards => self%deck%cards%images)
-         call self%end%hold(.true.)
+         call may_end(self, end_by_increments)
          call self%simulation%bodies%views(interfaces)
          associate (points => self%simulation%recovery%points)
             call output%start(model, interfaces, points%node, points%element_points, cards, error)
@@ -238,8 +234,7 @@ contains
             if (allocated(error)) return
          end if
          call outcome%note_files(output%written())
-         call prepare_end(self, end_at_once)
-         call self%end%hold(.false.)
+         call may_end(self, end_at_once)
          self%is_written = .true.
          call begin_increment(self, error)
          if (allocated(self%deck%origin)) then
@@ -249,8 +244,7 @@ contains
             call rounds%solve_increments(model, self%simulation, self, record, error)
          end if
          ! From here on, output is not cut short.
-         call self%end%hold(.true.)
-         call prepare_end(self, end_by_increments)
+         call may_end(self, end_by_increments)
          if (.not. self%is_written) then
             call output%break_off(error%message)
             return
@@ -288,7 +282,7 @@ contains
       type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
 
-      call prepare_end(self, end_after_grace)
+      call may_end(self, end_after_grace)
       call check_signals(self, error)
       if (.not. allocated(error) .and. self%output%kept_round > 0 .and. &
          wall_seconds() > self%deadline) call set_error(error, status_verify, '--limit is over')
@@ -312,14 +306,13 @@ contains
          if (allocated(error)) then
             if (error%status == status_interrupted) call check_signals(self, error)
          else
-            call self%end%hold(.true.)
+            call may_end(self, end_by_increments)
             if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
             call simulation%bodies%views(interfaces)
             call output%accept(record, self%model, interfaces, error)
             call outcome%note(record, output%results%accepted, output%written())
             self%is_written = .not. allocated(error)
             if (allocated(error)) return
-            call self%end%hold(.false.)
             if (.not. simulation%finished(self%model)) call begin_increment(self, error)
          end if
          if (allocated(error)) then
@@ -346,28 +339,27 @@ contains
       end associate
    end subroutine take_checks
 
-   !> Prepares the end of the run from here on: within an increment that takes too long after a
-   !> signal, or where there is no memory left.
-   subroutine prepare_end(self, when)
-      type(deck_run_type), intent(inout) :: self
+   !> When a signal may end the run from here on; what is said then, or where memory runs out.
+   subroutine may_end(self, when)
+      type(deck_run_type), intent(in) :: self
       integer, intent(in) :: when   ! one of the end_* constants
+      character(:), allocatable :: words, leftover
+      integer :: bytes
 
-      self%end%when = when
-      self%end%shows_progress = self%output%progress%is_shown
-      self%end%deck = printable(self%path)
-      self%end%where = where_words(self)
-      self%end%listing = or_blank(self%output%listing%path)
-      self%end%working = or_blank(self%output%results%file%working_path)
-      self%end%kept = self%output%kept()
-      self%end%holds = kept_words(self)
-      ! Increments that wait for their publication are lost with the process.
-      if (self%output%kept_round == 0 .and. self%output%results%published < &
-         self%output%results%accepted) then
-         self%end%holds = '; the results hold those up to number '// &
-            to_text(self%output%results%published)
-      end if
-      call self%end%prepare()
-   end subroutine prepare_end
+      words = where_words(self)//kept_words(self)
+      associate (output => self%output, increments => self%simulation%control%increments)
+         ! Increments that wait for their publication are lost with the process.
+         if (output%kept_round == 0 .and. output%results%published < increments) words = words// &
+            '; the results hold those up to number '//to_text(output%results%published)
+         leftover = or_blank(output%results%file%working_path)
+         if (.not. output%listing%is_begun()) then
+            ! It is locked, and holds an earlier run or nothing at all.
+            inquire (file=or_blank(output%listing%path), size=bytes)
+            if (bytes == 0) leftover = output%listing%path
+         end if
+         call prepare_end(when, output%progress%is_shown, printable(self%path), words, leftover)
+      end associate
+   end subroutine may_end
 
    !> Puts the increment that was tried before what went wrong.
    subroutine say_when(self, error)
