@@ -3,7 +3,6 @@
 !> one. Open files have descriptors, see open_files. The calls themselves are in file_calls.c.
 module file_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_long, c_null_char, c_ptr
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char
    use errors, only: error_type, set_error, status_internal
    use kinds, only: long
    use text, only: to_text
@@ -12,12 +11,13 @@ module file_calls
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file, &
       sync_file, &
       try_file, try_growth, create_working_file, remove_working_files, survive_file_limits, &
-      cannot_write, reason_of, without_end, print_text, check_printed, file_identity_type, &
-      identity_of, real_path_of, is_working_file, check_in_place
+      cannot_write, reason_of, print_text, check_printed, identity_of, real_path_of, is_working_file, check_in_place
 
    integer(c_int), parameter :: too_long = -3_c_int   !! as in file_calls.c
    integer, parameter :: reason_length = 200
    integer, parameter :: number_length = 24   !! of what a working file's name adds, at most
+   integer, parameter :: longest_path = 4096  !! PATH_MAX of Linux
+   character(*), parameter :: working_end = '.tmp'   !! of working files, as in file_calls.c
 
    abstract interface
       integer(c_int) function path_call(path) bind(c)
@@ -106,21 +106,7 @@ module file_calls
       !> From now on a file that would grow past the limit of the process is an error like others.
       subroutine survive_file_limits() bind(c, name='file_survive_limits')
       end subroutine survive_file_limits
-   end interface
 
-   integer, parameter :: longest_path = 4096           !! PATH_MAX of Linux
-   character(*), parameter :: working_end = '.tmp'     !! of working files, as in file_calls.c
-
-   !> Identity of a file, which all paths to it share.
-   type :: file_identity_type
-      integer(c_long), private :: device = 0   !! both 0 where there is no regular file
-      integer(c_long), private :: inode = 0
-   contains
-      procedure :: is_there
-      procedure :: is_same
-   end type file_identity_type
-
-   interface
       subroutine c_identity(path, identity) bind(c, name='file_identity')
          import :: c_char, c_long
          character(kind=c_char), intent(in) :: path(*)
@@ -133,12 +119,6 @@ module file_calls
          integer(c_int), value :: length
          character(kind=c_char), intent(out) :: real_path(length)
       end subroutine c_real_path
-
-      integer(c_int) function c_is_at(path, descriptor) bind(c, name='file_is_at')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: descriptor
-      end function c_is_at
    end interface
 
 contains
@@ -344,29 +324,18 @@ contains
       string = buffer(:index(buffer//c_null_char, c_null_char) - 1)
    end function without_end
 
-   !> The file at a path. Pipes and devices, whose contents nothing replaces, count as none.
-   type(file_identity_type) function identity_of(path)
-      character(*), intent(in) :: path    !! the file, which may be missing
-      integer(c_long) :: identity(2)
+   !> What tells the file at a path from others: all paths to it have the same identity. Pipes and
+   !> devices, whose contents nothing replaces, count as none.
+   function identity_of(path) result(identity)
+      character(*), intent(in) :: path           !! the file, which may be missing
+      character(:), allocatable :: identity      !! empty where there is no regular file
+      integer(c_long) :: device_and_inode(2)
 
-      call c_identity(path//c_null_char, identity)
-      identity_of = file_identity_type(identity(1), identity(2))
+      identity = ''
+      call c_identity(path//c_null_char, device_and_inode)
+      if (device_and_inode(2) /= 0) identity = to_text(int(device_and_inode(1), long))//':'// &
+         to_text(int(device_and_inode(2), long))
    end function identity_of
-
-   !> Whether there is a regular file.
-   elemental logical function is_there(self)
-      class(file_identity_type), intent(in) :: self
-
-      is_there = self%inode /= 0
-   end function is_there
-
-   !> Whether two paths lead to one file.
-   elemental logical function is_same(self, other)
-      class(file_identity_type), intent(in) :: self
-      type(file_identity_type), intent(in) :: other   !! the file of another path
-
-      is_same = self%is_there() .and. self%device == other%device .and. self%inode == other%inode
-   end function is_same
 
    !> A path without links.
    function real_path_of(path) result(real_path)
@@ -403,8 +372,8 @@ contains
       integer, intent(in) :: descriptor                    !! of the open file
       type(error_type), allocatable, intent(out) :: error
 
-      if (c_is_at(path//c_null_char, int(descriptor, c_int)) == 0) call set_error(error, &
-         status_internal, cannot_write(path, 'it was removed or replaced during the run'))
+      if (identity_of(path) /= identity_of('/proc/self/fd/'//to_text(descriptor))) call set_error( &
+         error, status_internal, cannot_write(path, 'it was removed or replaced during the run'))
    end subroutine check_in_place
 
 end module file_calls

@@ -10,7 +10,7 @@ module batch
    use deck_reader, only: files_of_deck
    use deck_run, only: run_deck
    use errors, only: error_type, status_deck, status_internal, status_interrupted
-   use file_calls, only: file_identity_type, identity_of, is_stream, make_folder
+   use file_calls, only: identity_of, is_stream, make_folder
    use interruption, only: catch_signals, caught_signal, caught_times
    use kinds, only: dp
    use messages, only: pass_on, print_error, print_line
@@ -172,7 +172,6 @@ contains
       type(input_files_type) :: inputs
       ! A variable: gfortran does not free the components of a function's result in an expression.
       type(string_type), allocatable :: of_deck(:), outputs(:)
-      type(file_identity_type) :: identity
       integer :: i
       logical :: any_is_there
 
@@ -184,8 +183,7 @@ contains
       end do
       any_is_there = .false.
       do i = 1, size(outputs)
-         identity = identity_of(outputs(i)%value)
-         any_is_there = any_is_there .or. identity%is_there()
+         any_is_there = any_is_there .or. identity_of(outputs(i)%value) /= ''
       end do
       ! In a new folder the decks are read once only.
       if (.not. any_is_there) return
