@@ -144,7 +144,20 @@ int file_create_working(const char *stem, char *path, int length)
    }
 }
 
-/* Removes the files `stem.<number>.tmp`, which runs left that were killed. */
+/* Whether a file begins as HDF5 files do, with their signature or a hole, or is empty. */
+static int may_be_result(int folder, const char *name)
+{
+   char first = 0;
+   int descriptor = openat(folder, name, O_RDONLY | O_CLOEXEC);
+
+   if (descriptor < 0 || read(descriptor, &first, 1) < 0)
+      first = 'x';
+   if (descriptor >= 0)
+      close(descriptor);
+   return first == 0 || first == '\x89';
+}
+
+/* Removes the results `stem.<number>.tmp`, which runs left that were killed. */
 void file_remove_working(const char *stem)
 {
    const char *slash = strrchr(stem, '/');
@@ -159,7 +172,8 @@ void file_remove_working(const char *stem)
 
       if (strncmp(entry->d_name, name, length) != 0 || entry->d_name[length] != '.')
          continue;
-      if (strspn(rest, "0123456789") > 0 && strcmp(rest + strspn(rest, "0123456789"), ".tmp") == 0)
+      if (strspn(rest, "0123456789") > 0 && strcmp(rest + strspn(rest, "0123456789"), ".tmp") == 0
+         && may_be_result(dirfd(entries), entry->d_name))
          unlinkat(dirfd(entries), entry->d_name, 0);
    }
    if (entries)
@@ -175,15 +189,6 @@ void file_identity(const char *path, long identity[2])
 
    identity[0] = is_there ? (long)status.st_dev : 0;
    identity[1] = is_there ? (long)status.st_ino : 0;
-}
-
-/* A path without links, cut to the buffer; empty where nothing is there. */
-void file_real_path(const char *path, char *real, int length)
-{
-   char *found = realpath(path, NULL);
-
-   snprintf(real, (size_t)length, "%s", found ? found : "");
-   free(found);
 }
 
 /* Makes a file anew. */

@@ -22,10 +22,19 @@ module interruption
          integer(c_int), value :: outlives_pipes
       end subroutine c_catch_signals
 
-      subroutine c_signals(name, number, overdue) bind(c, name='thercon_signals')
+      !> Which signal came: nothing 0, SIGINT 1, SIGTERM 2.
+      integer(c_int) function c_caught() bind(c, name='thercon_caught')
          import :: c_int
-         integer(c_int), intent(out) :: name, number, overdue
-      end subroutine c_signals
+      end function c_caught
+
+      !> How many of these signals came.
+      integer(c_int) function caught_times() bind(c, name='thercon_caught_times')
+         import :: c_int
+      end function caught_times
+
+      integer(c_int) function c_is_overdue() bind(c, name='thercon_is_overdue')
+         import :: c_int
+      end function c_is_overdue
 
       subroutine c_prepare_end(when, shows, deck, where, leftover) &
          bind(c, name='thercon_prepare_end')
@@ -55,29 +64,16 @@ contains
    function caught_signal() result(name)
       character(:), allocatable :: name   !! SIGINT, SIGTERM or empty
       character(*), parameter :: names(0:2) = [character(7) :: '', 'SIGINT', 'SIGTERM']
-      integer(c_int) :: signal, times, is_overdue
 
-      call c_signals(signal, times, is_overdue)
-      name = trim(names(signal))
+      name = trim(names(c_caught()))
    end function caught_signal
-
-   !> How many of these signals came.
-   integer function caught_times()
-      integer(c_int) :: signal, times, is_overdue
-
-      call c_signals(signal, times, is_overdue)
-      caught_times = int(times)
-   end function caught_times
 
    !> Whether the current increment has had its time after a signal.
    !> Error: status_interrupted.
    subroutine check_overdue(error)
       type(error_type), allocatable, intent(out) :: error
-      integer(c_int) :: signal, times, is_overdue
 
-      call c_signals(signal, times, is_overdue)
-      if (is_overdue == 0_c_int) return
-      call set_error(error, status_interrupted, 'ended by '//caught_signal())
+      if (c_is_overdue() /= 0_c_int) call set_error(error, status_interrupted, 'ended by '//caught_signal())
    end subroutine check_overdue
 
    !> From now on this holds where a signal or a lack of memory ends the run: a line on stderr, and

@@ -3,7 +3,7 @@
 module open_files
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char
    use errors, only: error_type, set_error, status_internal
-   use file_calls, only: cannot_write, reason_of
+   use file_calls, only: cannot_write, check_written
    implicit none
    private
    public :: open_new_file, write_file, lock_file, unlock_file, write_to_file, empty_file, &
@@ -55,11 +55,10 @@ contains
       character(*), intent(in) :: path                     !! the file
       integer, intent(out) :: descriptor                   !! the open file, -1 after an error
       type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number, opened
+      integer(c_int) :: opened
 
-      number = c_open_new(path//c_null_char, opened)
+      call check_written(c_open_new(path//c_null_char, opened), path, error)
       descriptor = int(opened)
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
    end subroutine open_new_file
 
    !> Makes a file of a text.
@@ -96,7 +95,7 @@ contains
          call set_error(error, status_internal, cannot_write(path, &
             'another run writes here; wait for its end or name another folder with --out'))
       case default
-         call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+         call check_written(number, path, error)
       end select
    end subroutine lock_file
 
@@ -117,12 +116,11 @@ contains
       type(error_type), allocatable, intent(out) :: error  !! with the system's reason
       integer, intent(in), optional :: position            !! bytes before the text
       integer(c_long) :: before
-      integer(c_int) :: number
 
       before = -1
       if (present(position)) before = position
-      number = c_write(int(descriptor, c_int), before, string, len(string, kind=c_long))
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+      call check_written(c_write(int(descriptor, c_int), before, string, &
+         len(string, kind=c_long)), path, error)
    end subroutine write_to_file
 
    !> Empties an open file.
@@ -131,10 +129,8 @@ contains
       integer, intent(in) :: descriptor                    !! the open file
       character(*), intent(in) :: path                     !! its path, for the message
       type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number
 
-      number = c_empty(int(descriptor, c_int))
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+      call check_written(c_empty(int(descriptor, c_int)), path, error)
    end subroutine empty_file
 
    !> Closes what was opened here.

@@ -194,13 +194,11 @@ void thercon_catch_signals(int outlives_pipes)
    if (outlives_pipes) signal(SIGPIPE, SIG_IGN);
 }
 
-/* What came: nothing 0, SIGINT 1, SIGTERM 2; how often; whether the increment had its time. */
-void thercon_signals(int *name, int *number, int *overdue)
-{
-   *name = caught == 0 ? 0 : caught == SIGINT ? 1 : 2;
-   *number = times;
-   *overdue = is_overdue;
-}
+int thercon_caught(void) { return caught == 0 ? 0 : caught == SIGINT ? 1 : 2; }
+
+int thercon_caught_times(void) { return times; }
+
+int thercon_is_overdue(void) { return is_overdue; }
 
 static void take_words(char *buffer, const char *words)
 {

@@ -45,9 +45,8 @@ module listing
       procedure :: open => open_listing
       procedure :: is_begun
       procedure :: add
-      procedure :: add_failure
+      procedure :: end_early
       procedure :: break_off
-      procedure :: drop_draft
       procedure :: warn
       procedure :: finish
       procedure :: close => close_listing
@@ -157,50 +156,38 @@ contains
    end subroutine add
 
    !> Says why the run ended early; prints the attempts at an increment that failed, and the passes
-   !> of the last one.
-   subroutine add_failure(self, reason, record, kept)
+   !> of the last one. Of a draft nothing else is left: what the file holds stays before it.
+   subroutine end_early(self, reason, record, kept)
       class(listing_type), intent(inout) :: self
       character(*), intent(in) :: reason                     !! what went wrong
       type(increment_record_type), intent(in) :: record      !! that increment; empty for none
       character(*), intent(in) :: kept                       !! what the results hold, a sentence
+      character(:), allocatable :: dropped
 
+      if (self%is_draft) call self%page%take(dropped)
+      self%is_draft = .false.
       self%failure = reason
       call self%page%title('ENDED EARLY')
       call self%page%wrapped('   ', reason)
-      call self%page%wrapped('   ', kept)
+      if (kept /= '') call self%page%wrapped('   ', kept)
       if (allocated(record%failed)) call print_attempts(self%page, record%failed)
       if (allocated(record%iterations)) call print_iterations(self%page, &
          pack(record%iterations, record%iterations%cut_backs == record%cut_backs))
-   end subroutine add_failure
+   end subroutine end_early
 
-   !> Ends the listing, where it is open, with the reason why the run cannot go on; whether there is
+   !> Ends the listing, if it is reserved, with the reason why the run cannot go on; whether there is
    !> room for that is not asked.
-   subroutine break_off(self, reason)
+   subroutine break_off(self, reason, record, kept)
       class(listing_type), intent(inout) :: self
       character(*), intent(in) :: reason                     !! what went wrong
+      type(increment_record_type), intent(in) :: record      !! as for end_early
+      character(*), intent(in) :: kept                       !! what the results hold, or nothing
       type(error_type), allocatable :: ignored
 
-      if (.not. allocated(self%warnings)) return
-      call self%page%title('ENDED EARLY')
-      call self%page%wrapped('   ', reason)
+      if (self%descriptor < 0) return   ! another run writes the file
+      call self%end_early(reason, record, kept)
       call write_text(self, ignored)
    end subroutine break_off
-
-   !> Drops a draft; what the file holds stays, and the reason why there is no more follows it.
-   subroutine drop_draft(self, reason, record, kept)
-      class(listing_type), intent(inout) :: self
-      character(*), intent(in) :: reason                     !! what went wrong
-      type(increment_record_type), intent(in) :: record      !! as for add_failure
-      character(*), intent(in) :: kept                       !! what the results hold, a sentence
-      character(:), allocatable :: dropped
-      type(error_type), allocatable :: ignored
-
-      if (self%descriptor < 0) return   ! not reserved: another run writes the file
-      self%is_draft = .false.
-      call self%page%take(dropped)
-      call self%add_failure(reason, record, kept)
-      call write_text(self, ignored)
-   end subroutine drop_draft
 
    !> Takes the warnings of the run as a whole.
    subroutine warn(self, warnings)

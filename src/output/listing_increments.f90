@@ -2,7 +2,6 @@
 !> end of a step the errors of bodies in the energy norm and the bounds of interfaces' quantities.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use body_lines, only: corner_words, place_words
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use field_quantities, only: maxima
@@ -20,7 +19,7 @@ module listing_increments
       increment_record_type, interface_errors_type
    use reported_quantities, only: quantities
    use steps, only: solves_heat, solves_mechanics
-   use summary, only: words_of
+   use summary, only: corner_words, place_words, words_of
    use text, only: append, string_type, to_text, with_decimals
    implicit none
    private
