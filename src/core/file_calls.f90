@@ -261,8 +261,8 @@ contains
       character(len(path) + number_length, kind=c_char) :: buffer
 
       buffer = ''
-      call check_written(c_create_working(path//c_null_char, buffer, len(buffer, kind=c_int)), path, &
-         error)
+      call check_written(c_create_working(path//c_null_char, buffer, len(buffer, kind=c_int)), &
+         path, error)
       working_path = without_end(buffer)
    end subroutine create_working_file
 

@@ -73,7 +73,8 @@ contains
    subroutine check_overdue(error)
       type(error_type), allocatable, intent(out) :: error
 
-      if (c_is_overdue() /= 0_c_int) call set_error(error, status_interrupted, 'ended by '//caught_signal())
+      if (c_is_overdue() /= 0_c_int) call set_error(error, status_interrupted, &
+         'ended by '//caught_signal())
    end subroutine check_overdue
 
    !> From now on this holds where a signal or a lack of memory ends the run: a line on stderr, and

@@ -175,7 +175,7 @@ contains
          pack(record%iterations, record%iterations%cut_backs == record%cut_backs))
    end subroutine end_early
 
-   !> Ends the listing, if it is reserved, with the reason why the run cannot go on; whether there is
+   !> Ends the listing that is reserved with the reason why the run cannot go on; whether there is
    !> room for that is not asked.
    subroutine break_off(self, reason, record, kept)
       class(listing_type), intent(inout) :: self

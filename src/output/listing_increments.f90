@@ -49,8 +49,9 @@ contains
       passes = size(record%iterations)
       if (passes == 0) return
       call page%line('   iterations '//to_text(passes)//'   cut-backs '// &
-         to_text(record%cut_backs)//'   residual'//column(history_value('residual', record), 9, 2)// &
-         '  (floor'//column(history_value('residual_floor', record), 9, 2)//')')
+         to_text(record%cut_backs)//'   residual'// &
+         column(history_value('residual', record), 9, 2)//'  (floor'// &
+         column(history_value('residual_floor', record), 9, 2)//')')
       if (.not. ieee_is_nan(record%coupling_gain)) call page%line(history_line(needs_coupling, &
          record))
    end subroutine print_increment

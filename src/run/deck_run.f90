@@ -19,6 +19,7 @@ module deck_run
    use load_histories, only: step_clock_type
    use messages, only: print_error, print_line
    use model, only: model_type
+   use processes, only: set_reason
    use records, only: increment_record_type
    use restarts, only: go_on
    use run_description, only: describe_run
@@ -82,7 +83,7 @@ contains
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
          call outcome%fail(error)
       end if
-      if (.not. allocated(deck%finished)) outcome%seconds = wall_seconds() - since
+      if (.not. allocated(deck%finished)) outcome%report%seconds = wall_seconds() - since
    end subroutine run_deck
 
    !> Solves a deck as it is written, or as the variation of a later round has it. The files of the
@@ -101,24 +102,24 @@ contains
          outcome%keeps_round = output%kept_round > 0
          ! Shortcomings of the round before count no longer.
          outcome%known_to = 0.0_dp
-         if (allocated(outcome%reason)) deallocate (outcome%reason)
+         call set_reason(outcome%report, '')
          call may_end(self, end_at_once)
          call begin_round(self, rounds%variation)
-         if (outcome%status == status_ok .and. allocated(model%steps)) then
+         if (outcome%report%status == status_ok .and. allocated(model%steps)) then
             output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
                simulation%seconds%reduce
-            output%run%verify_passed = outcome%verify_passed
-            output%run%verify_failed = outcome%verify_failed
+            output%run%verify_passed = outcome%report%verify_passed
+            output%run%verify_failed = outcome%report%verify_failed
             call describe_run(self%path, model, simulation, output%run)
             output%run%settings = settings_in_words(self%command)
             if (allocated(self%deck%origin)) output%run%origin = self%deck%origin%words()
             call solve_deck(self, rounds, error)
             if (allocated(error)) call report_failure(self, error, is_told=.false.)
             ! Of a run that could not go on for want of a file or of memory a check says nothing.
-            if (outcome%status /= status_internal) call take_checks(self)
+            if (outcome%report%status /= status_internal) call take_checks(self)
          end if
          associate (goes_on => rounds%accuracy%goes_on)
-            goes_on = goes_on .and. outcome%status == status_ok
+            goes_on = goes_on .and. outcome%report%status == status_ok
             call output%progress%clear()
             call output%listing%close(keeps_lock=goes_on)
          end associate
@@ -179,15 +180,15 @@ contains
       type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable :: error
 
-      self%outcome%reason = reason_to_skip(self%deck)
+      call set_reason(self%outcome%report, reason_to_skip(self%deck))
       if (.not. allocated(self%deck%finished)) return
       associate (outcome => self%outcome, finished => self%deck%finished, &
          failed => self%deck%finished%failed_checks)
-         outcome%increments = finished%increments
-         outcome%iterations = finished%iterations
-         outcome%verify_passed = finished%passed_checks
-         outcome%verify_failed = failed
-         outcome%seconds = finished%seconds
+         outcome%report%increments = finished%increments
+         outcome%report%iterations = finished%iterations
+         outcome%report%verify_passed = finished%passed_checks
+         outcome%report%verify_failed = failed
+         outcome%report%seconds = finished%seconds
          if (failed == 0) return
          call set_error(error, status_verify, 'its result is finished, and '//counted(failed, &
             '*VERIFY check')//' failed')
@@ -265,7 +266,7 @@ contains
          call output%finish(model, interfaces, cards, rounds%accuracy, output_error)
          if (output%kept_round == 0) then
             outcome%keeps_round = .false.
-            outcome%increments = output%results%accepted
+            outcome%report%increments = output%results%accepted
             outcome%summary = output%summary_lines(model, interfaces)
             call outcome%note_files(output%written())
          end if
@@ -331,9 +332,9 @@ contains
          failed = self%output%failed_checks(self%model)
          outcome%failed_checks = [outcome%failed_checks, failed]
          ! A later round has the verdicts of the first one, unless it ends early.
-         outcome%verify_passed = max(outcome%verify_passed, run%verify_passed)
-         outcome%verify_failed = max(outcome%verify_failed, run%verify_failed)
-         if (outcome%status /= status_ok .or. run%accuracy%later_round > 0) return
+         outcome%report%verify_passed = max(outcome%report%verify_passed, run%verify_passed)
+         outcome%report%verify_failed = max(outcome%report%verify_failed, run%verify_failed)
+         if (outcome%report%status /= status_ok .or. run%accuracy%later_round > 0) return
          if (run%accuracy%missed /= '') call append(outcome%failed_checks, self%path// &
             ': error: '//run%accuracy%missed)
       end associate
