@@ -238,9 +238,9 @@ void file_unlock(const char *path, int descriptor)
 /* Writes over what is at a position of a file; at its end, where the position is negative. */
 int file_write(int descriptor, long position, const char *text, long count)
 {
-   off_t found = position < 0 ? lseek(descriptor, 0, SEEK_END) : lseek(descriptor, position, SEEK_SET);
+   const int from = position < 0 ? SEEK_END : SEEK_SET;
 
-   if (found < 0 && errno != ESPIPE)
+   if (lseek(descriptor, position < 0 ? 0 : position, from) < 0 && errno != ESPIPE)
       return errno;
    return write_all(descriptor, text, (size_t)count);
 }
