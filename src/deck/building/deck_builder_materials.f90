@@ -127,7 +127,7 @@ contains
       type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                       ! whether it has no errors
       character(:), allocatable :: kind
-      integer :: row
+      integer :: cards, row
 
       kind = choice(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/'// &
          'ANISO/ANISOTROPIC', deck, '')
@@ -146,9 +146,10 @@ contains
       case default
          call read_property(isotropic_layout, card, deck, property, valid)
       end select
+      cards = cards_of_row(property)
       do row = 1, size(property%temperature)
          if (.not. valid .and. property%symmetry /= isotropic) exit
-         associate (data => card%data(1 + (row - 1)*cards_of_row(property)))
+         associate (data => card%data(1 + (row - 1)*cards))
             call check_elasticity(data%place(merge(2, 1, property%symmetry == isotropic)), &
                property, row, deck, valid)
          end associate
