@@ -1,5 +1,6 @@
 # How our own code is compiled. thercon_language: the standard and what the compiler has to say;
-# thercon_checks: what is checked at run time, which tests link too.
+# thercon_checks: what is checked at run time, in tests too; thercon_sanitizers: what is checked in the
+# program alone, since it makes the compiler three times as slow.
 
 option(THERCON_WARNINGS "Compiler warnings; each stops the build" OFF)
 option(THERCON_CHECKS "Run-time checks; floating-point exceptions stop the program" OFF)
@@ -41,10 +42,11 @@ if(THERCON_CHECKS)
       target_compile_options(thercon_checks INTERFACE $<$<COMPILE_LANGUAGE:Fortran>:${option}>)
    endforeach()
 endif()
+add_library(thercon_sanitizers INTERFACE)
 if(THERCON_SANITIZERS)
    # gfortran 12 works out the size of an array that is not allocated when its holder is copied:
    # harmless, but an overflow.
-   target_compile_options(thercon_checks INTERFACE
+   target_compile_options(thercon_sanitizers INTERFACE
       -fsanitize=${THERCON_SANITIZERS} -fno-sanitize=signed-integer-overflow -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
    target_link_options(thercon_checks INTERFACE -fsanitize=${THERCON_SANITIZERS})

@@ -60,7 +60,7 @@ program thercon
          associate (path => command%decks(1)%value)
             call catch_signals(outlives_pipes=.false.)
             call run_deck(path, command, outcome)
-            status = outcome%status
+            status = outcome%report%status
             if (.not. command%quiet .and. status /= status_deck) call outcome%print(results_of( &
                path, command))
             call outcome%print_failed_checks()

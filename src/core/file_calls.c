@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -145,7 +144,20 @@ int file_create_working(const char *stem, char *path, int length)
    }
 }
 
-/* Removes the files `stem.<number>.tmp`, which runs left that were killed. */
+/* Whether a file begins as HDF5 files do, with their signature or a hole, or is empty. */
+static int may_be_result(int folder, const char *name)
+{
+   char first = 0;
+   int descriptor = openat(folder, name, O_RDONLY | O_CLOEXEC);
+
+   if (descriptor < 0 || read(descriptor, &first, 1) < 0)
+      first = 'x';
+   if (descriptor >= 0)
+      close(descriptor);
+   return first == 0 || first == '\x89';
+}
+
+/* Removes the results `stem.<number>.tmp`, which runs left that were killed. */
 void file_remove_working(const char *stem)
 {
    const char *slash = strrchr(stem, '/');
@@ -160,7 +172,8 @@ void file_remove_working(const char *stem)
 
       if (strncmp(entry->d_name, name, length) != 0 || entry->d_name[length] != '.')
          continue;
-      if (strspn(rest, "0123456789") > 0 && strcmp(rest + strspn(rest, "0123456789"), ".tmp") == 0)
+      if (strspn(rest, "0123456789") > 0 && strcmp(rest + strspn(rest, "0123456789"), ".tmp") == 0
+         && may_be_result(dirfd(entries), entry->d_name))
          unlinkat(dirfd(entries), entry->d_name, 0);
    }
    if (entries)
@@ -178,40 +191,22 @@ void file_identity(const char *path, long identity[2])
    identity[1] = is_there ? (long)status.st_ino : 0;
 }
 
-/* A path without links, cut to the buffer; empty where nothing is there. */
-void file_real_path(const char *path, char *real, int length)
-{
-   char *found = realpath(path, NULL);
-
-   snprintf(real, (size_t)length, "%s", found ? found : "");
-   free(found);
-}
-
-/* Whether an open file is still the one at its path. */
-int file_is_at(const char *path, int descriptor)
-{
-   struct stat open_file, file;
-
-   return fstat(descriptor, &open_file) == 0 && stat(path, &file) == 0
-      && open_file.st_dev == file.st_dev && open_file.st_ino == file.st_ino;
-}
-
-/* Makes a file anew, to write at its end. */
+/* Makes a file anew. */
 int file_open_new(const char *path, int *descriptor)
 {
-   *descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+   *descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
    return *descriptor < 0 ? errno : 0;
 }
 
-/* Opens a file to write at its end, which is made where it is missing and otherwise left as it is,
-   and locks it until its descriptor is closed or the process ends. Where the file system has no
-   locks the file is open all the same. */
+/* Opens a file, which is made where it is missing and otherwise left as it is, and locks it until its
+   descriptor is closed or the process ends. Where the file system has no locks the file is open all
+   the same. */
 int file_lock(const char *path, int *descriptor)
 {
    struct stat status;
 
    do {
-      *descriptor = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+      *descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
       if (*descriptor < 0)
          return errno;
       if (flock(*descriptor, LOCK_EX | LOCK_NB) != 0) {
@@ -240,40 +235,14 @@ void file_unlock(const char *path, int descriptor)
    close(descriptor);
 }
 
-/* A file in memory; Fortran opens it as /proc/self/fd/<descriptor>. */
-int file_in_memory(int *descriptor)
+/* Writes over what is at a position of a file; at its end, where the position is negative. */
+int file_write(int descriptor, long position, const char *text, long count)
 {
-   *descriptor = memfd_create("thercon", MFD_CLOEXEC);
-   return *descriptor < 0 ? errno : 0;
-}
+   const int from = position < 0 ? SEEK_END : SEEK_SET;
 
-int file_append(int descriptor, const char *text, long count)
-{
-   return write_all(descriptor, text, (size_t)count);
-}
-
-/* Writes over what stands at a position of a file that is open to write at its end. */
-int file_overwrite(int descriptor, long position, const char *text, long count)
-{
-   int flags = fcntl(descriptor, F_GETFL), number = 0;
-
-   /* With O_APPEND pwrite writes at the end, wherever it is told to. */
-   if (flags < 0 || fcntl(descriptor, F_SETFL, flags & ~O_APPEND) < 0)
+   if (lseek(descriptor, position < 0 ? 0 : position, from) < 0 && errno != ESPIPE)
       return errno;
-   while (count > 0 && number == 0) {
-      ssize_t written = pwrite(descriptor, text, (size_t)count, (off_t)position);
-
-      if (written < 0 && errno != EINTR)
-         number = errno;
-      if (written > 0) {
-         text += written;
-         position += written;
-         count -= written;
-      }
-   }
-   if (fcntl(descriptor, F_SETFL, flags) < 0 && number == 0)
-      number = errno;
-   return number;
+   return write_all(descriptor, text, (size_t)count);
 }
 
 int file_empty(int descriptor)

@@ -1,19 +1,21 @@
 !> Calls of the file system beyond Fortran's own statements, with the system's reason where it
 !> refuses, and which file a path leads to: links and other spellings of a path lead to the same
-!> one. Open files have descriptors, see open_files. The calls themselves are in file_calls.c.
+!> one. Open files have descriptors, see open_files.
+!>
+!> HDF5 files are sealed by a digest of all bytes, behind the end of what HDF5 reads. It tells a
+!> damaged file before HDF5 reads it, which crashes on some of these. The calls themselves are in
+!> file_calls.c and file_seals.c.
 module file_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_long, c_null_char, c_ptr
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char
-   use errors, only: error_type, set_error, status_internal
+   use errors, only: error_type, set_error, status_deck, status_internal
    use kinds, only: long
    use text, only: to_text
    implicit none
    private
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file, &
-      sync_file, &
-      try_file, try_growth, create_working_file, remove_working_files, survive_file_limits, &
-      cannot_write, reason_of, without_end, print_text, check_printed, file_identity_type, &
-      identity_of, real_path_of, is_working_file, check_in_place
+      sync_file, try_file, try_growth, create_working_file, remove_working_files, &
+      survive_file_limits, cannot_write, check_written, reason_of, print_text, check_printed, &
+      identity_of, check_in_place, seal_file, check_seal
 
    integer(c_int), parameter :: too_long = -3_c_int   !! as in file_calls.c
    integer, parameter :: reason_length = 200
@@ -31,6 +33,8 @@ module file_calls
    procedure(path_call), bind(c, name='file_check_folder') :: c_check_folder
    procedure(path_call), bind(c, name='file_is_stream') :: c_is_stream
    procedure(path_call), bind(c, name='file_try') :: c_try
+   procedure(path_call), bind(c, name='file_seal') :: c_seal
+   procedure(path_call), bind(c, name='file_is_damaged') :: c_is_damaged
 
    interface
       subroutine c_reason(number, text, length) bind(c, name='file_reason')
@@ -106,39 +110,12 @@ module file_calls
       !> From now on a file that would grow past the limit of the process is an error like others.
       subroutine survive_file_limits() bind(c, name='file_survive_limits')
       end subroutine survive_file_limits
-   end interface
 
-   integer, parameter :: longest_path = 4096           !! PATH_MAX of Linux
-   character(*), parameter :: working_end = '.tmp'     !! of working files, as in file_calls.c
-
-   !> Identity of a file, which all paths to it share.
-   type :: file_identity_type
-      integer(c_long), private :: device = 0   !! both 0 where there is no regular file
-      integer(c_long), private :: inode = 0
-   contains
-      procedure :: is_there
-      procedure :: is_same
-   end type file_identity_type
-
-   interface
       subroutine c_identity(path, identity) bind(c, name='file_identity')
          import :: c_char, c_long
          character(kind=c_char), intent(in) :: path(*)
          integer(c_long), intent(out) :: identity(2)
       end subroutine c_identity
-
-      subroutine c_real_path(path, real_path, length) bind(c, name='file_real_path')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: length
-         character(kind=c_char), intent(out) :: real_path(length)
-      end subroutine c_real_path
-
-      integer(c_int) function c_is_at(path, descriptor) bind(c, name='file_is_at')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: descriptor
-      end function c_is_at
    end interface
 
 contains
@@ -152,16 +129,23 @@ contains
       message = 'cannot write "'//path//'": '//trim(reason)
    end function cannot_write
 
+   !> Error: status_internal, where the system refused to write.
+   subroutine check_written(number, path, error)
+      integer(c_int), intent(in) :: number                 !! as from a function of file_calls.c
+      character(*), intent(in) :: path                     !! the file
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+
+      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+   end subroutine check_written
+
    !> Gives a file another name; a file that had that name is replaced in one instant.
    !> Error: status_internal, when the system refuses.
    subroutine rename_file(from, to, error)
       character(*), intent(in) :: from                     !! present path
       character(*), intent(in) :: to                       !! new path, in the same file system
       type(error_type), allocatable, intent(out) :: error  !! what went wrong
-      integer(c_int) :: number
 
-      number = c_rename(from//c_null_char, to//c_null_char)
-      if (number /= 0) call set_error(error, status_internal, cannot_write(to, reason_of(number)))
+      call check_written(c_rename(from//c_null_char, to//c_null_char), to, error)
    end subroutine rename_file
 
    !> Waits until the contents of a file are on its disk, so that a loss of power after it was given
@@ -202,11 +186,8 @@ contains
 
       number = c_copy(from//c_null_char, to//c_null_char, is_source)
       if (number == 0) return
-      if (is_source == 0) then
-         call set_error(error, status_internal, cannot_write(to, reason_of(number)))
-      else
-         call set_error(error, status_internal, 'cannot read "'//from//'": '//reason_of(number))
-      end if
+      call check_written(number, to, error)
+      if (is_source /= 0) error%message = 'cannot read "'//from//'": '//reason_of(number)
    end subroutine copy_file
 
    !> Removes a file; that it is not there is no error.
@@ -255,10 +236,8 @@ contains
    subroutine try_file(path, error)
       character(*), intent(in) :: path                     !! the file, which may be missing
       type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number
 
-      number = c_try(path//c_null_char)
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+      call check_written(c_try(path//c_null_char), path, error)
    end subroutine try_file
 
    !> Tries whether a file has room for more bytes, which are zero and stay in it.
@@ -280,12 +259,11 @@ contains
       character(:), allocatable, intent(out) :: working_path   !! its own path
       type(error_type), allocatable, intent(out) :: error      !! with the system's reason
       character(len(path) + number_length, kind=c_char) :: buffer
-      integer(c_int) :: number
 
       buffer = ''
-      number = c_create_working(path//c_null_char, buffer, len(buffer, kind=c_int))
+      call check_written(c_create_working(path//c_null_char, buffer, len(buffer, kind=c_int)), &
+         path, error)
       working_path = without_end(buffer)
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
    end subroutine create_working_file
 
    !> Removes what killed runs have left beside a file. Call it with the lock of its run only.
@@ -344,58 +322,18 @@ contains
       string = buffer(:index(buffer//c_null_char, c_null_char) - 1)
    end function without_end
 
-   !> The file at a path. Pipes and devices, whose contents nothing replaces, count as none.
-   type(file_identity_type) function identity_of(path)
-      character(*), intent(in) :: path    !! the file, which may be missing
-      integer(c_long) :: identity(2)
+   !> What tells the file at a path from others: all paths to it have the same identity. Pipes and
+   !> devices, whose contents nothing replaces, count as none.
+   function identity_of(path) result(identity)
+      character(*), intent(in) :: path           !! the file, which may be missing
+      character(:), allocatable :: identity      !! empty where there is no regular file
+      integer(c_long) :: device_and_inode(2)
 
-      call c_identity(path//c_null_char, identity)
-      identity_of = file_identity_type(identity(1), identity(2))
+      identity = ''
+      call c_identity(path//c_null_char, device_and_inode)
+      if (device_and_inode(2) /= 0) identity = to_text(int(device_and_inode(1), long))//':'// &
+         to_text(int(device_and_inode(2), long))
    end function identity_of
-
-   !> Whether there is a regular file.
-   elemental logical function is_there(self)
-      class(file_identity_type), intent(in) :: self
-
-      is_there = self%inode /= 0
-   end function is_there
-
-   !> Whether two paths lead to one file.
-   elemental logical function is_same(self, other)
-      class(file_identity_type), intent(in) :: self
-      type(file_identity_type), intent(in) :: other   !! the file of another path
-
-      is_same = self%is_there() .and. self%device == other%device .and. self%inode == other%inode
-   end function is_same
-
-   !> A path without links.
-   function real_path_of(path) result(real_path)
-      character(*), intent(in) :: path          !! to a file or folder
-      character(:), allocatable :: real_path    !! empty where nothing is there
-      character(longest_path, kind=c_char) :: buffer
-
-      buffer = ''
-      call c_real_path(path//c_null_char, buffer, int(longest_path, c_int))
-      real_path = without_end(buffer)
-   end function real_path_of
-
-   !> Whether a file is one that remove_working_files would remove beside another one.
-   logical function is_working_file(real_path, beside)
-      character(*), intent(in) :: real_path     !! the file, without links
-      character(*), intent(in) :: beside        !! the other one with its folder; may be missing
-      character(:), allocatable :: stem
-      integer :: slash, last
-
-      last = len(real_path) - len(working_end)
-      is_working_file = last > 0
-      if (is_working_file) is_working_file = real_path(last + 1:) == working_end
-      if (.not. is_working_file) return
-      slash = index(beside, '/', back=.true.)
-      stem = real_path_of(beside(:slash)//'.')//'/'//beside(slash + 1:)//'.'
-      is_working_file = last > len(stem) .and. index(real_path, stem) == 1
-      if (is_working_file) is_working_file = &
-         verify(real_path(len(stem) + 1:last), '0123456789') == 0
-   end function is_working_file
 
    !> Error: status_internal, when an open file is no longer the one at its path.
    subroutine check_in_place(path, descriptor, error)
@@ -403,8 +341,28 @@ contains
       integer, intent(in) :: descriptor                    !! of the open file
       type(error_type), allocatable, intent(out) :: error
 
-      if (c_is_at(path//c_null_char, int(descriptor, c_int)) == 0) call set_error(error, &
-         status_internal, cannot_write(path, 'it was removed or replaced during the run'))
+      if (identity_of(path) /= identity_of('/proc/self/fd/'//to_text(descriptor))) call set_error( &
+         error, status_internal, cannot_write(path, 'it was removed or replaced during the run'))
    end subroutine check_in_place
+
+   !> Seals a file that is complete and closed.
+   !> Error: status_internal, when it cannot be written.
+   subroutine seal_file(path, error)
+      character(*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+
+      call check_written(c_seal(path//c_null_char), path, error)
+   end subroutine seal_file
+
+   !> Error: status_deck, when the bytes of a file are not those that were sealed. One without a
+   !> seal, as earlier versions wrote it, passes if its length is right.
+   subroutine check_seal(path, error)
+      character(*), intent(in) :: path                     !! that it is missing is no error
+      type(error_type), allocatable, intent(out) :: error
+
+      if (c_is_damaged(path//c_null_char) /= 0) call set_error(error, status_deck, &
+         'the result "'//path//'" is damaged: its bytes are not those that were written; solve '// &
+         'its deck anew')
+   end subroutine check_seal
 
 end module file_calls

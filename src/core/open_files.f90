@@ -1,14 +1,13 @@
-!> Files that stay open, by their descriptors: written at their end, locked, in memory. The calls
-!> themselves are in file_calls.c.
+!> Files that stay open, by their descriptors: written, emptied, locked. The calls themselves are in
+!> file_calls.c.
 module open_files
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char
    use errors, only: error_type, set_error, status_internal
-   use file_calls, only: cannot_write, reason_of
-   use text, only: to_text
+   use file_calls, only: cannot_write, check_written
    implicit none
    private
-   public :: open_new_file, write_file, lock_file, unlock_file, open_in_memory, append_to_file
-   public :: overwrite_in_file, empty_file, close_descriptor
+   public :: open_new_file, write_file, lock_file, unlock_file, write_to_file, empty_file, &
+      close_descriptor
 
    integer(c_int), parameter :: locked_by_another = -1_c_int   !! as in file_calls.c
    integer(c_int), parameter :: not_lockable = -2_c_int        !! alike
@@ -38,41 +37,28 @@ module open_files
          integer(c_int), value :: descriptor
       end subroutine c_unlock
 
-      integer(c_int) function c_in_memory(descriptor) bind(c, name='file_in_memory')
-         import :: c_int
-         integer(c_int), intent(out) :: descriptor
-      end function c_in_memory
-
-      integer(c_int) function c_append(descriptor, text, count) bind(c, name='file_append')
-         import :: c_char, c_int, c_long
-         integer(c_int), value :: descriptor
-         character(kind=c_char), intent(in) :: text(*)
-         integer(c_long), value :: count
-      end function c_append
-
-      integer(c_int) function c_overwrite(descriptor, position, text, count) &
-         bind(c, name='file_overwrite')
+      integer(c_int) function c_write(descriptor, position, text, count) &
+         bind(c, name='file_write')
          import :: c_char, c_int, c_long
          integer(c_int), value :: descriptor
          integer(c_long), value :: position
          character(kind=c_char), intent(in) :: text(*)
          integer(c_long), value :: count
-      end function c_overwrite
+      end function c_write
    end interface
 
 contains
 
-   !> Makes a file anew, to write at its end.
+   !> Makes a file anew.
    !> Error: status_internal, when the system refuses.
    subroutine open_new_file(path, descriptor, error)
       character(*), intent(in) :: path                     !! the file
       integer, intent(out) :: descriptor                   !! the open file, -1 after an error
       type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number, opened
+      integer(c_int) :: opened
 
-      number = c_open_new(path//c_null_char, opened)
+      call check_written(c_open_new(path//c_null_char, opened), path, error)
       descriptor = int(opened)
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
    end subroutine open_new_file
 
    !> Makes a file of a text.
@@ -85,11 +71,11 @@ contains
 
       call open_new_file(path, descriptor, error)
       if (allocated(error)) return
-      call append_to_file(descriptor, path, string, error)
+      call write_to_file(descriptor, path, string, error)
       call close_descriptor(descriptor)
    end subroutine write_file
 
-   !> Opens a file to write at its end, and locks it: the system frees the lock with the descriptor,
+   !> Opens a file and locks it: the system frees the lock with the descriptor,
    !> at the latest when the process ends, however it ends.
    !> Errors, status_internal: the file cannot be written; another run has the lock.
    subroutine lock_file(path, descriptor, has_lock, error)
@@ -109,7 +95,7 @@ contains
          call set_error(error, status_internal, cannot_write(path, &
             'another run writes here; wait for its end or name another folder with --out'))
       case default
-         call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+         call check_written(number, path, error)
       end select
    end subroutine lock_file
 
@@ -121,48 +107,21 @@ contains
       call c_unlock(path//c_null_char, int(descriptor, c_int))
    end subroutine unlock_file
 
-   !> Opens a file in memory, whose end comes with that of its descriptor.
-   !> Error: status_internal, when the system opens none.
-   subroutine open_in_memory(descriptor, path, error)
-      integer, intent(out) :: descriptor                   !! of the file
-      character(:), allocatable, intent(out) :: path       !! by which it can be opened
-      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number, opened
-
-      number = c_in_memory(opened)
-      descriptor = int(opened)
-      path = '/proc/self/fd/'//to_text(descriptor)
-      if (number /= 0) call set_error(error, status_internal, &
-         'cannot open a file in memory: '//reason_of(number))
-   end subroutine open_in_memory
-
-   !> Writes text at the end of an open file.
+   !> Writes text at the end of an open file, or over what is at a position.
    !> Error: status_internal, when the system refuses.
-   subroutine append_to_file(descriptor, path, string, error)
+   subroutine write_to_file(descriptor, path, string, error, position)
       integer, intent(in) :: descriptor                    !! the open file
       character(*), intent(in) :: path                     !! its path, for the message
       character(*), intent(in) :: string                   !! what is written
       type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number
+      integer, intent(in), optional :: position            !! bytes before the text
+      integer(c_long) :: before
 
-      number = c_append(int(descriptor, c_int), string, len(string, kind=c_long))
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
-   end subroutine append_to_file
-
-   !> Writes text over what is at a position of an open file.
-   !> Error: status_internal, when the system refuses.
-   subroutine overwrite_in_file(descriptor, path, position, string, error)
-      integer, intent(in) :: descriptor                    !! the open file
-      character(*), intent(in) :: path                     !! its path, for the message
-      integer, intent(in) :: position                      !! bytes before the text
-      character(*), intent(in) :: string                   !! what is written
-      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number
-
-      number = c_overwrite(int(descriptor, c_int), int(position, c_long), string, &
-         len(string, kind=c_long))
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
-   end subroutine overwrite_in_file
+      before = -1
+      if (present(position)) before = position
+      call check_written(c_write(int(descriptor, c_int), before, string, &
+         len(string, kind=c_long)), path, error)
+   end subroutine write_to_file
 
    !> Empties an open file.
    !> Error: status_internal, when the system refuses.
@@ -170,10 +129,8 @@ contains
       integer, intent(in) :: descriptor                    !! the open file
       character(*), intent(in) :: path                     !! its path, for the message
       type(error_type), allocatable, intent(out) :: error  !! with the system's reason
-      integer(c_int) :: number
 
-      number = c_empty(int(descriptor, c_int))
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+      call check_written(c_empty(int(descriptor, c_int)), path, error)
    end subroutine empty_file
 
    !> Closes what was opened here.

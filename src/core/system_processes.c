@@ -2,8 +2,8 @@
  * cannot read. Interfaces: processes.f90, interruption.f90, ordering.f90 in linalg.
  *
  * A run may have to end within an increment: because a signal came, or because there is no memory
- * left. A signal handler may then call nothing but what POSIX.1-2017, 2.4.3 allows in one
- * (open, write, pwrite, stat, unlink, signal, alarm, _exit), so that all words are prepared before. */
+ * left. A signal handler may then call nothing but what POSIX.1-2017, 2.4.3 allows in one (write,
+ * pwrite, unlink, strcpy, signal, alarm, _exit), so that all words are prepared before. */
 #define _GNU_SOURCE
 
 #include <errno.h>
@@ -16,7 +16,6 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,10 +38,8 @@ struct process_end {
    double cpu_seconds, peak_bytes;
 };
 
-static volatile sig_atomic_t caught, times, is_overdue, is_held, ends;
-static char deck[longest], where[longest], holds[longest], listing[longest], kept[longest],
-   working[longest];
-static char *volatile summary;   /* of the files in place, for standard output; NULL for none */
+static volatile sig_atomic_t caught, times, is_overdue, ends;
+static char deck[longest], where[longest], leftover[longest];
 static int shows_progress, report_file = -1;
 static struct report filed;   /* what a child has reported */
 
@@ -134,41 +131,20 @@ static void add_reason(const char *words)
    if (strlen(filed.reason) + strlen(words) < sizeof filed.reason) strcat(filed.reason, words);
 }
 
-/* Says why, leaves the files in order and ends the process. */
+/* Says why in one line, removes the file that is left over and ends the process. */
 static _Noreturn void end_run(int status, const char *reason)
 {
-   struct stat found;
-   int file;
-
-   signal(SIGPIPE, SIG_IGN);
-   if (shows_progress) put(2, "\r\033[K");
-   put(2, deck[0] ? deck : "thercon");
-   put(2, ": error: ");
-   put(2, reason);
-   put(2, where);
-   put(2, holds);
-   put(2, "\n");
-   if (listing[0] && kept[0] && (file = open(listing, O_WRONLY | O_APPEND)) >= 0) {
-      put(file, "\nENDED EARLY\n-----------\n   ");
-      put(file, reason);
-      put(file, where);
-      put(file, "\n   ");
-      put(file, kept);
-      put(file, "\n");
-   }
-   /* One that the run had not begun yet holds an earlier run, or nothing at all. */
-   if (listing[0] && !kept[0] && stat(listing, &found) == 0 && found.st_size == 0) unlink(listing);
-   if (working[0]) unlink(working);
-   if (summary && report_file < 0) {
-      put(1, deck);
-      put(1, status == status_interrupted ? ": interrupted" : ": out of memory");
-      put(1, summary);
-   }
    filed.is_whole = 1;
    filed.status = status;
    strcpy(filed.reason, reason);
    add_reason(where);
-   add_reason(holds);
+   signal(SIGPIPE, SIG_IGN);
+   if (shows_progress) put(2, "\r\033[K");
+   put(2, deck[0] ? deck : "thercon");
+   put(2, ": error: ");
+   put(2, filed.reason);
+   put(2, "\n");
+   if (leftover[0]) unlink(leftover);
    if (report_file >= 0) (void)!pwrite(report_file, &filed, sizeof filed, 0);
    _exit(status);
 }
@@ -182,7 +158,7 @@ static void take_signal(int number)
 {
    caught = number;
    times = times + 1;
-   if (ends == at_once && !is_held) end_by_signal();
+   if (ends == at_once) end_by_signal();
    if (shows_progress && times == 1) put(2, "\r\033[Kending after this increment");
    if (ends != 0 && times == 1) alarm(grace);
 }
@@ -190,7 +166,7 @@ static void take_signal(int number)
 static void take_alarm(int number)
 {
    (void)number;
-   if (ends != 0 && is_overdue && !is_held) end_by_signal();
+   if (ends != 0 && is_overdue) end_by_signal();
    is_overdue = 1;
    alarm(rest);
 }
@@ -218,13 +194,11 @@ void thercon_catch_signals(int outlives_pipes)
    if (outlives_pipes) signal(SIGPIPE, SIG_IGN);
 }
 
-/* What came: nothing 0, SIGINT 1, SIGTERM 2; how often; whether the increment had its time. */
-void thercon_signals(int *name, int *number, int *overdue)
-{
-   *name = caught == 0 ? 0 : caught == SIGINT ? 1 : 2;
-   *number = times;
-   *overdue = is_overdue;
-}
+int thercon_caught(void) { return caught == 0 ? 0 : caught == SIGINT ? 1 : 2; }
+
+int thercon_caught_times(void) { return times; }
+
+int thercon_is_overdue(void) { return is_overdue; }
 
 static void take_words(char *buffer, const char *words)
 {
@@ -232,10 +206,9 @@ static void take_words(char *buffer, const char *words)
    if (strlen(words) < longest) strcpy(buffer, words);
 }
 
-/* When a signal may end the run from now on, and what is then to be said and done. */
+/* When a signal may end the run from now on, and what is then to be said and removed. */
 void thercon_prepare_end(int when, int shows, const char *deck_path, const char *where_words,
-   const char *holds_words, const char *listing_path, const char *kept_words,
-   const char *working_path)
+   const char *leftover_path)
 {
    sigset_t all, before;
 
@@ -243,30 +216,11 @@ void thercon_prepare_end(int when, int shows, const char *deck_path, const char 
    sigprocmask(SIG_SETMASK, &all, &before);
    take_words(deck, deck_path);
    take_words(where, where_words);
-   take_words(holds, holds_words);
-   take_words(listing, listing_path);
-   take_words(kept, kept_words);
-   take_words(working, working_path);
+   take_words(leftover, leftover_path);
    shows_progress = shows;
    ends = when;
-   if (caught != 0 && ends == at_once && !is_held) end_by_signal();
+   if (caught != 0 && ends == at_once) end_by_signal();
    sigprocmask(SIG_SETMASK, &before, NULL);
-}
-
-/* What is printed of the files in place where a run ends like that, behind its outcome. */
-void thercon_prepare_summary(const char *words)
-{
-   char *former = summary;
-
-   summary = strdup(words);
-   free(former);
-}
-
-/* While files are written no signal ends the run. */
-void thercon_hold_end(int holds)
-{
-   is_held = holds;
-   if (!is_held && caught != 0 && ends == at_once) end_by_signal();
 }
 
 /* METIS_NodeND of a graph, with default options. While METIS works it has handlers of its own for

@@ -46,6 +46,13 @@ contains
       character(:), allocatable :: shown           !! UTF-8 without control characters
       integer :: i, k, length, n
 
+      do i = 1, len(string)
+         if (iachar(string(i:i)) < 32 .or. iachar(string(i:i)) > 126) exit
+      end do
+      if (i > len(string)) then   ! as most texts
+         shown = string
+         return
+      end if
       allocate (character(4*len(string)) :: shown)
       n = 0
       i = 1

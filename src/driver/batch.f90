@@ -10,12 +10,12 @@ module batch
    use deck_reader, only: files_of_deck
    use deck_run, only: run_deck
    use errors, only: error_type, status_deck, status_internal, status_interrupted
-   use file_calls, only: file_identity_type, identity_of, is_stream, make_folder
+   use file_calls, only: identity_of, is_stream, make_folder
    use interruption, only: catch_signals, caught_signal, caught_times
    use kinds, only: dp
    use messages, only: pass_on, print_error, print_line
    use open_files, only: lock_file, unlock_file
-   use processes, only: child_type, pause_briefly, report_type, task_type
+   use processes, only: child_type, pause_briefly, reason_of, report_type, set_reason, task_type
    use progress, only: progress_type
    use text, only: counted, string_type, to_text
    implicit none
@@ -80,7 +80,6 @@ contains
       do i = 1, size(self%outcomes)
          self%outcomes(i)%path = command%decks(i)%value
          self%outcomes(i)%ending = 'not run'
-         self%outcomes(i)%reason = ''
       end do
       call self%progress%start(command%quiet)
       call begin_table(self, lock, error)
@@ -101,12 +100,12 @@ contains
       call self%progress%clear()
       do i = self%started + 1, size(self%outcomes)
          associate (outcome => self%outcomes(i))
-            outcome%status = status_interrupted
-            outcome%reason = 'not started because of '//caught_signal()
-            call print_error(outcome%path, outcome%reason)
+            outcome%report%status = status_interrupted
+            call set_reason(outcome%report, 'not started because of '//caught_signal())
+            call print_error(outcome%path, reason_of(outcome%report))
          end associate
       end do
-      status = maxval(self%outcomes%status)
+      status = maxval(self%outcomes%report%status)
       call write_batch(command%folder, self%outcomes, error)
       call unlock_file(lock_path(command), lock)
       if (allocated(error)) then
@@ -172,7 +171,6 @@ contains
       type(input_files_type) :: inputs
       ! A variable: gfortran does not free the components of a function's result in an expression.
       type(string_type), allocatable :: of_deck(:), outputs(:)
-      type(file_identity_type) :: identity
       integer :: i
       logical :: any_is_there
 
@@ -184,8 +182,7 @@ contains
       end do
       any_is_there = .false.
       do i = 1, size(outputs)
-         identity = identity_of(outputs(i)%value)
-         any_is_there = any_is_there .or. identity%is_there()
+         any_is_there = any_is_there .or. identity_of(outputs(i)%value) /= ''
       end do
       ! In a new folder the decks are read once only.
       if (.not. any_is_there) return
@@ -221,8 +218,8 @@ contains
                running%deck = self%started
                cycle
             end if
-            outcome%status = status_internal
-            outcome%reason = error%message
+            outcome%report%status = status_internal
+            call set_reason(outcome%report, error%message)
             self%ended = self%ended + 1
             self%failed = self%failed + 1
             call self%progress%clear()
@@ -246,10 +243,10 @@ contains
          associate (outcome => self%outcomes(self%running(s)%deck))
             call take_end(self%running(s), outcome, printed)
             self%ended = self%ended + 1
-            if (outcome%status /= 0) self%failed = self%failed + 1
+            if (outcome%report%status /= 0) self%failed = self%failed + 1
             call self%progress%clear()
             if (len(printed) > 0) call pass_on(printed)
-            if (.not. self%command%quiet .and. outcome%status /= status_deck) then
+            if (.not. self%command%quiet .and. outcome%report%status /= status_deck) then
                call outcome%print(results_of(outcome%path, self%command))
             end if
          end associate
@@ -263,23 +260,20 @@ contains
       type(running_deck_type), intent(inout) :: running
       type(deck_outcome_type), intent(inout) :: outcome
       character(:), allocatable, intent(out) :: printed   !! messages, without last line end
-      type(report_type) :: report
 
-      report = running%child%report()
-      call outcome%take(report)
+      outcome%report = running%child%report()
       call running%child%take_messages(printed)
       outcome%is_running = .false.
       outcome%has_run = .true.
-      outcome%seconds = report%seconds
-      if (report%seconds <= 0.0_dp) outcome%seconds = wall_seconds() - running%since
+      if (outcome%report%seconds <= 0.0_dp) outcome%report%seconds = wall_seconds() - running%since
       deallocate (outcome%ending)
       associate (child => running%child)
          outcome%cpu_seconds = child%end%cpu_seconds
          outcome%peak_bytes = child%end%peak_bytes
-         if (report%is_whole == 1) return
+         if (outcome%report%is_whole == 1) return
          if (running%is_killed) then
-            outcome%status = status_interrupted
-            outcome%reason = 'killed because a second signal came'
+            outcome%report%status = status_interrupted
+            call set_reason(outcome%report, 'killed because a second signal came')
          else if (child%end%is_crash == 1) then
             outcome%ending = 'crash: '//child%signal_name()
          else if (child%end%signal /= 0) then
@@ -287,7 +281,7 @@ contains
          end if
       end associate
       if (len(printed) > 0) printed = printed//new_line('a')
-      printed = printed//outcome%path//': error: '//outcome%reason
+      printed = printed//outcome%path//': error: '//reason_of(outcome%report)
    end subroutine take_end
 
    !> The first signal goes on to the decks, which end after their increments; a later one ends
@@ -329,8 +323,8 @@ contains
       do s = 1, size(self%running)
          if (self%running(s)%deck == 0) cycle
          associate (outcome => self%outcomes(self%running(s)%deck))
-            call outcome%take(self%running(s)%child%report())
-            outcome%seconds = wall_seconds() - self%running(s)%since
+            outcome%report = self%running(s)%child%report()
+            outcome%report%seconds = wall_seconds() - self%running(s)%since
          end associate
       end do
       call write_batch(self%command%folder, self%outcomes, ignored)
@@ -346,7 +340,7 @@ contains
 
       call run_deck(self%path, self%command, outcome)
       call outcome%print_failed_checks()
-      report = outcome%as_report()
+      report = outcome%report
    end subroutine execute
 
 end module batch

@@ -6,6 +6,7 @@ module batch_table
    use kinds, only: dp
    use messages, only: print_line
    use open_files, only: write_file
+   use processes, only: reason_of, report_type
    use text, only: counted, quoted, to_text, with_decimals
    use utf8, only: character_count, printable
    implicit none
@@ -38,10 +39,10 @@ contains
       call print_line(unit, '')
       call print_line(unit, 'deck'//repeat(' ', width - 4)//trim(line))
       do i = 1, size(outcomes)
-         associate (deck => outcomes(i))
+         associate (deck => outcomes(i), report => outcomes(i)%report)
             write (line, '(2x, a20)') deck%words()
-            if (deck%has_run) write (line(23:), '(2i12, 2i8, f10.2)') deck%increments, &
-               deck%iterations, deck%verify_passed, deck%verify_failed, deck%seconds
+            if (deck%has_run) write (line(23:), '(2i12, 2i8, f10.2)') report%increments, &
+               report%iterations, report%verify_passed, report%verify_failed, report%seconds
             if (deck%has_run .and. .not. deck%is_earlier()) write (line(73:), '(f10.2, f9.1)') &
                deck%cpu_seconds, deck%peak_bytes/megabyte
             call print_line(unit, deck%path//repeat(' ', width - &
@@ -91,37 +92,35 @@ contains
       if (allocated(error)) return
       text = columns//new_line('a')
       do i = 1, size(outcomes)
-         text = text//row_of(outcomes(i))//new_line('a')
+         text = text//row_of(outcomes(i), outcomes(i)%report)//new_line('a')
       end do
       call write_file(working_path, text, error)
       if (.not. allocated(error)) call rename_file(working_path, path, error)
       if (allocated(error)) call remove_file(working_path)
    end subroutine write_batch
 
-   function row_of(deck) result(line)
+   function row_of(deck, report) result(line)
       type(deck_outcome_type), intent(in) :: deck
+      type(report_type), intent(in) :: report   ! of the deck
       character(:), allocatable :: line
 
-      line = quoted(deck%path)//','
-      if (.not. deck%has_run) then
-         line = line//','//deck%words()//','//quoted(deck%reason)
-         if (deck%is_running) then
-            line = line//','//to_text(deck%increments)//','//to_text(deck%iterations)//',,,'// &
-               with_decimals(deck%seconds, 3)//',,'
-         else
-            line = line//repeat(',', 7)
-         end if
+      line = ''
+      if (deck%has_run) line = to_text(report%status)
+      line = quoted(deck%path)//','//line//','//deck%words()//','//quoted(reason_of(report))//','
+      if (.not. (deck%has_run .or. deck%is_running)) then
+         line = line//repeat(',', 6)
          return
       end if
-      line = line//to_text(deck%status)//','//deck%words()//','//quoted(deck%reason)//','// &
-         to_text(deck%increments)//','//to_text(deck%iterations)//','// &
-         to_text(deck%verify_passed)//','//to_text(deck%verify_failed)//','// &
-         with_decimals(deck%seconds, 3)//','
-      if (deck%is_earlier()) then
-         line = line//','
-      else
+      line = line//to_text(report%increments)//','//to_text(report%iterations)//','
+      if (deck%has_run) line = line//to_text(report%verify_passed)
+      line = line//','
+      if (deck%has_run) line = line//to_text(report%verify_failed)
+      line = line//','//with_decimals(report%seconds, 3)//','
+      if (deck%has_run .and. .not. deck%is_earlier()) then
          line = line//with_decimals(deck%cpu_seconds, 3)//','// &
             with_decimals(deck%peak_bytes/megabyte, 3)
+      else
+         line = line//','
       end if
    end function row_of
 

@@ -9,7 +9,6 @@ module deck_outcomes
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
    use text, only: append, counted, string_type, to_text, with_decimals
-   use utf8, only: printable
    implicit none
    private
    public :: deck_outcome_type, end_of_run, counts_of_checks
@@ -22,25 +21,18 @@ module deck_outcomes
    !> How a deck ended.
    type :: deck_outcome_type
       character(:), allocatable :: path     !! deck as the command line names it
-      integer :: status = status_ok         !! one of the status_* constants
-      logical :: lacks_memory = .false.     !! whether it failed for want of memory
-      integer :: increments = 0             !! increments that were accepted
-      integer :: iterations = 0             !! passes of these and of the one that failed
-      integer :: verify_passed = 0          !! *VERIFY checks that passed
-      integer :: verify_failed = 0          !! *VERIFY checks that failed
+      !> What a deck's process reports. Its reason: why the deck is not solved, or how well where
+      !> that is less than TOL; one sentence, or nothing. Its files: run_output's written
+      type(report_type) :: report
       real(dp) :: known_to = 0.0_dp         !! conductance, relative, where rounding exceeds TOL
-      integer :: files = 0                  !! how many files it has written: run_output's written
       logical :: keeps_round = .false.      !! whether files and increments are those of the last
       !! whole round of a requested accuracy, beside which another is solved
-      real(dp) :: seconds = 0.0_dp          !! time it took [s]
       ! The rest is what a batch knows of the deck's process.
       logical :: is_running = .false.       !! whether it was started and has not ended
       logical :: has_run = .false.          !! whether it was started and has ended
       real(dp) :: cpu_seconds = 0.0_dp      !! its own and the system's [s]
       real(dp) :: peak_bytes = 0.0_dp       !! largest resident memory [byte]
       character(:), allocatable :: ending   !! its outcome in words where the status says too little
-      !> Why it is not solved, or how well where that is less than TOL; one sentence, or nothing
-      character(:), allocatable :: reason
       ! Of a deck that is solved in this process.
       type(string_type), allocatable :: summary(:)         !! what it comes to, lines
       type(string_type), allocatable :: failed_checks(:)   !! one line each
@@ -48,13 +40,10 @@ module deck_outcomes
       procedure :: note
       procedure :: doubt
       procedure :: note_files
-      procedure :: as_report
-      procedure :: take
       procedure :: fail
       procedure :: words
       procedure :: is_earlier
       procedure :: print => print_outcome
-      procedure :: round_summary
       procedure :: print_failed_checks
    end type deck_outcome_type
 
@@ -67,8 +56,9 @@ contains
       integer, intent(in) :: accepted                     !! increments accepted so far
       integer, intent(in) :: files                        !! what run_output has written
 
-      if (.not. self%keeps_round) self%increments = accepted
-      if (allocated(record%iterations)) self%iterations = self%iterations + size(record%iterations)
+      if (.not. self%keeps_round) self%report%increments = accepted
+      if (allocated(record%iterations)) self%report%iterations = self%report%iterations + &
+         size(record%iterations)
       call self%note_files(files)
    end subroutine note
 
@@ -78,9 +68,10 @@ contains
       class(deck_outcome_type), intent(inout) :: self     !! the run
       real(dp), intent(in) :: floor                       !! what it is known to, relative
 
-      if (floor <= self%known_to .or. self%status /= status_ok) return
+      if (floor <= self%known_to .or. self%report%status /= status_ok) return
       self%known_to = floor
-      self%reason = 'the contact conductance is accurate to '//to_text(floor)//' only'
+      call set_reason(self%report, 'the contact conductance is accurate to '//to_text(floor)// &
+         ' only')
    end subroutine doubt
 
    !> Notes what is written; the process of a deck of a batch reports this and all else.
@@ -88,50 +79,19 @@ contains
       class(deck_outcome_type), intent(inout) :: self     !! the run
       integer, intent(in) :: files                        !! what run_output has written
 
-      if (.not. self%keeps_round) self%files = files
-      call file_report(self%as_report())
+      if (.not. self%keeps_round) self%report%files = files
+      call file_report(self%report)
    end subroutine note_files
-
-   !> The outcome as a deck's process reports it.
-   function as_report(self) result(report)
-      class(deck_outcome_type), intent(in) :: self        !! the run
-      type(report_type) :: report
-
-      report%status = int(self%status, c_int)
-      report%lacks_memory = merge(1_c_int, 0_c_int, self%lacks_memory)
-      report%increments = int(self%increments, c_int)
-      report%iterations = int(self%iterations, c_int)
-      report%verify_passed = int(self%verify_passed, c_int)
-      report%verify_failed = int(self%verify_failed, c_int)
-      report%files = int(self%files, c_int)
-      report%seconds = self%seconds
-      if (allocated(self%reason)) call set_reason(report, self%reason)
-   end function as_report
-
-   !> Takes what a deck's process has reported so far.
-   subroutine take(self, report)
-      class(deck_outcome_type), intent(inout) :: self     !! the run
-      type(report_type), intent(in) :: report
-
-      self%status = int(report%status)
-      self%lacks_memory = report%lacks_memory == 1
-      self%increments = int(report%increments)
-      self%iterations = int(report%iterations)
-      self%verify_passed = int(report%verify_passed)
-      self%verify_failed = int(report%verify_failed)
-      self%files = int(report%files)
-      self%reason = reason_of(report)
-   end subroutine take
 
    !> Takes what went wrong; the first reason counts.
    pure subroutine fail(self, error)
       class(deck_outcome_type), intent(inout) :: self     !! the run
       type(error_type), intent(in) :: error               !! what went wrong
 
-      if (self%status /= status_ok) return
-      self%status = error%status
-      self%reason = error%message
-      self%lacks_memory = error%lacks_memory
+      if (self%report%status /= status_ok) return
+      self%report%status = error%status
+      self%report%lacks_memory = merge(1_c_int, 0_c_int, error%lacks_memory)
+      call set_reason(self%report, error%message)
    end subroutine fail
 
    !> The outcome in words, of at most 20 characters.
@@ -143,23 +103,23 @@ contains
          string = self%ending
          return
       end if
-      select case (self%status)
+      select case (self%report%status)
       case (status_ok)
          string = 'solved'
-         if (self%increments == 0) string = 'skipped'
+         if (self%report%increments == 0) string = 'skipped'
       case (status_deck)
          string = 'deck error'
       case (status_no_convergence)
          string = 'not converged'
       case (status_internal)
          string = 'internal/I-O error'
-         if (self%lacks_memory) string = 'out of memory'
+         if (self%report%lacks_memory == 1) string = 'out of memory'
       case (status_verify)
-         string = end_of_run(self%verify_failed, self%verify_failed == 0)
+         string = end_of_run(self%report%verify_failed, self%report%verify_failed == 0)
       case (status_interrupted)
          string = 'interrupted'
       case default
-         string = 'status '//to_text(self%status)
+         string = 'status '//to_text(self%report%status)
       end select
    end function words
 
@@ -168,7 +128,7 @@ contains
    pure logical function is_earlier(self)
       class(deck_outcome_type), intent(in) :: self   !! the run
 
-      is_earlier = self%increments > 0 .and. self%files == 0
+      is_earlier = self%report%increments > 0 .and. self%report%files == 0
    end function is_earlier
 
    !> How a run ended that was not cut short.
@@ -199,51 +159,30 @@ contains
       type(string_type), allocatable :: lines(:)
       integer :: i
 
-      doubts = ''
-      if (self%words() == 'skipped' .or. self%is_earlier() .and. self%status == status_ok) return
-      ! Where nothing was done the reason, which is printed already, says all.
-      if (self%status == status_internal .and. self%increments == 0 .and. self%files == 0) return
-      if (self%status == status_ok .and. allocated(self%reason)) then
-         if (len(self%reason) > 0) doubts = '; '//self%reason
-      end if
-      call print_line(output_unit, self%path//': '//self%words()//', '// &
-         counted(self%increments, 'increment')//' in '//with_decimals(self%seconds, 2)//' s'// &
-         doubts)
-      lines = lines_below(self, results)
+      associate (report => self%report)
+         if (self%words() == 'skipped') return
+         if (self%is_earlier() .and. report%status == status_ok) return
+         ! Where nothing was done the reason, which is printed already, says all.
+         if (report%status == status_internal .and. report%increments + report%files == 0) return
+         doubts = ''
+         if (report%status == status_ok .and. reason_of(report) /= '') doubts = '; '// &
+            reason_of(report)
+         call print_line(output_unit, self%path//': '//self%words()//', '// &
+            counted(report%increments, 'increment')//' in '//with_decimals(report%seconds, 2)// &
+            ' s'//doubts)
+         ! Where its results are, and how many checks passed.
+         allocate (lines(0))
+         if (allocated(self%summary)) lines = self%summary
+         if (report%files > 0 .and. (self%keeps_round .or. report%status /= status_deck .and. &
+            report%status /= status_internal)) call append(lines, 'results: '//results// &
+            trim(extensions(report%files)))
+         if (report%verify_passed + report%verify_failed > 0) call append(lines, &
+            counts_of_checks(report%verify_passed, report%verify_failed))
+      end associate
       do i = 1, size(lines)
          call print_line(output_unit, '  '//lines(i)%value)
       end do
    end subroutine print_outcome
-
-   !> Lines on the last whole round, printed behind `deck: interrupted`.
-   function round_summary(self, results) result(words)
-      class(deck_outcome_type), intent(in) :: self    !! the run, whose last round was whole
-      character(*), intent(in) :: results             !! path of its results without extension
-      character(:), allocatable :: words              !! lines with their ends
-      type(string_type), allocatable :: lines(:)
-      integer :: i
-
-      words = ', '//counted(self%increments, 'increment')//new_line('a')
-      lines = lines_below(self, results)
-      do i = 1, size(lines)
-         words = words//printable('  '//lines(i)%value)//new_line('a')
-      end do
-   end function round_summary
-
-   !> Summary of the run, where its results are, and how many checks passed.
-   function lines_below(self, results) result(lines)
-      class(deck_outcome_type), intent(in) :: self
-      character(*), intent(in) :: results
-      type(string_type), allocatable :: lines(:)
-
-      allocate (lines(0))
-      if (allocated(self%summary)) lines = self%summary
-      if (self%files > 0 .and. (self%keeps_round .or. self%status /= status_deck .and. &
-         self%status /= status_internal)) call append(lines, 'results: '//results// &
-         trim(extensions(self%files)))
-      if (self%verify_passed + self%verify_failed > 0) call append(lines, &
-         counts_of_checks(self%verify_passed, self%verify_failed))
-   end function lines_below
 
    !> Prints the checks that failed on stderr, one line each.
    subroutine print_failed_checks(self)

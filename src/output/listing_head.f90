@@ -4,7 +4,7 @@ module listing_head
    use contact_points, only: contact_points_type
    use deck_outcomes, only: counts_of_checks, end_of_run
    use interface_warnings, only: gap_range
-   use listing_text, only: page_width, print_title, print_wrapped
+   use listing_text, only: page_type, page_width
    use model, only: model_type
    use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
       open_law_words, open_words, overlap_words, pairing_words, points_words
@@ -89,28 +89,28 @@ contains
    end function summary_block
 
    !> Prints the physics, sizes and choices of a run, and its interfaces.
-   subroutine print_model(unit, model, interfaces, run)
-      integer, intent(in) :: unit                         !! unit of the listing
+   subroutine print_model(page, model, interfaces, run)
+      type(page_type), intent(inout) :: page              !! of the listing
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run
       type(run_entry_type), allocatable :: entries(:)
       integer :: i
 
-      call print_title(unit, 'PHYSICS')
-      call print_wrapped(unit, '   ', or_blank(run%modelled))
-      if (or_blank(run%reasons) /= '') call print_wrapped(unit, '   ', run%reasons)
-      call print_title(unit, 'MODEL')
+      call page%title('PHYSICS')
+      call page%wrapped('   ', or_blank(run%modelled))
+      if (or_blank(run%reasons) /= '') call page%wrapped('   ', run%reasons)
+      call page%title('MODEL')
       entries = run_entries(run, model)
       do i = 1, size(entries)
-         if (entries(i)%is_told(in_listing)) call print_entry(unit, entries(i)%label, &
+         if (entries(i)%is_told(in_listing)) call print_entry(page, entries(i)%label, &
             entries(i)%words)
       end do
-      call print_interfaces(unit, model, interfaces)
+      call print_interfaces(page, model, interfaces)
    end subroutine print_model
 
-   subroutine print_interfaces(unit, model, interfaces)
-      integer, intent(in) :: unit
+   subroutine print_interfaces(page, model, interfaces)
+      type(page_type), intent(inout) :: page
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       character(:), allocatable :: pieces
@@ -119,37 +119,38 @@ contains
 
       has_heat = any(solves_heat(model%steps%analysis))
       do i = 1, size(interfaces)
-         write (unit, '(/, 3x, 2a)') 'INTERFACE ', interfaces(i)%name
-         call print_entry(unit, 'pairing', pairing_words(model%contacts(i)%pairing, interfaces(i)))
+         call page%line('')
+         call page%line('   INTERFACE '//interfaces(i)%name)
+         call print_entry(page, 'pairing', pairing_words(model%contacts(i)%pairing, interfaces(i)))
          pieces = ''
          if (allocated(interfaces(i)%cuts)) pieces = ', in '// &
             to_text(size(interfaces(i)%cuts) + 1)//' pieces of the faces'
-         call print_entry(unit, points_words(interfaces(i)), &
+         call print_entry(page, points_words(interfaces(i)), &
             to_text(size(interfaces(i)%slave))//pieces)
-         if (len(open_words(interfaces(i))) > 0) call print_entry(unit, 'note', &
+         if (len(open_words(interfaces(i))) > 0) call print_entry(page, 'note', &
             open_words(interfaces(i)))
-         call print_entry(unit, 'length', to_text(interfaces(i)%length()))
-         call print_entry(unit, 'initial gaps', &
+         call print_entry(page, 'length', to_text(interfaces(i)%length()))
+         call print_entry(page, 'initial gaps', &
             from_to(gap_range(model%mesh, interfaces(i))))
          associate (interaction => model%interactions(model%contacts(i)%interaction))
-            call print_entry(unit, 'coefficient of friction', friction_words(interaction%friction))
-            if (interaction%overlap%is_soft()) call print_entry(unit, 'pressure', &
+            call print_entry(page, 'coefficient of friction', friction_words(interaction%friction))
+            if (interaction%overlap%is_soft()) call print_entry(page, 'pressure', &
                overlap_words(interaction%overlap))
             if (.not. has_heat) cycle
             if (makes_friction_heat(model%interactions, model%contacts(i:i))) call print_entry( &
-               unit, 'heat of friction', friction_heat_words(interaction%heat))
-            call print_entry(unit, 'conductance, open', open_law_words(interaction%law))
-            call print_entry(unit, 'conductance, closed', closed_law_words(interaction%law))
+               page, 'heat of friction', friction_heat_words(interaction%heat))
+            call print_entry(page, 'conductance, open', open_law_words(interaction%law))
+            call print_entry(page, 'conductance, closed', closed_law_words(interaction%law))
          end associate
       end do
    end subroutine print_interfaces
 
-   subroutine print_entry(unit, name, value)
-      integer, intent(in) :: unit
+   subroutine print_entry(page, name, value)
+      type(page_type), intent(inout) :: page
       character(*), intent(in) :: name
       character(*), intent(in) :: value
 
-      call print_wrapped(unit, '   '//name//' '//repeat('.', max(26 - len(name), 2))//' ', value)
+      call page%wrapped('   '//name//' '//repeat('.', max(26 - len(name), 2))//' ', value)
    end subroutine print_entry
 
 end module listing_head

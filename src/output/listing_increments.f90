@@ -2,14 +2,13 @@
 !> end of a step the errors of bodies in the energy norm and the bounds of interfaces' quantities.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use body_lines, only: corner_words, place_words
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use field_quantities, only: maxima
    use increment_quantities, only: history_value, part_values, stability_words
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
-   use listing_text, only: column, page_width, print_wrapped
+   use listing_text, only: column, in_columns, page_type, to_right, zone_counts
    use mesh, only: mesh_type
    use no_estimates, only: no_reason, words_of_reason
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
@@ -20,9 +19,8 @@ module listing_increments
       increment_record_type, interface_errors_type
    use reported_quantities, only: quantities
    use steps, only: solves_heat, solves_mechanics
-   use summary, only: words_of
-   use text, only: string_type, to_text
-   use zone_diagram, only: zone_counts
+   use summary, only: corner_words, place_words, words_of
+   use text, only: append, string_type, to_text, with_decimals
    implicit none
    private
    public :: print_increment, print_attempts, print_interface, print_balances
@@ -30,47 +28,50 @@ module listing_increments
 
    character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'increments', &
       'iteration']
+   character(*), parameter :: bounds_head = '         value        bound          %        mesh'// &
+      '    increments     iteration  largest part'
 
 contains
 
    !> Prints which increment it is and how it converged.
-   subroutine print_increment(unit, record)
-      integer, intent(in) :: unit                         !! unit of the listing
+   subroutine print_increment(page, record)
+      type(page_type), intent(inout) :: page              !! of the listing
       type(increment_record_type), intent(in) :: record
       integer :: passes
 
-      write (unit, '(/, a, i0, a, i0, 4a)') 'INCREMENT ', record%increment, '   STEP ', &
-         record%step, '   TIME ', to_text(record%time), '   LOAD ', to_text(record%load)
-      if (allocated(record%failed)) call print_attempts(unit, record%failed)
-      if (record%corrections > 0) write (unit, '(3x, a, i0, a)') 'corrections ', &
-         record%corrections, trim(merge(', operators formed again', '                        ', &
-         record%has_new_operators))
+      call page%line('')
+      call page%line('INCREMENT '//to_text(record%increment)//'   STEP '//to_text(record%step)// &
+         '   TIME '//to_text(record%time)//'   LOAD '//to_text(record%load))
+      if (allocated(record%failed)) call print_attempts(page, record%failed)
+      if (record%corrections > 0) call page%line('   corrections '//to_text(record%corrections)// &
+         trim(merge(', operators formed again', repeat(' ', 24), record%has_new_operators)))
       if (.not. allocated(record%iterations)) return
       passes = size(record%iterations)
       if (passes == 0) return
-      write (unit, '(3x, 2(a, i0), 5a)') 'iterations ', passes, '   cut-backs ', record%cut_backs, &
-         '   residual', column(history_value('residual', record), 9, 2), '  (floor', &
-         column(history_value('residual_floor', record), 9, 2), ')'
-      if (.not. ieee_is_nan(record%coupling_gain)) write (unit, '(a)') &
-         history_line(needs_coupling, record)
+      call page%line('   iterations '//to_text(passes)//'   cut-backs '// &
+         to_text(record%cut_backs)//'   residual'// &
+         column(history_value('residual', record), 9, 2)//'  (floor'// &
+         column(history_value('residual_floor', record), 9, 2)//')')
+      if (.not. ieee_is_nan(record%coupling_gain)) call page%line(history_line(needs_coupling, &
+         record))
    end subroutine print_increment
 
    !> Prints the attempts at an increment that are not kept.
-   subroutine print_attempts(unit, attempts)
-      integer, intent(in) :: unit                            !! unit of the listing
+   subroutine print_attempts(page, attempts)
+      type(page_type), intent(inout) :: page                 !! of the listing
       type(attempt_record_type), intent(in) :: attempts(:)   !! these, in their order
       integer :: i
 
       do i = 1, size(attempts)
-         call print_wrapped(unit, '   ', 'attempt '//to_text(i)//' of size '// &
+         call page%wrapped('   ', 'attempt '//to_text(i)//' of size '// &
             to_text(attempts(i)%increment_size)//', to time '//to_text(attempts(i)%time)// &
             ', not kept: '//attempts(i)%reason)
       end do
    end subroutine print_attempts
 
    !> Prints zones, edges and sums of an interface.
-   subroutine print_interface(unit, points, contact)
-      integer, intent(in) :: unit                         !! unit of the listing
+   subroutine print_interface(page, points, contact)
+      type(page_type), intent(inout) :: page              !! of the listing
       type(contact_points_type), intent(in) :: points     !! the interface
       type(contact_record_type), intent(in) :: contact    !! its state
       type(quantity_type) :: quantity
@@ -92,9 +93,9 @@ contains
          end if
       end do
       zones = zone_counts(contact%contact_state)
-      write (unit, '(3x, a, 3(a, i0), a)') points%name, '   I ', zones(1), '   II ', zones(2), &
-         '   III ', zones(3), edges
-      write (unit, '(3x, a)') sums
+      call page%line('   '//points%name//'   I '//to_text(zones(1))//'   II '// &
+         to_text(zones(2))//'   III '//to_text(zones(3))//edges)
+      call page%line('   '//sums)
    end subroutine print_interface
 
    !> The quantities of an increment that need the same, with their labels.
@@ -135,44 +136,44 @@ contains
    end function told
 
    !> Prints what balances, and the work of the re-factorisation.
-   subroutine print_balances(unit, record, analysis)
-      integer, intent(in) :: unit                         !! unit of the listing
+   subroutine print_balances(page, record, analysis)
+      type(page_type), intent(inout) :: page              !! of the listing
       type(increment_record_type), intent(in) :: record
       integer, intent(in) :: analysis                     !! one of the analysis_* constants
+      integer, parameter :: parts(7) = [needs_nothing, needs_heat, needs_storage, &
+         needs_dilatation, needs_friction_heat, needs_mechanics, needs_branch]
+      logical :: is_told(size(parts)), has_heat
       integer :: i
 
-      if (history_line(needs_nothing, record) /= '') write (unit, '(a)') &
-         history_line(needs_nothing, record)
-      if (solves_heat(analysis)) write (unit, '(a)') history_line(needs_heat, record)
-      if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_stored)) write (unit, '(a)') &
-         history_line(needs_storage, record)
-      if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_dilatation)) then
-         write (unit, '(a)') history_line(needs_dilatation, record)
-      end if
-      if (solves_heat(analysis) .and. .not. ieee_is_nan(record%heat_friction)) then
-         write (unit, '(a)') history_line(needs_friction_heat, record)
-      end if
-      if (solves_mechanics(analysis)) write (unit, '(a)') history_line(needs_mechanics, record)
+      has_heat = solves_heat(analysis)
+      is_told = [.true., has_heat, has_heat .and. .not. ieee_is_nan(record%heat_stored), &
+         has_heat .and. .not. ieee_is_nan(record%heat_dilatation), &
+         has_heat .and. .not. ieee_is_nan(record%heat_friction), solves_mechanics(analysis), &
+         allocated(record%load_factor)]
+      do i = 1, size(parts)
+         if (is_told(i) .and. history_line(parts(i), record) /= '') call page%line( &
+            history_line(parts(i), record))
+      end do
       if (allocated(record%pre_tension)) then
-         if (size(record%pre_tension) > 0) write (unit, '(3x, a, *(a))') 'pre-tension', &
-            (column(record%pre_tension(i), 14, 6), i=1, size(record%pre_tension))
+         if (size(record%pre_tension) > 0) call page%line('   pre-tension'// &
+            in_columns(record%pre_tension, 14, 6))
       end if
-      if (allocated(record%load_factor)) write (unit, '(a)') history_line(needs_branch, record)
-      if (stability_words(record) /= '') call print_wrapped(unit, '   ', 'stability: '// &
+      if (stability_words(record) /= '') call page%wrapped('   ', 'stability: '// &
          stability_words(record))
       associate (work => record%work)
-         if (work%columns_full > 0) write (unit, '(3x, 2(a, i0, a, i0, a, f5.1), a)') &
-            'refactored ', work%columns_again, ' of ', work%columns_full, ' columns (', &
-            100.0_dp*work%columns_again/work%columns_full, ' %), ', work%flops_again, ' of ', &
-            work%flops_full, ' flops (', 100.0_dp*work%flops_again/max(1.0_dp, &
-            real(work%flops_full, dp)), ' %)'
+         if (work%columns_full > 0) call page%line('   refactored '// &
+            to_text(work%columns_again)//' of '//to_text(work%columns_full)//' columns ('// &
+            to_right(with_decimals(100.0_dp*work%columns_again/work%columns_full, 1), 5)// &
+            ' %), '//to_text(work%flops_again)//' of '//to_text(work%flops_full)//' flops ('// &
+            to_right(with_decimals(100.0_dp*work%flops_again/max(1.0_dp, &
+            real(work%flops_full, dp)), 1), 5)//' %)')
       end associate
    end subroutine print_balances
 
    !> Prints how large the discretisation error of each body is estimated, in the energy norm,
    !> relative to stress and heat flux, at the end of a step.
-   subroutine print_body_errors(unit, record)
-      integer, intent(in) :: unit                         !! unit of the listing
+   subroutine print_body_errors(page, record)
+      type(page_type), intent(inout) :: page              !! of the listing
       type(increment_record_type), intent(in) :: record
       type(quantity_type), allocatable :: errors(:)
       real(dp), allocatable :: values(:)
@@ -192,15 +193,15 @@ contains
             if (b > size(values)) cycle
             line = line//'   '//trim(errors(i)%label)//column(values(b), 9, 2)
          end do
-         write (unit, '(3x, a, i0, 2a)') 'estimated error of the mesh, body ', b, line, &
-            '  (energy norm, relative)'
+         call page%line('   estimated error of the mesh, body '//to_text(b)//line// &
+            '  (energy norm, relative)')
       end do
    end subroutine print_body_errors
 
    !> Prints the bounds of an interface. What has no value, or no part in the deck, is left out, and
    !> so are edges at the end of the face.
-   subroutine print_interface_errors(unit, points, errors)
-      integer, intent(in) :: unit                          !! unit of the listing
+   subroutine print_interface_errors(page, points, errors)
+      type(page_type), intent(inout) :: page               !! of the listing
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
       type(interface_errors_type), intent(in) :: errors
       type(string_type) :: names(size(estimated))
@@ -214,13 +215,13 @@ contains
             names(q)%value = ''
          end if
       end do
-      call print_bounds(unit, points%name, maxval([(len(words_of(estimated(q)%name)), q=1, &
+      call print_bounds(page, points%name, maxval([(len(words_of(estimated(q)%name)), q=1, &
          size(estimated))]), names, errors)
    end subroutine print_interface_errors
 
    !> Prints the bounds of the maxima of a body, where they are, and the corners that are left out.
-   subroutine print_maxima(unit, mesh, body, errors)
-      integer, intent(in) :: unit                          !! unit of the listing
+   subroutine print_maxima(page, mesh, body, errors)
+      type(page_type), intent(inout) :: page               !! of the listing
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: body
       type(body_errors_type), intent(in) :: errors
@@ -231,50 +232,49 @@ contains
          names(q)%value = ''
          if (.not. ieee_is_nan(errors%value(q))) names(q)%value = 'largest '//trim(maxima(q)%label)
       end do
-      if (any(errors%node > 0)) call print_bounds(unit, 'BODY '//to_text(body), &
+      if (any(errors%node > 0)) call print_bounds(page, 'BODY '//to_text(body), &
          len('largest ') + maxval(len_trim(maxima%label)), names, errors)
       do q = 1, size(maxima)
-         if (errors%node(q) > 0) call print_wrapped(unit, '    ', names(q)%value//' at '// &
+         if (errors%node(q) > 0) call page%wrapped('    ', names(q)%value//' at '// &
             place_words(mesh, errors%node(q)))
       end do
-      if (size(errors%corners) > 0) call print_wrapped(unit, '    ', corner_words(mesh, errors))
+      if (size(errors%corners) > 0) call page%wrapped('    ', corner_words(mesh, errors))
    end subroutine print_maxima
 
    !> Prints bounds with their parts, and why there are none.
-   subroutine print_bounds(unit, title, width, names, errors)
-      integer, intent(in) :: unit
+   subroutine print_bounds(page, title, width, names, errors)
+      type(page_type), intent(inout) :: page
       character(*), intent(in) :: title                    ! what they are of
       integer, intent(in) :: width                         ! of the names
       type(string_type), intent(in) :: names(:)            ! of the quantities; empty: not told
       class(interface_errors_type), intent(in) :: errors
-      character(page_width) :: line
+      type(string_type), allocatable :: rows(:)
       character(width) :: name
       real(dp) :: part
       integer :: k, q
 
-      write (unit, '(/, 3a)') '   BOUNDS OF THE ERRORS OF ', title, &
-         ': how far values may be off to either side, with the parts of each bound'
-      write (unit, '(4x, a, a14, a13, a11, a12, 2a14, a14)') repeat(' ', width), 'value', &
-         'bound', '%', 'mesh', 'increments', 'iteration', 'largest part'
+      allocate (rows(0))
+      name = ''
+      call append(rows, '    '//name//bounds_head)
       do q = 1, size(names)
          associate (value => errors%value(q), bound => errors%bound(q))
             if (names(q)%value == '') cycle
             name = names(q)%value
             part = ieee_value(part, ieee_quiet_nan)
             if (abs(value) > 0.0_dp) part = 100.0_dp*bound/abs(value)
-            write (line, '(4x, a, a14, a13, a11, a12, 2a14, a14)') &
-               name, column(value, 14, 6), cell(bound, 13, 'no estimate'), &
-               cell(part, 11, '-'), cell(errors%mesh(q), 12, '-'), &
-               cell(errors%increment(q), 14, '-'), cell(errors%iteration(q), 14, '-'), &
-               largest_part(errors, q)
-            write (unit, '(a)') trim(line)
+            call append(rows, trim('    '//name//column(value, 14, 6)// &
+               cell(bound, 13, 'no estimate')//cell(part, 11, '-')// &
+               cell(errors%mesh(q), 12, '-')//cell(errors%increment(q), 14, '-')// &
+               cell(errors%iteration(q), 14, '-')//'    '//largest_part(errors, q)))
          end associate
       end do
+      call page%table('   BOUNDS OF THE ERRORS OF '//title//': how far values may be off to '// &
+         'either side, with the parts of each bound', rows)
       do q = 1, size(names)
          associate (why => errors%no_estimate(q))
             if (why == no_reason .or. names(q)%value == '') cycle
             if (any([(names(k)%value /= '' .and. errors%no_estimate(k) == why, k=1, q - 1)])) cycle
-            call print_wrapped(unit, '    ', 'no estimate: '//words_of_reason(why))
+            call page%wrapped('    ', 'no estimate: '//words_of_reason(why))
          end associate
       end do
    end subroutine print_bounds
@@ -298,7 +298,7 @@ contains
       character(*), intent(in) :: missing
       character(width) :: string
 
-      string = repeat(' ', width - len(missing))//missing
+      string = to_right(missing, width)
       if (.not. ieee_is_nan(value)) string = column(value, width, 2)
    end function cell
 

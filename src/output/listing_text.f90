@@ -1,44 +1,163 @@
-!> Text of the listing: titles, wrapped lines, numbers in columns, the echo of the deck.
-!>
-!> Fortran's own statements print it into memory, from where it is taken: whether it then finds room
-!> in a file is seen in one place, and so are its control characters.
+!> Text of the listing and of the status files: titles, wrapped lines, numbers in columns, rows of
+!> tables, the echo of the deck.
 module listing_text
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use errors, only: error_type, set_error, status_internal
-   use file_calls, only: read_file
+   use contact_system, only: contact_open, contact_stick
    use kinds, only: dp, long
-   use open_files, only: close_descriptor, open_in_memory
    use quantity_types, only: quantity_type
-   use text, only: string_type, to_text
+   use text, only: string_type, to_text, with_decimals
    use utf8, only: printable
-   use zone_diagram, only: zone_numeral
    implicit none
    private
-   public :: page_width, print_title, print_wrapped, print_list, print_deck
-   public :: column, in_columns, table_cell, table_head, printed_text_type
+   public :: page_type, page_width, column, in_columns, to_right, table_heads, table_row
+   public :: zone_numeral, zone_counts
 
-   integer, parameter :: page_width = 132   !! columns of the line printer
+   integer, parameter :: page_width = 132     !! columns of the line printer
+   integer, parameter :: first_room = 4096    !! characters
 
-   !> Text that waits to be taken.
-   type :: printed_text_type
-      integer :: unit = 0                               !! Fortran unit to print on
-      integer, private :: descriptor = -1               !! of the file in memory
-      character(:), allocatable, private :: path        !! by which Fortran opens it
+   !> Lines that wait to be written to a file.
+   type :: page_type
+      private
+      character(:), allocatable :: buffer
+      integer, public :: length = 0    !! characters that wait in it
    contains
-      procedure :: open => open_text
+      procedure :: append
+      procedure :: line
+      procedure :: title
+      procedure :: wrapped
+      procedure :: list
+      procedure :: table
+      procedure :: deck
       procedure :: take
-      procedure :: close => close_text
-   end type printed_text_type
+   end type page_type
 
 contains
 
-   !> Prints a title, underlined.
-   subroutine print_title(unit, title)
-      integer, intent(in) :: unit         !! unit of the listing
-      character(*), intent(in) :: title   !! the title
+   !> Adds text as it is.
+   pure subroutine append(self, lines)
+      class(page_type), intent(inout) :: self
+      character(*), intent(in) :: lines         !! with their ends
+      character(:), allocatable :: larger
+      integer :: last
 
-      write (unit, '(/, a, /, a)') title, repeat('-', len(title))
-   end subroutine print_title
+      last = self%length + len(lines)
+      if (.not. allocated(self%buffer)) allocate (character(first_room) :: self%buffer)
+      if (last > len(self%buffer)) then
+         allocate (character(2*last) :: larger)
+         larger(:self%length) = self%buffer(:self%length)
+         call move_alloc(larger, self%buffer)
+      end if
+      self%buffer(self%length + 1:last) = lines
+      self%length = last
+   end subroutine append
+
+   !> Adds a line.
+   pure subroutine line(self, words)
+      class(page_type), intent(inout) :: self
+      character(*), intent(in) :: words         !! any bytes
+
+      call self%append(printable(words)//new_line('a'))
+   end subroutine line
+
+   !> Adds a title, underlined.
+   pure subroutine title(self, words)
+      class(page_type), intent(inout) :: self
+      character(*), intent(in) :: words
+
+      call self%line('')
+      call self%line(words)
+      call self%line(repeat('-', len(words)))
+   end subroutine title
+
+   !> Adds text under a mark, broken at blanks.
+   pure subroutine wrapped(self, mark, string)
+      class(page_type), intent(inout) :: self
+      character(*), intent(in) :: mark          !! what is before the first line
+      character(*), intent(in) :: string        !! the text
+      character(len(mark)) :: before
+      integer :: first, last, room
+
+      room = max(page_width - len(mark), page_width/2)
+      before = mark
+      first = 1
+      do
+         last = len_trim(string)
+         if (last - first + 1 > room) then
+            last = first - 1 + index(string(first:first + room), ' ', back=.true.)
+            if (last < first) last = first + room - 1
+         end if
+         call self%line(before//trim(string(first:last)))
+         before = ''
+         first = last + 1
+         if (first > len_trim(string)) exit
+      end do
+   end subroutine wrapped
+
+   !> Adds a list of texts under a title; nothing for an empty list.
+   pure subroutine list(self, title, texts)
+      class(page_type), intent(inout) :: self
+      character(*), intent(in) :: title
+      type(string_type), allocatable, intent(in) :: texts(:)   !! or unallocated
+      integer :: i
+
+      if (.not. allocated(texts)) return
+      if (size(texts) > 0) call self%title(title)
+      do i = 1, size(texts)
+         call self%wrapped('   - ', texts(i)%value)
+      end do
+   end subroutine list
+
+   !> Adds a table under its title.
+   pure subroutine table(self, title, rows)
+      class(page_type), intent(inout) :: self
+      character(*), intent(in) :: title
+      type(string_type), intent(in) :: rows(:)   !! the heads of the columns, then the rows
+      integer :: i
+
+      call self%line('')
+      call self%line(title)
+      do i = 1, size(rows)
+         call self%line(rows(i)%value)
+      end do
+   end subroutine table
+
+   !> Adds the card images with their numbers; a card that is wider than the page goes on below.
+   pure subroutine deck(self, cards)
+      class(page_type), intent(inout) :: self
+      type(string_type), intent(in) :: cards(:)     !! card images as read
+      integer, parameter :: room = page_width - 10
+      integer :: i, first
+
+      call self%title('DECK')
+      do i = 1, size(cards)
+         associate (card => cards(i)%value)
+            call self%line(to_right(to_text(i), 8)//'  '//card(:min(len(card), room)))
+            do first = room + 1, len(card), room
+               call self%line(repeat(' ', 10)//card(first:min(len(card), first + room - 1)))
+            end do
+         end associate
+      end do
+   end subroutine deck
+
+   !> Takes all that waits.
+   pure subroutine take(self, lines)
+      class(page_type), intent(inout) :: self
+      character(:), allocatable, intent(out) :: lines   !! with their ends
+
+      lines = ''
+      if (self%length > 0) lines = self%buffer(:self%length)
+      self%length = 0
+   end subroutine take
+
+   !> Words at the right end of so many columns, of more where these do not hold them.
+   pure function to_right(words, width) result(string)
+      character(*), intent(in) :: words
+      integer, intent(in) :: width
+      character(max(width, len(words))) :: string
+
+      string = words
+      string = adjustr(string)
+   end function to_right
 
    !> A number in a column, with a blank before it: decimals are left out where it would not fit
    !> otherwise, exponents of three digits keep their E, and zero has no sign.
@@ -120,33 +239,6 @@ contains
       digit = achar(iachar('0') + number)
    end function digit
 
-   !> A quantity in its column of a table: zones by their numerals, integers to the right, plain
-   !> numbers with six decimals.
-   pure function table_cell(quantity, value) result(string)
-      type(quantity_type), intent(in) :: quantity   !! which one; has a column
-      real(dp), intent(in) :: value                 !! its value
-      character(quantity%width) :: string
-
-      if (quantity%is_integer) then
-         string = to_text(nint(value))
-         if (quantity%name == 'status') string = zone_numeral(nint(value))
-         string = adjustr(string)
-      else if (quantity%is_plain) then
-         write (string, '(f'//to_text(quantity%width)//'.6)') value
-      else
-         string = column(value, quantity%width, 3)
-      end if
-   end function table_cell
-
-   !> The head of the column of a quantity.
-   pure function table_head(quantity) result(string)
-      type(quantity_type), intent(in) :: quantity   !! which one; has a column
-      character(quantity%width) :: string
-
-      string = quantity%head
-      string = adjustr(string)
-   end function table_head
-
    !> Numbers in columns side by side.
    pure function in_columns(values, width, decimals) result(string)
       real(dp), intent(in) :: values(:)          !! (n) the numbers
@@ -160,127 +252,64 @@ contains
       end do
    end function in_columns
 
-   !> Prints text under a mark, broken at blanks.
-   subroutine print_wrapped(unit, mark, string)
-      integer, intent(in) :: unit          !! unit of the listing
-      character(*), intent(in) :: mark     !! what is before the first line
-      character(*), intent(in) :: string   !! the text
-      integer :: first, last, room
-
-      room = max(page_width - len(mark), page_width/2)
-      first = 1
-      do
-         last = len_trim(string)
-         if (last - first + 1 > room) then
-            last = first - 1 + index(string(first:first + room), ' ', back=.true.)
-            if (last < first) last = first + room - 1
-         end if
-         if (first == 1) then
-            write (unit, '(2a)') mark, trim(string(first:last))
-         else
-            write (unit, '(2a)') repeat(' ', len(mark)), trim(string(first:last))
-         end if
-         first = last + 1
-         if (first > len_trim(string)) exit
-      end do
-   end subroutine print_wrapped
-
-   !> Prints a list of texts under a title; nothing for an empty list.
-   subroutine print_list(unit, title, list)
-      integer, intent(in) :: unit                            !! unit of the listing
-      character(*), intent(in) :: title                      !! the title
-      type(string_type), allocatable, intent(in) :: list(:)  !! the texts, or unallocated
+   !> The heads of columns, side by side.
+   pure function table_heads(columns) result(line)
+      type(quantity_type), intent(in) :: columns(:)   !! quantities that have a column
+      character(:), allocatable :: line
       integer :: i
 
-      if (.not. allocated(list)) return
-      if (size(list) == 0) return
-      call print_title(unit, title)
-      do i = 1, size(list)
-         call print_wrapped(unit, '   - ', list(i)%value)
+      line = ''
+      do i = 1, size(columns)
+         line = line//to_right(trim(columns(i)%head), columns(i)%width)
       end do
-   end subroutine print_list
+   end function table_heads
 
-   !> Prints the card images with their numbers; a card that is wider than the page goes on below.
-   subroutine print_deck(unit, cards)
-      integer, intent(in) :: unit                   !! unit of the listing
-      type(string_type), intent(in) :: cards(:)     !! card images as read
-      integer, parameter :: room = page_width - 10
-      integer :: i, first
+   !> A row of a table: zones by their numerals, integers to the right, plain numbers with six
+   !> decimals.
+   pure function table_row(columns, values) result(line)
+      type(quantity_type), intent(in) :: columns(:)   !! quantities that have a column
+      real(dp), intent(in) :: values(:)               !! one each
+      character(:), allocatable :: line
+      integer :: i
 
-      call print_title(unit, 'DECK')
-      do i = 1, size(cards)
-         associate (card => cards(i)%value)
-            write (unit, '(i8, 2x, a)') i, card(:min(len(card), room))
-            do first = room + 1, len(card), room
-               write (unit, '(10x, a)') card(first:min(len(card), first + room - 1))
-            end do
+      line = ''
+      do i = 1, size(columns)
+         associate (width => columns(i)%width)
+            if (columns(i)%name == 'status') then
+               line = line//to_right(zone_numeral(nint(values(i))), width)
+            else if (columns(i)%is_integer) then
+               line = line//to_right(to_text(nint(values(i))), width)
+            else if (columns(i)%is_plain) then
+               line = line//to_right(with_decimals(values(i), 6), width)
+            else
+               line = line//column(values(i), width, 3)
+            end if
          end associate
       end do
-   end subroutine print_deck
+   end function table_row
 
-   !> Opens a text in memory.
-   !> Error: status_internal, when the system opens no file there.
-   subroutine open_text(self, error)
-      class(printed_text_type), intent(inout) :: self     !! the text, empty
-      type(error_type), allocatable, intent(out) :: error
-      character(200) :: reason
-      integer :: status
+   !> The Roman numeral of a zone, set to the right.
+   pure function zone_numeral(contact_state) result(numeral)
+      integer, intent(in) :: contact_state !! contact_open, contact_slip or contact_stick
+      character(3) :: numeral         !! I, II or III
 
-      call open_in_memory(self%descriptor, self%path, error)
-      if (allocated(error)) return
-      open (newunit=self%unit, file=self%path, status='old', action='readwrite', iostat=status, &
-         iomsg=reason)
-      if (status /= 0) call set_error(error, status_internal, trim(reason))
-   end subroutine open_text
-
-   !> Takes all lines that were printed since the last time.
-   subroutine take(self, lines)
-      class(printed_text_type), intent(inout) :: self
-      character(:), allocatable, intent(out) :: lines   !! with their ends, and printable
-      character(:), allocatable :: contents, reason
-      integer :: first, length, n
-
-      flush (self%unit)
-      call read_file(self%path, huge(1), contents, reason)
-      rewind (self%unit)
-      endfile (self%unit)
-      rewind (self%unit)
-      allocate (character(0) :: lines)
-      if (all_printable(contents)) then
-         call move_alloc(contents, lines)
-         return
+      if (contact_state == contact_open) then
+         numeral = '  I'
+      else if (contact_state == contact_stick) then
+         numeral = 'III'
+      else
+         numeral = ' II'
       end if
-      first = 1
-      do while (first <= len(contents))
-         length = index(contents(first:), new_line('a')) - 1
-         if (length < 0) exit
-         n = len(lines)
-         lines = lines//printable(contents(first:first + length - 1))//new_line('a')
-         first = first + length + 1
-      end do
-   end subroutine take
+   end function zone_numeral
 
-   !> Whether a text has plain letters and ends of line only, as most have.
-   pure logical function all_printable(contents)
-      character(*), intent(in) :: contents
-      integer :: i
+   !> Numbers of contact points in the zones.
+   pure function zone_counts(contact_state) result(counts)
+      integer, intent(in) :: contact_state(:) !! (contact points) contact states
+      integer :: counts(3)               !! contact points in zones I, II and III
 
-      all_printable = .false.
-      do i = 1, len(contents)
-         if (iachar(contents(i:i)) >= 32 .and. iachar(contents(i:i)) < 127) cycle
-         if (contents(i:i) /= new_line('a')) return
-      end do
-      all_printable = .true.
-   end function all_printable
-
-   !> Ends the text; what was not taken is lost.
-   subroutine close_text(self)
-      class(printed_text_type), intent(inout) :: self
-
-      if (self%descriptor < 0) return
-      close (self%unit)
-      call close_descriptor(self%descriptor)
-      self%descriptor = -1
-   end subroutine close_text
+      counts(1) = count(contact_state == contact_open)
+      counts(3) = count(contact_state == contact_stick)
+      counts(2) = size(contact_state) - counts(1) - counts(3)
+   end function zone_counts
 
 end module listing_text

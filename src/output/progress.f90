@@ -4,9 +4,9 @@ module progress
    use clock, only: wall_seconds
    use file_calls, only: is_terminal
    use kinds, only: dp
+   use listing_text, only: zone_counts
    use records, only: increment_record_type
    use text, only: to_text
-   use zone_diagram, only: zone_counts
    implicit none
    private
    public :: progress_type

@@ -13,7 +13,7 @@ module results
    use due_output, only: fields_are_due
    use errors, only: error_type
    use field_quantities, only: maxima
-   use file_calls, only: file_identity_type, identity_of, rename_file
+   use file_calls, only: identity_of, remove_file, rename_file
    use result_tables, only: bounded, bytes_in, flush_sets, result_table_type, &
       write_geometry
    use equations, only: section_nodes
@@ -195,15 +195,13 @@ contains
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(:), allocatable :: stem
-      type(file_identity_type) :: own
       integer, allocatable :: rows(:)
       integer :: i, k
       logical :: is_new
 
       call integers(restart, 'rows', rows)
       self%accepted = rows(1)
-      own = identity_of(self%file%path)
-      if (own%is_same(identity_of(path))) self%published = self%accepted
+      if (identity_of(self%file%path) == identity_of(path)) self%published = self%accepted
       stem = path(:len(path) - len(end_of_name))
       self%file%source = path
       call self%file%open(is_new)
@@ -427,7 +425,7 @@ contains
          call self%contact_file%close(error)
          if (.not. allocated(error)) call self%contact_file%put_in_place(error)
       else
-         call self%contact_file%remove()   ! of an earlier run of a deck with contact
+         call remove_file(self%contact_file%path)   ! of an earlier run of a deck with contact
       end if
       if (allocated(error)) return
       if (is_first) then

@@ -177,12 +177,12 @@ contains
       if (self%kept_round > 0) then
          call self%progress%clear()
          call self%results%give_up()
-         call self%listing%drop_draft(reason, record, self%kept())
+         call self%listing%break_off(reason, record, self%kept())
          return
       end if
       if (allocated(record%iterations)) self%failed = record%iterations
       call self%judgement%fail()
-      call self%listing%add_failure(reason, record, words_of_kept(self%results%accepted))
+      call self%listing%end_early(reason, record, words_of_kept(self%results%accepted))
    end subroutine fail
 
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
@@ -233,7 +233,7 @@ contains
          return
       end if
       call self%progress%clear()
-      call self%listing%break_off(reason)
+      if (self%listing%is_begun()) call self%listing%break_off(reason, increment_record_type(), '')
    end subroutine break_off
 
    !> Summary of the run at its last accepted increment.

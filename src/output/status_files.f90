@@ -4,12 +4,13 @@ module status_files
    use errors, only: error_type
    use file_calls, only: check_in_place, read_file, try_file
    use increment_quantities, only: history_value, pass_value
-   use listing_text, only: column, printed_text_type, table_cell, table_head
-   use open_files, only: append_to_file, close_descriptor, open_new_file
+   use listing_text, only: column, page_type, table_heads, table_row, to_right
+   use open_files, only: close_descriptor, open_new_file, write_to_file
    use quantity_types, only: of_passes, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: quantities
    use solution_report, only: iteration_record_type
+   use text, only: to_text
    implicit none
    private
    public :: status_file_type
@@ -23,7 +24,7 @@ module status_files
       character(:), allocatable :: heading            !! first line; begins with no digit
       type(quantity_type), allocatable :: columns(:)  !! of `.cvg`
       integer :: descriptor = -1                      !! of the file while it is open
-      type(printed_text_type) :: text                 !! lines not yet written
+      type(page_type) :: page                         !! lines not yet written
    contains
       procedure :: start_increments
       procedure :: start_iterations
@@ -52,7 +53,6 @@ contains
    subroutine start_iterations(self, path)
       class(status_file_type), intent(inout) :: self
       character(*), intent(in) :: path                !! its path
-      integer :: i
 
       self%path = path
       self%columns = pack(quantities, quantities%kind == of_passes)
@@ -60,22 +60,20 @@ contains
       self%columns(1)%width = len_trim(self%columns(1)%head)
       where (.not. self%columns%is_integer) self%columns%width = max(self%columns%width, 12)
       self%columns%is_plain = .false.
-      self%heading = ''
-      do i = 1, size(self%columns)
-         self%heading = self%heading//table_head(self%columns(i))
-      end do
+      self%heading = table_heads(self%columns)
    end subroutine start_iterations
 
    !> Adds the line of an accepted increment.
    subroutine add_increment(self, record)
       class(status_file_type), intent(inout) :: self      !! the `.sta` file
       type(increment_record_type), intent(in) :: record
+      character(10) :: number
 
-      write (self%text%unit, '(i0, t12, i4, 2a, i12, i11, 3a)') record%increment, record%step, &
-         column(record%time, 16, 8), column(record%load, 16, 8), &
-         nint(history_value('iterations', record)), record%cut_backs, &
-         column(history_value('residual', record), 12, 3), column(record%heat_imbalance, 11, 2), &
-         column(record%force_imbalance, 11, 2)
+      number = to_text(record%increment)
+      call self%page%line(number//to_right(to_text(record%step), 5)//column(record%time, 16, 8)// &
+         column(record%load, 16, 8)//to_right(to_text(nint(history_value('iterations', record))), &
+         12)//to_right(to_text(record%cut_backs), 11)//column(history_value('residual', record), &
+         12, 3)//column(record%heat_imbalance, 11, 2)//column(record%force_imbalance, 11, 2))
    end subroutine add_increment
 
    !> Adds the lines of iterations.
@@ -85,22 +83,21 @@ contains
       integer :: i, k
 
       do k = 1, size(iterations)
-         associate (columns => self%columns, pass => iterations(k))
-            write (self%text%unit, '(*(a))') &
-               adjustl(table_cell(columns(1), pass_value(columns(1)%name, pass))), &
-               (table_cell(columns(i), pass_value(columns(i)%name, pass)), i=2, size(columns))
+         associate (columns => self%columns)
+            call self%page%line(adjustl(table_row(columns(:1), [pass_value(columns(1)%name, &
+               iterations(k))]))//table_row(columns(2:), [(pass_value(columns(i)%name, &
+               iterations(k)), i=2, size(columns))]))
          end associate
       end do
    end subroutine add_iterations
 
-   !> Tries whether the file can be written, and leaves it as it is; from now on lines can wait.
+   !> Tries whether the file can be written, and leaves it as it is.
    !> Error: status_internal, when it cannot.
    subroutine reserve(self, error)
       class(status_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call try_file(self%path, error)
-      if (.not. allocated(error)) call self%text%open(error)
    end subroutine reserve
 
    !> Goes on behind the lines of an earlier file up to an increment, as far as it has them.
@@ -117,7 +114,7 @@ contains
          last = first + index(contents(first:)//new_line('a'), new_line('a')) - 2
          read (contents(first:min(last, first + 9)), *, iostat=status) number
          if (status == 0) then
-            if (number <= increment) write (self%text%unit, '(a)') contents(first:last)
+            if (number <= increment) call self%page%line(contents(first:last))
          end if
          first = last + 2
       end do
@@ -130,7 +127,7 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       call open_new_file(self%path, self%descriptor, error)
-      if (.not. allocated(error)) call append_to_file(self%descriptor, self%path, &
+      if (.not. allocated(error)) call write_to_file(self%descriptor, self%path, &
          self%heading//new_line('a'), error)
    end subroutine empty
 
@@ -141,8 +138,8 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       character(:), allocatable :: lines
 
-      call self%text%take(lines)
-      call append_to_file(self%descriptor, self%path, lines, error)
+      call self%page%take(lines)
+      call write_to_file(self%descriptor, self%path, lines, error)
       if (.not. allocated(error)) call check_in_place(self%path, self%descriptor, error)
    end subroutine write_waiting
 
@@ -150,7 +147,6 @@ contains
    subroutine close_file(self)
       class(status_file_type), intent(inout) :: self
 
-      call self%text%close()
       if (self%descriptor >= 0) call close_descriptor(self%descriptor)
       self%descriptor = -1
    end subroutine close_file

@@ -2,7 +2,6 @@
 !> increment, with the bounds of their errors where these are estimated.
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use body_lines, only: corner_words, place_words
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated, zone_words
    use contact_system, only: contact_open, contact_stick
@@ -10,6 +9,7 @@ module summary
    use increment_quantities, only: stability_words
    use field_quantities, only: maxima
    use kinds, only: dp
+   use mesh, only: mesh_type
    use model, only: model_type
    use no_estimates, only: mark_of, no_reason, reason_inside_step
    use quantity_types, only: needs_heat, quantity_type
@@ -20,9 +20,10 @@ module summary
    use unit_labels, only: unit_label
    implicit none
    private
-   public :: summary_type, words_of
+   public :: summary_type, words_of, place_words, corner_words
 
    integer, parameter :: most_folds = 8     !! that are listed
+   integer, parameter :: most_corners = 3   !! that are named
    integer, parameter :: name_width = 17    !! columns of the name of a quantity
    integer, parameter :: value_width = 13   !! of its value
    integer, parameter :: bound_width = 25   !! and of its bound
@@ -172,24 +173,60 @@ contains
       type(body_errors_type), intent(in) :: errors
       integer, intent(in) :: body
       type(string_type), allocatable, intent(inout) :: lines(:)
-      character(name_width) :: name
-      character(value_width) :: value
-      character(:), allocatable :: words
       integer :: q
 
       if (all(ieee_is_nan(errors%value)) .and. size(errors%corners) == 0) return
       call append(lines, 'largest in body '//to_text(body))
       do q = 1, size(maxima)
-         if (ieee_is_nan(errors%value(q))) cycle
-         name = maxima(q)%label(:name_width)
-         value = to_text(errors%value(q))
-         words = trim('  '//name//adjustr(value)//bound_words(errors, q)//' '// &
-            unit_label(maxima(q)%unit, model%units))//', '// &
-            place_words(model%mesh, errors%node(q))
-         call append(lines, words)
+         if (.not. ieee_is_nan(errors%value(q))) call append(lines, entry(trim(maxima(q)%label), &
+            errors%value(q), bound_words(errors, q), unit_label(maxima(q)%unit, model%units), &
+            place_words(model%mesh, errors%node(q))))
       end do
       if (size(errors%corners) > 0) call append(lines, '  '//corner_words(model%mesh, errors))
    end subroutine add_maxima
+
+   !> Where the maxima are.
+   pure function place_words(mesh, node) result(words)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: node                  !! index
+      character(:), allocatable :: words           !! such as 'node 12 (2, 0)'
+
+      words = 'node '//to_text(mesh%node_number(node))//' ('//to_text(mesh%coordinates(1, node))// &
+         ', '//to_text(mesh%coordinates(2, node))//')'
+   end function place_words
+
+   !> The singular corners round which stress is larger; nothing without any.
+   pure function corner_words(mesh, errors) result(words)
+      type(mesh_type), intent(in) :: mesh
+      type(body_errors_type), intent(in) :: errors
+      character(:), allocatable :: words
+      integer :: i
+
+      words = ''
+      if (size(errors%corners) == 0) return
+      words = 'singular corner, round which stress is larger, may have no limit and has no '// &
+         'bound: '
+      do i = 1, min(size(errors%corners), most_corners)
+         if (i > 1) words = words//', '
+         words = words//place_words(mesh, errors%corners(i))
+      end do
+      if (size(errors%corners) > most_corners) words = words//' and '// &
+         to_text(size(errors%corners) - most_corners)//' more'
+   end function corner_words
+
+   !> A line of the summary: a quantity, its value, its bound, its unit, and where or how that is.
+   pure function entry(name, number, bound, unit, words) result(line)
+      character(*), intent(in) :: name, bound, unit, words
+      real(dp), intent(in) :: number
+      character(:), allocatable :: line
+      character(max(name_width, len(name))) :: label
+      character(value_width) :: value
+
+      label = name
+      value = to_text(number)
+      line = trim('  '//label//adjustr(value)//bound//' '//unit)
+      if (words /= '') line = line//', '//words
+   end function entry
 
    !> The first numbers of a list, in words.
    pure function listed(values) result(words)
@@ -215,22 +252,12 @@ contains
 
       if (allocated(self%heat)) then
          do i = 1, size(heat_names)
-            call add_value(heat_names(i), self%heat(i), trim(heat_units(i)))
+            call append(lines, entry(heat_names(i), self%heat(i), '', &
+               unit_label(heat_units(i), model%units), ''))
          end do
       end if
-      if (allocated(self%displacement)) call add_value('displacement up to', self%displacement, &
-         'length')
-   contains
-      subroutine add_value(name, number, unit)
-         character(*), intent(in) :: name, unit
-         real(dp), intent(in) :: number
-         character(field_width) :: label
-         character(value_width) :: value
-
-         label = name
-         value = to_text(number)
-         call append(lines, trim('  '//label//adjustr(value)//' '//unit_label(unit, model%units)))
-      end subroutine add_value
+      if (allocated(self%displacement)) call append(lines, entry('displacement up to  ', &
+         self%displacement, '', unit_label('length', model%units), ''))
    end subroutine add_fields
 
    pure function when(self, load_label) result(words)
@@ -250,9 +277,8 @@ contains
       type(contact_points_type), intent(in) :: points
       integer, intent(in) :: i                       ! number of the interface
       type(string_type), allocatable, intent(inout) :: lines(:)
-      character(:), allocatable :: words, zone
+      character(:), allocatable :: bound, line, zone
       character(name_width) :: name
-      character(value_width) :: value
       real(dp) :: values(1)
       integer :: q
 
@@ -265,27 +291,24 @@ contains
             if (zone /= '') call append(lines, '  '//name//repeat(' ', value_width - 4)//zone)
             cycle
          end if
-         value = to_text(values(1))
-         words = '  '//name//adjustr(value)
          if (is_end_of_face(estimated(q), points, values(1))) then
-            words = words//repeat(' ', bound_width)
+            bound = repeat(' ', bound_width)
             zone = end_words(estimated(q)%name, self%contacts(i))
          else if (allocated(self%errors)) then
-            words = words//bound_words(self%errors(i), q)
+            bound = bound_words(self%errors(i), q)
          else
-            words = words//mark_of(reason_inside_step(model))
+            bound = mark_of(reason_inside_step(model))
          end if
-         words = trim(words//' '//unit_label(estimated(q)%unit, model%units))
-         if (zone /= '') words = words//', '//zone
+         line = entry(name, values(1), bound, unit_label(estimated(q)%unit, model%units), zone)
          if (allocated(self%errors) .and. estimated(q)%name == 'peak_pressure') then
             if (self%errors(i)%no_estimate(q) == no_reason .and. rises_to_end(points, &
-               self%contacts(i))) words = words//', at an end, where it may have no limit'
+               self%contacts(i))) line = line//', at an end, where it may have no limit'
          end if
          zone = zones(estimated(q)%name, points, self%contacts(i))
-         if (zone /= '' .and. zone_words(estimated(q)%name, self%contacts(i)) == '') words = &
-            words//', '//trim(merge('closed', 'stick ', estimated(q)%name == 'edge_contact'))// &
+         if (zone /= '' .and. zone_words(estimated(q)%name, self%contacts(i)) == '') line = &
+            line//', '//trim(merge('closed', 'stick ', estimated(q)%name == 'edge_contact'))// &
             ' '//zone
-         call append(lines, words)
+         call append(lines, line)
       end do
    end subroutine add_quantities
 

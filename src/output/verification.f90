@@ -398,13 +398,8 @@ contains
       real(dp), allocatable :: numbers(:)
 
       numbers = pack(values, .not. ieee_is_nan(values))
-      if (size(numbers) == 0) then
-         value = ieee_value(value, ieee_quiet_nan)
-      else if (which == 'MIN') then
-         value = minval(numbers)
-      else
-         value = maxval(numbers)
-      end if
+      value = ieee_value(value, ieee_quiet_nan)
+      if (size(numbers) > 0) value = merge(minval(numbers), maxval(numbers), which == 'MIN')
    end function extreme
 
 end module verification

@@ -3,9 +3,8 @@
 module working_files
    use clock, only: wall_seconds
    use errors, only: error_type, set_error, status_internal
-   use file_calls, only: cannot_write, copy_file, create_working_file, remove_file, &
-      remove_working_files, rename_file, sync_file, try_file, try_growth
-   use file_seals, only: check_seal, seal_file
+   use file_calls, only: cannot_write, check_seal, copy_file, create_working_file, remove_file, &
+      remove_working_files, rename_file, seal_file, sync_file, try_file, try_growth
    use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp
    implicit none
@@ -43,7 +42,6 @@ module working_files
       procedure :: charge
       procedure :: check
       procedure :: discard
-      procedure :: remove
    end type working_file_type
 
 contains
@@ -182,13 +180,6 @@ contains
       if (len(reason) == 0) reason = error%message
       error%message = cannot_write(self%path, reason)
    end subroutine explain
-
-   !> Removes the file in place, where there is one.
-   subroutine remove(self)
-      class(working_file_type), intent(in) :: self
-
-      call remove_file(self%path)
-   end subroutine remove
 
    !> Drops the working copy, where there is one.
    subroutine discard(self)

@@ -2,13 +2,13 @@
 !> (slip), III (stick).
 module zone_diagram
    use contact_points, only: contact_points_type
-   use contact_system, only: contact_open, contact_stick
    use kinds, only: dp
+   use listing_text, only: page_type, to_right, zone_numeral
    use records, only: increment_record_type
    use text, only: to_text
    implicit none
    private
-   public :: zone_diagram_type, zone_numeral, zone_counts
+   public :: zone_diagram_type
 
    integer, parameter :: panel_columns = 28 !! contact points that are side by side on 132 columns
 
@@ -25,30 +25,6 @@ module zone_diagram
    end type zone_diagram_type
 
 contains
-
-   !> The Roman numeral of a zone, set to the right.
-   pure function zone_numeral(contact_state) result(numeral)
-      integer, intent(in) :: contact_state !! contact_open, contact_slip or contact_stick
-      character(3) :: numeral         !! I, II or III
-
-      if (contact_state == contact_open) then
-         numeral = '  I'
-      else if (contact_state == contact_stick) then
-         numeral = 'III'
-      else
-         numeral = ' II'
-      end if
-   end function zone_numeral
-
-   !> Numbers of contact points in the zones.
-   pure function zone_counts(contact_state) result(counts)
-      integer, intent(in) :: contact_state(:) !! (contact points) contact states
-      integer :: counts(3)               !! contact points in zones I, II and III
-
-      counts(1) = count(contact_state == contact_open)
-      counts(3) = count(contact_state == contact_stick)
-      counts(2) = size(contact_state) - counts(1) - counts(3)
-   end function zone_counts
 
    !> Adds an increment.
    subroutine add(self, record, contact_state)
@@ -72,26 +48,34 @@ contains
    end subroutine add
 
    !> Prints the diagram, in several panels where the contact points do not fit side by side.
-   subroutine print_diagram(self, unit, points)
+   pure subroutine print_diagram(self, page, points)
       class(zone_diagram_type), intent(in) :: self
-      integer, intent(in) :: unit                      !! unit of the listing
+      type(page_type), intent(inout) :: page           !! of the listing
       type(contact_points_type), intent(in) :: points  !! contact points of the interface
+      character(:), allocatable :: line
       integer :: m, panels, width, first, last, row, k
-      character(13) :: load
 
       m = size(points%slave)
-      write (unit, '(/, 3a, i0, 2a, /, a)') 'ZONE DIAGRAM OF ', points%name, ': ', m, &
-         ' contact points in columns, from s = 0 to s = ', to_text(points%arc_length(m)), &
-         'I open, II slip, III stick'
+      call page%line('')
+      call page%line('ZONE DIAGRAM OF '//points%name//': '//to_text(m)//' contact points in '// &
+         'columns, from s = 0 to s = '//to_text(points%arc_length(m)))
+      call page%line('I open, II slip, III stick')
       panels = (m + panel_columns - 1)/panel_columns
       width = (m + panels - 1)/panels
       do first = 1, m, width
          last = min(m, first + width - 1)
-         write (unit, '(/, a5, a13, 28i4)') 'incr', 'load', (k, k=first, last)
+         line = ' incr         load'
+         do k = first, last
+            line = line//to_right(to_text(k), 4)
+         end do
+         call page%line('')
+         call page%line(line)
          do row = 1, self%rows
-            load = to_text(self%load(row))
-            write (unit, '(i5, a, 28a4)') self%increment(row), adjustr(load), &
-               (zone_numeral(self%contact_state(k, row)), k=first, last)
+            line = to_right(to_text(self%increment(row)), 5)//to_right(to_text(self%load(row)), 13)
+            do k = first, last
+               line = line//' '//zone_numeral(self%contact_state(k, row))
+            end do
+            call page%line(line)
          end do
       end do
    end subroutine print_diagram

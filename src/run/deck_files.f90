@@ -4,7 +4,7 @@ module deck_files
    use batch_table, only: table_name
    use command_line, only: command_type
    use errors, only: error_type, set_error, status_deck
-   use file_calls, only: file_identity_type, identity_of, is_working_file, real_path_of
+   use file_calls, only: identity_of
    use run_output, only: paths_written
    use text, only: append, string_type
    implicit none
@@ -79,23 +79,19 @@ contains
       class(input_files_type), intent(in) :: self
       type(string_type), intent(in) :: outputs(:)           !! paths, of which any may be missing
       type(error_type), allocatable, intent(out) :: error   !! names both files
-      type(file_identity_type) :: written(size(outputs))
-      character(:), allocatable :: real_path
+      type(string_type) :: written(size(outputs))
+      character(:), allocatable :: identity
       integer :: i, k
 
       if (.not. allocated(self%paths)) return
       do k = 1, size(outputs)
-         written(k) = identity_of(outputs(k)%value)
+         written(k)%value = identity_of(outputs(k)%value)
       end do
       do i = 1, size(self%paths)
-         k = findloc(written%is_same(identity_of(self%paths(i)%value)), .true., dim=1)
-         if (k == 0) then
-            ! Leftovers of killed runs are removed beside an output, an input among them.
-            real_path = real_path_of(self%paths(i)%value)
-            do k = size(outputs), 1, -1
-               if (is_working_file(real_path, outputs(k)%value)) exit
-            end do
-         end if
+         identity = identity_of(self%paths(i)%value)
+         do k = size(outputs), 1, -1
+            if (identity /= '' .and. identity == written(k)%value) exit
+         end do
          if (k == 0) cycle
          call set_error(error, status_deck, '"'//outputs(k)%value//'" would be written over "'// &
             self%paths(i)%value//'", from which the deck '//self%decks(i)%value// &

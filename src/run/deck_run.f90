@@ -14,11 +14,12 @@ module deck_run
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
    use interruption, only: caught_signal, end_after_grace, end_at_once, end_by_increments, &
-      run_end_type
+      prepare_end
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use messages, only: print_error, print_line
    use model, only: model_type
+   use processes, only: set_reason
    use records, only: increment_record_type
    use restarts, only: go_on
    use run_description, only: describe_run
@@ -40,7 +41,6 @@ module deck_run
       type(read_deck_type), pointer :: deck => null()
       type(deck_outcome_type), pointer :: outcome => null()
       integer :: lock = -1                    !! as run_output_type's reserve
-      type(run_end_type) :: end               !! of an increment that takes too long
       ! Of the present round.
       type(model_type), pointer :: model => null()
       type(simulation_type), pointer :: simulation => null()
@@ -83,7 +83,7 @@ contains
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
          call outcome%fail(error)
       end if
-      if (.not. allocated(deck%finished)) outcome%seconds = wall_seconds() - since
+      if (.not. allocated(deck%finished)) outcome%report%seconds = wall_seconds() - since
    end subroutine run_deck
 
    !> Solves a deck as it is written, or as the variation of a later round has it. The files of the
@@ -102,26 +102,24 @@ contains
          outcome%keeps_round = output%kept_round > 0
          ! Shortcomings of the round before count no longer.
          outcome%known_to = 0.0_dp
-         if (allocated(outcome%reason)) deallocate (outcome%reason)
-         if (outcome%keeps_round .and. .not. self%command%quiet) call self%end%prepare_summary( &
-            outcome%round_summary(results_of(self%path, self%command)))
-         call prepare_end(self, end_at_once)
+         call set_reason(outcome%report, '')
+         call may_end(self, end_at_once)
          call begin_round(self, rounds%variation)
-         if (outcome%status == status_ok .and. allocated(model%steps)) then
+         if (outcome%report%status == status_ok .and. allocated(model%steps)) then
             output%run%seconds_read = wall_seconds() - since - simulation%seconds%assemble - &
                simulation%seconds%reduce
-            output%run%verify_passed = outcome%verify_passed
-            output%run%verify_failed = outcome%verify_failed
+            output%run%verify_passed = outcome%report%verify_passed
+            output%run%verify_failed = outcome%report%verify_failed
             call describe_run(self%path, model, simulation, output%run)
             output%run%settings = settings_in_words(self%command)
             if (allocated(self%deck%origin)) output%run%origin = self%deck%origin%words()
             call solve_deck(self, rounds, error)
             if (allocated(error)) call report_failure(self, error, is_told=.false.)
             ! Of a run that could not go on for want of a file or of memory a check says nothing.
-            if (outcome%status /= status_internal) call take_checks(self)
+            if (outcome%report%status /= status_internal) call take_checks(self)
          end if
          associate (goes_on => rounds%accuracy%goes_on)
-            goes_on = goes_on .and. outcome%status == status_ok
+            goes_on = goes_on .and. outcome%report%status == status_ok
             call output%progress%clear()
             call output%listing%close(keeps_lock=goes_on)
          end associate
@@ -182,15 +180,15 @@ contains
       type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable :: error
 
-      self%outcome%reason = reason_to_skip(self%deck)
+      call set_reason(self%outcome%report, reason_to_skip(self%deck))
       if (.not. allocated(self%deck%finished)) return
       associate (outcome => self%outcome, finished => self%deck%finished, &
          failed => self%deck%finished%failed_checks)
-         outcome%increments = finished%increments
-         outcome%iterations = finished%iterations
-         outcome%verify_passed = finished%passed_checks
-         outcome%verify_failed = failed
-         outcome%seconds = finished%seconds
+         outcome%report%increments = finished%increments
+         outcome%report%iterations = finished%iterations
+         outcome%report%verify_passed = finished%passed_checks
+         outcome%report%verify_failed = failed
+         outcome%report%seconds = finished%seconds
          if (failed == 0) return
          call set_error(error, status_verify, 'its result is finished, and '//counted(failed, &
             '*VERIFY check')//' failed')
@@ -207,10 +205,9 @@ contains
       self%output%run%deck_path = self%path
       call make_folder(self%command%folder, error)
       if (allocated(error)) return
-      call self%end%hold(.true.)
+      call may_end(self, end_by_increments)
       call self%output%reserve(results_of(self%path, self%command), self%lock, error)
-      call prepare_end(self, end_at_once)
-      call self%end%hold(.false.)
+      call may_end(self, end_at_once)
    end subroutine reserve_files
 
    !> All increments, with their output.
@@ -224,7 +221,7 @@ contains
 
       associate (model => self%model, output => self%output, outcome => self%outcome, &
          cards => self%deck%cards%images)
-         call self%end%hold(.true.)
+         call may_end(self, end_by_increments)
          call self%simulation%bodies%views(interfaces)
          associate (points => self%simulation%recovery%points)
             call output%start(model, interfaces, points%node, points%element_points, cards, error)
@@ -238,8 +235,7 @@ contains
             if (allocated(error)) return
          end if
          call outcome%note_files(output%written())
-         call prepare_end(self, end_at_once)
-         call self%end%hold(.false.)
+         call may_end(self, end_at_once)
          self%is_written = .true.
          call begin_increment(self, error)
          if (allocated(self%deck%origin)) then
@@ -249,8 +245,7 @@ contains
             call rounds%solve_increments(model, self%simulation, self, record, error)
          end if
          ! From here on, output is not cut short.
-         call self%end%hold(.true.)
-         call prepare_end(self, end_by_increments)
+         call may_end(self, end_by_increments)
          if (.not. self%is_written) then
             call output%break_off(error%message)
             return
@@ -271,7 +266,7 @@ contains
          call output%finish(model, interfaces, cards, rounds%accuracy, output_error)
          if (output%kept_round == 0) then
             outcome%keeps_round = .false.
-            outcome%increments = output%results%accepted
+            outcome%report%increments = output%results%accepted
             outcome%summary = output%summary_lines(model, interfaces)
             call outcome%note_files(output%written())
          end if
@@ -288,7 +283,7 @@ contains
       type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
 
-      call prepare_end(self, end_after_grace)
+      call may_end(self, end_after_grace)
       call check_signals(self, error)
       if (.not. allocated(error) .and. self%output%kept_round > 0 .and. &
          wall_seconds() > self%deadline) call set_error(error, status_verify, '--limit is over')
@@ -312,14 +307,13 @@ contains
          if (allocated(error)) then
             if (error%status == status_interrupted) call check_signals(self, error)
          else
-            call self%end%hold(.true.)
+            call may_end(self, end_by_increments)
             if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
             call simulation%bodies%views(interfaces)
             call output%accept(record, self%model, interfaces, error)
             call outcome%note(record, output%results%accepted, output%written())
             self%is_written = .not. allocated(error)
             if (allocated(error)) return
-            call self%end%hold(.false.)
             if (.not. simulation%finished(self%model)) call begin_increment(self, error)
          end if
          if (allocated(error)) then
@@ -338,36 +332,35 @@ contains
          failed = self%output%failed_checks(self%model)
          outcome%failed_checks = [outcome%failed_checks, failed]
          ! A later round has the verdicts of the first one, unless it ends early.
-         outcome%verify_passed = max(outcome%verify_passed, run%verify_passed)
-         outcome%verify_failed = max(outcome%verify_failed, run%verify_failed)
-         if (outcome%status /= status_ok .or. run%accuracy%later_round > 0) return
+         outcome%report%verify_passed = max(outcome%report%verify_passed, run%verify_passed)
+         outcome%report%verify_failed = max(outcome%report%verify_failed, run%verify_failed)
+         if (outcome%report%status /= status_ok .or. run%accuracy%later_round > 0) return
          if (run%accuracy%missed /= '') call append(outcome%failed_checks, self%path// &
             ': error: '//run%accuracy%missed)
       end associate
    end subroutine take_checks
 
-   !> Prepares the end of the run from here on: within an increment that takes too long after a
-   !> signal, or where there is no memory left.
-   subroutine prepare_end(self, when)
-      type(deck_run_type), intent(inout) :: self
+   !> When a signal may end the run from here on; what is said then, or where memory runs out.
+   subroutine may_end(self, when)
+      type(deck_run_type), intent(in) :: self
       integer, intent(in) :: when   ! one of the end_* constants
+      character(:), allocatable :: words, leftover
+      integer :: bytes
 
-      self%end%when = when
-      self%end%shows_progress = self%output%progress%is_shown
-      self%end%deck = printable(self%path)
-      self%end%where = where_words(self)
-      self%end%listing = or_blank(self%output%listing%path)
-      self%end%working = or_blank(self%output%results%file%working_path)
-      self%end%kept = self%output%kept()
-      self%end%holds = kept_words(self)
-      ! Increments that wait for their publication are lost with the process.
-      if (self%output%kept_round == 0 .and. self%output%results%published < &
-         self%output%results%accepted) then
-         self%end%holds = '; the results hold those up to number '// &
-            to_text(self%output%results%published)
-      end if
-      call self%end%prepare()
-   end subroutine prepare_end
+      words = where_words(self)//kept_words(self)
+      associate (output => self%output, increments => self%simulation%control%increments)
+         ! Increments that wait for their publication are lost with the process.
+         if (output%kept_round == 0 .and. output%results%published < increments) words = words// &
+            '; the results hold those up to number '//to_text(output%results%published)
+         leftover = or_blank(output%results%file%working_path)
+         if (.not. output%listing%is_begun()) then
+            ! It is locked, and holds an earlier run or nothing at all.
+            inquire (file=or_blank(output%listing%path), size=bytes)
+            if (bytes == 0) leftover = output%listing%path
+         end if
+         call prepare_end(when, output%progress%is_shown, printable(self%path), words, leftover)
+      end associate
+   end subroutine may_end
 
    !> Puts the increment that was tried before what went wrong.
    subroutine say_when(self, error)

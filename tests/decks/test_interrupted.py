@@ -238,7 +238,7 @@ def test_a_signal_ends_a_run_that_reduces_its_bodies(tmp_path):
         f"{deck}: error: ended by SIGINT before the first increment")
     os.close(reader)
     assert earlier.read_text() == "of an earlier run"
-    assert not list(tmp_path.glob("*.tmp"))
+    assert not list(tmp_path.glob("*.tmp")) and not (tmp_path / "large.lst").exists()
 
 
 def test_a_terminal_shows_the_round_and_answers_a_signal_at_once(tmp_path):
@@ -260,7 +260,6 @@ def test_a_terminal_shows_the_round_and_answers_a_signal_at_once(tmp_path):
     ended = int(re.search(r"error: ended by SIGINT in round (\d+)", rest)[1])
     assert ended > 1
     assert f"the results are those of round {ended - 1}" in rest
-    assert "  results: " in rest and rest.rstrip().endswith("12 checks passed, 0 failed")
     assert all(line == "" or line.endswith("\x1b[K") or "\x1b[K" not in line
                for line in rest.split("\r") if line.startswith("round "))
 

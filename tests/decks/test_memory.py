@@ -68,10 +68,9 @@ def test_the_estimate_has_room_for_the_factors_of_the_bounds_beside_mortar_point
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
 
 
-@pytest.mark.parametrize("levels", [2, 3])
-def test_the_estimate_has_room_for_the_motions_of_a_state(tmp_path, levels):
+def test_the_estimate_has_room_for_the_motions_of_a_state(tmp_path):
     """*STABILITY keeps what contact points make of all temperatures, at several rates."""
-    deck = few_increments(without_checks(CYLINDER, tmp_path, [f"*REFINE, LEVELS={levels}"]))
+    deck = few_increments(without_checks(CYLINDER, tmp_path, ["*REFINE, LEVELS=2"]))
     text = deck.read_text().replace("*CONDUCTIVITY", "*DENSITY\n1.\n*SPECIFIC HEAT\n3.6\n*CONDUCTIVITY")
     deck.write_text(text.replace("\n300., 900.", "\n300., 900.\n*STABILITY"))
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
@@ -197,12 +196,10 @@ def three_blocks(path, *cards, solver="SKYLINE", pairing="NODES", ramp=""):
 
 @pytest.mark.skipif(not shutil.which("valgrind"), reason="needs valgrind")
 @pytest.mark.parametrize(("status", "cards", "options"), [
-    (0, [], {}),
-    (0, [], {"ramp": ", AMPLITUDE=R"}),
-    (4, FAILED_CHECKS, {}),
+    (4, FAILED_CHECKS, {"ramp": ", AMPLITUDE=R"}),
     (0, [], {"solver": "MUMPS", "pairing": "SURFACES"}),
     (1, ["*CONTACT PAIR, INTERACTION=NONE, NAME=Q", "A.TOP, C.BOTTOM"], {}),
-], ids=["tie", "amplitude", "failed checks", "finer mesh with MUMPS", "refused"])
+], ids=["amplitude, failed checks", "MUMPS", "refused"])
 def test_no_memory_is_lost(tmp_path, status, cards, options):
     """MUMPS reads what it has not set yet; all else is checked by the tests of the preset `debug`."""
     deck = three_blocks(tmp_path / "deck.inp", *cards, **options)

@@ -106,7 +106,7 @@ def test_the_lock_of_a_killed_run_dies_with_it(tmp_path):
         process.communicate()
     short = heat(tmp_path / "..", f"{tmp_path.name}.inp", 2)
     short = short.rename(deck)
-    (tmp_path / "long.vtkhdf.99.tmp").write_bytes(b"left by a killed run")
+    (tmp_path / "long.vtkhdf.99.tmp").write_bytes(b"\x89HDF\r\n\x1a\n: left by a killed run")
     (tmp_path / "long.vtkhdf.mine.tmp").write_bytes(b"not of this program")
     process = run("run", "--quiet", short, "--out", tmp_path)
     assert process.returncode == 0, process.stderr
@@ -279,7 +279,7 @@ def test_no_result_is_written_over_a_file_that_the_deck_includes(tmp_path):
     written = names_written(deck, tmp_path / "first")
     assert written == ["joint.contact.vtkhdf", "joint.cvg", "joint.lst", "joint.sta",
                        "joint.vtkhdf"]
-    for number, name in enumerate([*written, "joint.vtkhdf.12.tmp", "joint.contact.vtkhdf.3.tmp"]):
+    for number, name in enumerate(written):
         folder = tmp_path / str(number)
         folder.mkdir()
         deck, file = includes(folder, "joint.inp", name)
@@ -319,6 +319,12 @@ def test_a_file_with_the_name_of_a_result_is_read_from_another_folder(tmp_path):
     for _ in range(2):
         assert run("run", "--quiet", deck, "--out", tmp_path / "out").returncode == 0
         assert run("run", "--quiet", deck, "--jobs", "1", "--out", tmp_path / "out").returncode == 0
+    assert file.exists()
+
+
+def test_an_included_file_with_the_name_of_a_leftover_stays(tmp_path):
+    deck, file = includes(tmp_path, "joint.inp", "joint.vtkhdf.12.tmp")
+    assert run("run", "--quiet", deck, "--out", tmp_path).returncode == 0
     assert file.exists()
 
 

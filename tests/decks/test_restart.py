@@ -150,8 +150,9 @@ def test_it_goes_on_within_increments_that_are_cut_back(tmp_path):
     cut_backs = [int(row.split()[5]) for row in whole.with_suffix(".sta").read_text().splitlines()[1:]]
     assert cut_backs[0] > 0
     assert len(cut_backs) > 2
-    for i, at in enumerate(kept(whole)[:-1]):
-        assert_same(whole, go_on(deck, whole, tmp_path / f"from{i}", float(at)))
+    times = kept(whole)
+    for i in sorted({0, 1, len(times) // 2, len(times) - 2}):
+        assert_same(whole, go_on(deck, whole, tmp_path / f"from{i}", float(times[i])))
 
 
 def test_a_run_that_fails_behind_a_thermal_runaway_fails_again_in_the_same_words(tmp_path):
@@ -533,7 +534,7 @@ def test_a_damaged_result_is_refused(cycling, tmp_path):
     """HDF5 itself crashes on some of these, or reads other numbers. THERCON_FUZZ=N tries N of them."""
     deck, result = cycling
     contact = result.with_suffix(".contact.vtkhdf")
-    for seed in range(int(os.environ.get("THERCON_FUZZ", "60"))):
+    for seed in range(int(os.environ.get("THERCON_FUZZ", "20"))):
         for path in (result, contact):
             shutil.copy(path, tmp_path)
         if damage(tmp_path / (contact if seed % 5 == 4 else result).name, seed):

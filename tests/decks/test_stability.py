@@ -18,6 +18,7 @@ from frictional_heat import burton
 
 WIDTH = 1e-3   # so that temperatures even out across the rods
 RODS = 500
+RESTING = 50   # of the many rods whose motions all die out without a period
 
 
 def rod_deck(both, law, capacities, omega, *cards, stability="*STABILITY", elements=(8, 8),
@@ -75,12 +76,17 @@ def random_rods(random):
 
 def test_number_of_growing_modes_is_that_of_dense_eigenvalues(tmp_path):
     random = np.random.default_rng(17)
-    expected = {}
+    expected, resting = {}, 0
     for i in range(RODS):
         both, law, capacities, solution = random_rods(random)
+        rates = rod_modes.rates(both, capacities, solution)
+        if rates[0].real <= 0.0 and not rates[0].imag:
+            resting += 1
+            if resting > RESTING:
+                continue
         (tmp_path / f"{i}.inp").write_text("\n".join(rod_deck(
             both, law, capacities, solution.conductance)) + "\n")
-        expected[i] = rod_modes.rates(both, capacities, solution), solution
+        expected[i] = rates, solution
     process = run("run", "--quiet", *(f"{i}.inp" for i in expected), folder=tmp_path)
     assert process.returncode == 0, process.stderr
     counts = []

@@ -27,7 +27,7 @@ from thercon_post import cli, style  # noqa: E402
 from thercon_post.comparison import cli as comparison  # noqa: E402
 from thercon_post.report import cli as report  # noqa: E402
 
-FILES = int(os.environ.get("THERCON_FUZZ", "60"))
+FILES = int(os.environ.get("THERCON_FUZZ", "30"))
 FIRST = int(os.environ.get("THERCON_FUZZ_FIRST", "60"))
 LONGEST = 60  # CPU seconds
 ROOM = 3 * 2**30  # bytes of address space beside what the tests have

@@ -136,7 +136,7 @@ def test_a_killed_run_leaves_every_increment_of_its_sta(reference, tmp_path):
 
     # What a killed run left beside its file does not disturb the next one.
     deck = folders[0] / "cylinder.inp"
-    deck.with_suffix(".vtkhdf.99.tmp").write_bytes(b"left by a killed run")
+    deck.with_suffix(".vtkhdf.99.tmp").write_bytes(b"\x89HDF\r\n\x1a\n: left by a killed run")
     status, said = run(deck)
     assert status == 0, said
     assert check_what_is_left(deck, reference) == len(reference["history/time"])

@@ -29,7 +29,7 @@ module deck_builder
    use mesh_checks, only: check_folds
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
-   use mesh, only: mesh_type, set_type
+   use mesh, only: set_type
    use model, only: model_type
    use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use quantity_types, only: quantity_type
@@ -50,7 +50,7 @@ contains
       type(cards_type), intent(in), target :: cards       !! the cards, as read_deck left them
       type(quantity_type), intent(in) :: verifiable(:)    !! what *VERIFY may name
       type(quantity_type), intent(in) :: estimated(:)     !! what *ACCURACY may name
-      type(model_type), intent(out) :: model
+      type(model_type), intent(out), target :: model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
       type(deck_type) :: deck
       integer :: i, why
@@ -58,6 +58,8 @@ contains
       if (size(cards%keywords) == 0) return
       call deck%take_over(report)
       deck%cards => cards
+      deck%model => model
+      deck%mesh => model%mesh
       deck%verifiable = verifiable
       if (allocated(cards%notes)) then
          do i = 1, size(cards%notes)
@@ -65,39 +67,39 @@ contains
          end do
       end if
       call check_structure(cards, deck)
-      call build_options(deck, model)
-      call build_mesh(deck, model%mesh)
-      call build_regions(deck, model)
-      call build_materials(deck, model)
-      call build_orientations(deck, model)
-      call build_sections(deck, model)
-      call build_amplitudes(deck, model)
+      call build_options(deck)
+      call build_mesh(deck)
+      call build_regions(deck)
+      call build_materials(deck)
+      call build_orientations(deck)
+      call build_sections(deck)
+      call build_amplitudes(deck)
       call build_time_points(deck)
-      call build_temperatures(deck, model)
-      call build_initial_stresses(deck, model%mesh)
-      call build_interactions(deck, model)
-      call build_contacts(deck, model)
-      call build_ties(deck, model)
-      call build_transforms(deck, model)
-      call build_bars(deck, model)
-      call build_equations(deck, model)
-      call build_couplings(deck, model)
-      call build_pre_tensions(deck, model)
-      call build_steps(deck, model)
+      call build_temperatures(deck)
+      call build_initial_stresses(deck)
+      call build_interactions(deck)
+      call build_contacts(deck)
+      call build_ties(deck)
+      call build_transforms(deck)
+      call build_bars(deck)
+      call build_equations(deck)
+      call build_couplings(deck)
+      call build_pre_tensions(deck)
+      call build_steps(deck)
       why = reason_of_deck(model)
       if (why /= no_reason .and. model%estimates_errors) then
          call deck%note('no bounds of errors: they do not know '//words_of_reason(why))
          model%estimates_errors = .false.
       end if
-      call build_verifications(deck, model)
-      call build_accuracy(estimated, deck, model)
+      call build_verifications(deck)
+      call build_accuracy(estimated, deck)
       if (allocated(model%accuracy%targets) .and. any(model%steps%restart_frequency > 0)) then
          call deck%note('*RESTART is ignored: each round of *ACCURACY solves the deck anew')
          model%steps%restart_frequency = 0
       end if
-      call build_load_axis(cards%last, deck, model)
-      call check_model(deck, model)
-      if (.not. deck%has_errors()) call complete_model(deck, model)
+      call build_load_axis(deck)
+      call check_model(deck)
+      if (.not. deck%has_errors()) call complete_model(deck)
       if (.not. allocated(deck%notes)) allocate (deck%notes(0))
       call move_alloc(deck%notes, model%notes)
       model%warnings = deck%warnings()
@@ -106,123 +108,118 @@ contains
 
    !> Builds nodes and elements, their sets and surfaces. The sets of nodes come last: they may
    !> consist of the nodes of the others.
-   subroutine build_mesh(deck, mesh)
+   subroutine build_mesh(deck)
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(inout) :: mesh
       type(set_type), allocatable :: sets(:)
       integer, allocatable :: corners(:, :)
       integer :: errors
 
-      call build_nodes(deck, mesh)
+      call build_nodes(deck)
       call build_lines(deck)
-      call build_elements(deck, mesh)
+      call build_elements(deck)
       ! ORDER=1 drops nodes between corners; refined elements have those of the deck at corners.
-      allocate (corners(2, size(mesh%node_number)), source=0)
-      if (deck%order == 1 .and. deck%levels == 0) corners = side_corners(mesh)
+      allocate (corners(2, size(deck%mesh%node_number)), source=0)
+      if (deck%order == 1 .and. deck%levels == 0) corners = side_corners(deck%mesh)
       deck%dropped = corners(1, :) > 0
       errors = deck%error_count()
-      call build_sets('element', deck, mesh, sets)
-      call split_line_sets(size(mesh%element_number), sets, deck%line_sets)
-      call move_alloc(sets, mesh%element_sets)
+      call build_sets('element', deck, sets)
+      call split_line_sets(size(deck%mesh%element_number), sets, deck%line_sets)
+      call move_alloc(sets, deck%mesh%element_sets)
       deck%sets_sound = deck%error_count() == errors .and. .not. deck%has_lost('element')
-      call build_surfaces(deck, mesh)
+      call build_surfaces(deck)
       errors = deck%error_count()
-      call build_sets('node', deck, mesh, sets)
-      call move_alloc(sets, mesh%node_sets)
-      deck%node_index%sets%others = deck%element_index%sets%name_index_type
-      deck%element_index%sets%others = deck%node_index%sets%name_index_type
-      call build_node_surfaces(deck, mesh)
+      call build_sets('node', deck, sets)
+      call move_alloc(sets, deck%mesh%node_sets)
+      call build_node_surfaces(deck)
       deck%sets_sound = deck%sets_sound .and. deck%error_count() == errors .and. &
          .not. deck%has_lost('node set')
    end subroutine build_mesh
 
    !> Puts the loads and supports of a sound deck on its mesh, and checks what that shows.
-   subroutine complete_model(deck, model)
+   subroutine complete_model(deck)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(inout) :: model
       integer :: s
 
-      call find_bodies(model%mesh)
-      call check_folds(deck, model%mesh)
-      call check_touches(deck, model)
-      do s = 1, first_heat(deck, model) - 1
-         if (model%steps(s)%is_transient) exit
-         if (model%steps(s)%analysis /= analysis_coupled) cycle
-         model%steps(s)%analysis = analysis_static
+      call find_bodies(deck%mesh)
+      call check_folds(deck)
+      call check_touches(deck)
+      do s = 1, first_heat(deck) - 1
+         if (deck%model%steps(s)%is_transient) exit
+         if (deck%model%steps(s)%analysis /= analysis_coupled) cycle
+         deck%model%steps(s)%analysis = analysis_static
          call deck%warning(deck%step_place(s), 'step '//to_text(s)//' solves no heat: nothing '// &
             'prescribes a temperature and nothing heats the bodies; give *BOUNDARY with degree '// &
             'of freedom 11, or take *STATIC', heatless)
       end do
-      call check_heat_quantities(deck%verifiable, model, deck)
-      call turn_equations(model)
-      model%deck_equations = size(model%equations)
-      model%written_levels = deck%levels
-      model%written_order = deck%order
-      call take_requests(deck, model)
-      call apply_requests(model)
-      call check_amplitudes(deck, model)
-      call check_starts(deck, model)
-      if (deck%analyses_sound) call check_storage(deck, model)
-      if (deck%analyses_sound) call check_continuations(model, deck)
+      call check_heat_quantities(deck)
+      call turn_equations(deck%model)
+      deck%model%deck_equations = size(deck%model%equations)
+      deck%model%written_levels = deck%levels
+      deck%model%written_order = deck%order
+      call take_requests(deck)
+      call apply_requests(deck%model)
+      call check_amplitudes(deck)
+      call check_starts(deck)
+      if (deck%analyses_sound) call check_storage(deck)
+      if (deck%analyses_sound) call check_continuations(deck)
       if (.not. deck%has_errors()) then
-         call check_usage(deck, model)
-         call check_heat_paths(model, deck)
-         call check_friction_heat(deck, model)
-         call check_units(model, deck)
+         call check_usage(deck)
+         call check_heat_paths(deck)
+         call check_friction_heat(deck)
+         call check_units(deck)
       end if
-      call note_defaults(deck, model)
+      call note_defaults(deck)
    end subroutine complete_model
 
    !> Gives a model what its deck asks for, and the places of the supports in words.
-   subroutine take_requests(deck, model)
+   subroutine take_requests(deck)
       type(deck_type), intent(in) :: deck
-      type(model_type), intent(inout) :: model
       integer :: i, n
 
-      allocate (model%requests)
-      model%requests%supports = deck%boundaries
-      model%requests%loads = deck%loads
-      model%requests%temperatures = deck%temperatures
-      call collect_fields(model)
+      allocate (deck%model%requests)
+      deck%model%requests%supports = deck%boundaries
+      deck%model%requests%loads = deck%loads
+      deck%model%requests%temperatures = deck%temperatures
+      call collect_fields(deck%model)
       n = 0
       if (deck%boundaries%count > 0) n = deck%boundaries%items(deck%boundaries%count)%card
-      allocate (model%boundary_places(n))
+      allocate (deck%model%boundary_places(n))
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            model%boundary_places(request%card)%value = deck%source%words_of(request%place)
+            deck%model%boundary_places(request%card)%value = deck%source%words_of(request%place)
          end associate
       end do
    end subroutine take_requests
 
    !> Notes the defaults of what the deck does not say at all.
-   subroutine note_defaults(deck, model)
+   subroutine note_defaults(deck)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
 
       if (deck%temperatures%count == 0) then
          call deck%note('no initial temperature is given: it is 0')
       end if
-      if (allocated(model%mesh%initial_stress) .and. .not. &
-         any(solves_mechanics(model%steps%analysis))) then
+      if (allocated(deck%mesh%initial_stress) .and. .not. &
+         any(solves_mechanics(deck%model%steps%analysis))) then
          call deck%note('initial stresses are ignored: no step solves equilibrium')
       end if
-      if (.not. any(model%materials%has_expansion)) then
+      if (.not. any(deck%model%materials%has_expansion)) then
          call deck%note('no *EXPANSION: temperatures do not strain the bodies')
-      else if (.not. all(model%materials%has_expansion)) then
+      else if (.not. all(deck%model%materials%has_expansion)) then
          call deck%note('a material without *EXPANSION: coefficient 0')
       end if
-      if (any(model%materials%has_specific_heat) .and. .not. any( &
-         model%steps%is_transient)) call deck%note('*SPECIFIC HEAT is ignored: no step stores heat')
-      if (.not. any(solves_heat(model%steps%analysis))) return
+      if (any(deck%model%materials%has_specific_heat) .and. .not. &
+         any(deck%model%steps%is_transient)) call deck%note('*SPECIFIC HEAT is ignored: no '// &
+         'step stores heat')
+      if (.not. any(solves_heat(deck%model%steps%analysis))) return
       if (card_count(deck%cards, 'THERMAL SCHEME') == 0) then
-         if (any(model%steps%is_transient)) call deck%note('no *THERMAL SCHEME: L-STABLE where '// &
-            'heat is stored')
-         if (any(solves_heat(model%steps%analysis) .and. &
-            .not. model%steps%is_transient)) call deck%note('no *THERMAL SCHEME: IMPLICIT')
+         if (any(deck%model%steps%is_transient)) call deck%note('no *THERMAL SCHEME: L-STABLE '// &
+            'where heat is stored')
+         if (any(solves_heat(deck%model%steps%analysis) .and. .not. &
+            deck%model%steps%is_transient)) call deck%note('no *THERMAL SCHEME: IMPLICIT')
       end if
-      if (size(model%contacts) == 0) return
-      if (.not. any(model%steps%analysis == analysis_coupled)) return
-      associate (fixed_point => model%steps(1)%fixed_point)
+      if (size(deck%model%contacts) == 0) return
+      if (.not. any(deck%model%steps%analysis == analysis_coupled)) return
+      associate (fixed_point => deck%model%steps(1)%fixed_point)
          call deck%note('*FIXED POINT in step 1: METHOD='// &
             trim(method_names(fixed_point%method))//', TOL='//to_text(fixed_point%tolerance)// &
             ', MAXITER='//to_text(fixed_point%max_iterations)//', G='//to_text(fixed_point%g)// &

@@ -9,7 +9,6 @@ module deck_builder_bars
    use equations, only: fill_equation
    use kinds, only: dp
    use materials, only: follows_temperature, isotropic, material_type, of_expansion
-   use model, only: model_type
    use steps, only: dof_temperature
    use text, only: to_text
    use transforms, only: axis_in_plane
@@ -20,20 +19,19 @@ module deck_builder_bars
 contains
 
    !> Builds all springs and trusses; sections are known.
-   subroutine build_bars(deck, model)
-      type(deck_type), intent(inout) :: deck               !! the lines of the deck; receives errors
-      type(model_type), intent(inout) :: model             !! receives the bars
+   subroutine build_bars(deck)
+      type(deck_type), intent(inout) :: deck
       type(bar_type) :: of_line(size(deck%line_number))
       integer :: i
       integer, allocatable :: card(:)
 
       card = cards_of(deck%cards, 'SPRING')
       do i = 1, size(card)
-         call read_spring(deck%cards%keywords(card(i)), deck, model, of_line)
+         call read_spring(deck%cards%keywords(card(i)), deck, of_line)
       end do
       card = cards_of(deck%cards, 'SOLID SECTION')
       do i = 1, size(card)
-         call take_section(deck%cards%keywords(card(i)), i, deck, model, of_line)
+         call take_section(deck%cards%keywords(card(i)), i, deck, of_line)
       end do
       do i = 1, size(of_line)
          if (deck%line_kind(i) <= drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle
@@ -41,14 +39,13 @@ contains
             to_text(deck%line_number(i))//' has no '// &
             trim(merge('*SOLID SECTION', '*SPRING       ', deck%line_kind(i) == truss)))
       end do
-      model%bars = pack(of_line, [(allocated(of_line(i)%elongation%node), i=1, size(of_line))])
+      deck%model%bars = pack(of_line, [(allocated(of_line(i)%elongation%node), i=1, size(of_line))])
    end subroutine build_bars
 
    !> Reads one *SPRING: degrees of freedom where its elements have some, then the constant.
-   subroutine read_spring(card, deck, model, of_line)
+   subroutine read_spring(card, deck, of_line)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
       integer :: dof(2), i, k
@@ -56,7 +53,7 @@ contains
       logical :: has_dofs, sound, valid
 
       call take_lines(card, deck, members)
-      if (.not. allocated(members)) return
+      if (.not. allocated(members) .or. size(card%data) == 0) return
       valid = size(members) > 0 .and. all(deck%line_kind(members) > truss)
       if (.not. valid) call deck%error(card%place_of('ELSET'), 'this set has elements that are '// &
          'no springs')
@@ -67,7 +64,7 @@ contains
             do k = 1, maxval(deck%line_kind(members)) - ground_spring + 1
                call need_field(data, k, 'degree of freedom', deck, dof(k), valid)
                associate (ends => deck%line_nodes(k, members))
-                  if (valid) dof(k) = axis_in_plane(model%transforms, model%mesh%node_sets, &
+                  if (valid) dof(k) = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
                      pack(ends, ends > 0), dof(k))
                end associate
                if (valid .and. (dof(k) < 1 .or. dof(k) > 2)) then
@@ -82,7 +79,6 @@ contains
             'freedom for SPRING1 and SPRING2')
          return
       end if
-      stiffness = 0.0_dp
       call read_row(card%data(size(card%data)), 'spring constant >0', deck, stiffness, sound)
       if (.not. (valid .and. sound)) return
       do i = 1, size(members)
@@ -92,7 +88,7 @@ contains
             bar%follows_axes = has_dofs
             select case (deck%line_kind(members(i)))
             case (axial_spring)
-               call set_axial(model, nodes, card, deck, bar)
+               call set_axial(nodes, card, deck, bar)
             case (ground_spring)
                call fill_equation(nodes(:1), dof(:1), [1.0_dp], bar%elongation)
             case default
@@ -103,11 +99,10 @@ contains
    end subroutine read_spring
 
    !> Gives the trusses of a *SOLID SECTION their stiffness; its thickness is their area.
-   subroutine take_section(card, n, deck, model, of_line)
+   subroutine take_section(card, n, deck, of_line)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n                         ! index of the section
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
       integer :: i
@@ -116,8 +111,8 @@ contains
       call take_lines(card, deck, members)
       members = pack(members, deck%line_kind(members) == truss)
       if (size(members) == 0) return
-      associate (material => model%materials(model%sections(n)%material), &
-         area => model%sections(n)%thickness)
+      associate (material => deck%model%materials(deck%model%sections(n)%material), area => &
+         deck%model%sections(n)%thickness)
          if (.not. is_plain(material)) then
             call deck%error(card%place_of('MATERIAL'), 'trusses need *ELASTIC, isotropic, and '// &
                'properties that are constant')
@@ -125,10 +120,10 @@ contains
          end if
          do i = 1, size(members)
             associate (bar => of_line(members(i)), nodes => deck%line_nodes(:2, members(i)))
-               call set_axial(model, nodes, card, deck, bar)
+               call set_axial(nodes, card, deck, bar)
                if (deck%has_errors()) return
                bar%stiffness = youngs_modulus(material%elasticity)*area/norm2( &
-                  model%mesh%coordinates(:, nodes(2)) - model%mesh%coordinates(:, nodes(1)))
+                  deck%mesh%coordinates(:, nodes(2)) - deck%mesh%coordinates(:, nodes(1)))
                if (.not. material%has_expansion) cycle
                bar%warm_force = youngs_modulus(material%elasticity)*area*material%expansion(1)
                call fill_equation(nodes, [dof_temperature, dof_temperature], [0.5_dp, 0.5_dp], &
@@ -150,19 +145,18 @@ contains
    end subroutine take_lines
 
    !> Makes the distance of two nodes an elongation.
-   subroutine set_axial(model, nodes, card, deck, bar)
-      type(model_type), intent(in) :: model
+   subroutine set_axial(nodes, card, deck, bar)
       integer, intent(in) :: nodes(2)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(bar_type), intent(inout) :: bar
       real(dp) :: along(2)
 
-      along = model%mesh%coordinates(:, nodes(2)) - model%mesh%coordinates(:, nodes(1))
+      along = deck%mesh%coordinates(:, nodes(2)) - deck%mesh%coordinates(:, nodes(1))
       if (all(abs(along) <= 0.0_dp)) then
-         call deck%error(card%place, 'nodes '//to_text(model%mesh%node_number(nodes(1)))// &
-            ' and '//to_text(model%mesh%node_number(nodes(2)))//' of an element of this set '// &
-            'stand at one place: it has no direction; take SPRING2')
+         call deck%error(card%place, 'nodes '//to_text(deck%mesh%node_number(nodes(1)))//' and '// &
+            to_text(deck%mesh%node_number(nodes(2)))//' of an element of this set stand at one '// &
+            'place: it has no direction; take SPRING2')
          return
       end if
       along = along/norm2(along)

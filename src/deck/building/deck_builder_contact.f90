@@ -13,8 +13,6 @@ module deck_builder_contact
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count, is_keyword
    use kinds, only: dp
-   use mesh, only: mesh_type
-   use model, only: model_type
    use text, only: read_real, to_text, to_upper
    implicit none
    private
@@ -23,39 +21,36 @@ module deck_builder_contact
 contains
 
    !> Builds all interfaces, one for each data card, and their clearances.
-   subroutine build_contacts(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
-      type(model_type), intent(inout) :: model             !! receives the interfaces
+   subroutine build_contacts(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       type(contact_definition_type) :: common
       integer :: i, k, n
 
       places = cards_of(deck%cards, 'CONTACT PAIR')
-      allocate (model%contacts(data_count(deck%cards, places)))
+      allocate (deck%model%contacts(data_count(deck%cards, places)))
       n = 0
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
             call read_parameters(card, deck, common)
             do i = 1, size(card%data)
                n = n + 1
-               model%contacts(n) = common
-               call read_faces(card, card%data(i), deck, model%mesh, model%contacts(n))
-               call check_name(card, model%mesh, deck, model%contacts(:n))
+               deck%model%contacts(n) = common
+               call read_faces(card, card%data(i), deck, deck%model%contacts(n))
+               call check_name(card, deck, deck%model%contacts(:n))
             end do
          end associate
       end do
       places = cards_of(deck%cards, 'CLEARANCE')
       do n = 1, size(places)
-         call build_clearance(deck%cards%keywords(places(n)), deck, model%mesh, model%contacts)
+         call build_clearance(deck%cards%keywords(places(n)), deck)
       end do
    end subroutine build_contacts
 
    !> Reads a clearance, for the interface of the two surfaces that it names.
-   subroutine build_clearance(card, deck, mesh, contacts)
+   subroutine build_clearance(card, deck)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
-      type(contact_definition_type), intent(inout) :: contacts(:)
       character(:), allocatable :: text
       real(dp) :: value
       integer :: i, master, slave
@@ -65,30 +60,29 @@ contains
       call need_parameter(card, 'VALUE', deck, text)
       value = 0.0_dp
       call take_parameter(card, 'VALUE', deck, value)
-      call find_contact(slave, master, contacts, mesh, card%place, deck, i)
+      call find_contact(slave, master, card%place, deck, i)
       if (i == 0) return
-      if (contacts(i)%has_clearance) call deck%error(card%place, 'the clearance of contact '// &
-         'pair '//contacts(i)%name//' is given twice')
-      if (contacts(i)%has_clearance) return
-      contacts(i)%has_clearance = .true.
-      contacts(i)%clearance = value
+      if (deck%model%contacts(i)%has_clearance) call deck%error(card%place, 'the clearance of '// &
+         'contact pair '//deck%model%contacts(i)%name//' is given twice')
+      if (deck%model%contacts(i)%has_clearance) return
+      deck%model%contacts(i)%has_clearance = .true.
+      deck%model%contacts(i)%clearance = value
    end subroutine build_clearance
 
    !> The interface of two surfaces; 0 after an error, and where a surface is 0.
-   subroutine find_contact(slave, master, contacts, mesh, place, deck, contact)
+   subroutine find_contact(slave, master, place, deck, contact)
       integer, intent(in) :: slave, master                   !! surfaces
-      type(contact_definition_type), intent(in) :: contacts(:)
-      type(mesh_type), intent(in) :: mesh
       type(place_type), intent(in) :: place                  !! where they are named
-      type(deck_type), intent(inout) :: deck                 !! receives the error
+      type(deck_type), intent(inout) :: deck
       integer, intent(out) :: contact
 
       contact = 0
       if (slave == 0 .or. master == 0) return
-      contact = findloc(contacts%slave == slave .and. contacts%master == master, .true., dim=1)
+      contact = findloc(deck%model%contacts%slave == slave .and. deck%model%contacts%master == &
+         master, .true., dim=1)
       if (contact == 0) call deck%missing(place, 'no *CONTACT PAIR has the slave surface '// &
-         mesh%surfaces(slave)%name//' and the master surface '//mesh%surfaces(master)%name, &
-         'surface')
+         deck%mesh%surfaces(slave)%name//' and the master surface '// &
+         deck%mesh%surfaces(master)%name, 'surface')
    end subroutine find_contact
 
    !> Reads what all data cards of a card have in common.
@@ -117,11 +111,10 @@ contains
    end subroutine read_parameters
 
    !> Reads the two surfaces; the slave's name is that of a card without NAME=.
-   subroutine read_faces(card, data, deck, mesh, faces)
+   subroutine read_faces(card, data, deck, faces)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(inout) :: faces
       character(*), parameter :: held = 'let it be the master, and the face of the body the slave'
       character(*), parameter :: tied = 'nodes that it holds are TIE NSET= of *RIGID BODY        '
@@ -132,9 +125,8 @@ contains
       if (faces%slave > 0 .and. faces%slave == faces%master) call deck%error(data%place(2), &
          'a surface cannot be '// &
          trim(merge('tied to itself           ', 'in contact with itself   ', faces%is_tied)))
-      call need_faces(mesh, data%place(1), trim(merge(tied, held, faces%is_tied)), deck, &
-         faces%slave)
-      if (faces%is_tied) call need_faces(mesh, data%place(2), trim(tied), deck, faces%master)
+      call need_faces(data%place(1), trim(merge(tied, held, faces%is_tied)), deck, faces%slave)
+      if (faces%is_tied) call need_faces(data%place(2), trim(tied), deck, faces%master)
       if (card%has('NAME')) return
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
       if (faces%is_tied) call deck%note('*'//card%name//' without NAME=: '//faces%name//', the '// &
@@ -144,9 +136,8 @@ contains
    !> A name stands for a group of the result file: it is used once, and is one that HDF5
    !> allows for a group. The last pair has the name of its slave surface only if no other has it;
    !> it follows the name of a card with several pairs.
-   subroutine check_name(card, mesh, deck, contacts)
+   subroutine check_name(card, deck, contacts)
       type(keyword_card_type), intent(in) :: card
-      type(mesh_type), intent(in) :: mesh
       type(deck_type), intent(inout) :: deck
       type(contact_definition_type), intent(inout) :: contacts(:)
       integer :: n
@@ -155,19 +146,19 @@ contains
       n = size(contacts)
       several = card%has('NAME') .and. size(card%data) > 1
       if (several .and. contacts(n)%slave > 0) contacts(n)%name = contacts(n)%name//'-'// &
-         mesh%surfaces(contacts(n)%slave)%name
+         deck%mesh%surfaces(contacts(n)%slave)%name
       if ((several .or. .not. card%has('NAME')) .and. contacts(n)%master > 0) then
-         is_taken = deck%contacts%find(contacts(n)%name) > 0
+         is_taken = deck%index_of('contact pair', contacts(n)%name) > 0
          if (is_taken) contacts(n)%name = contacts(n)%name//'-'// &
-            mesh%surfaces(contacts(n)%master)%name
+            deck%mesh%surfaces(contacts(n)%master)%name
          call deck%note('*CONTACT PAIR '// &
             trim(merge('of several pairs:', 'without NAME=:   ', several))//' '// &
             contacts(n)%name//', '//trim(merge('its surfaces     ', 'the slave surface', is_taken)))
       end if
       associate (place => card%place_of('NAME'), name => contacts(n)%name)
-         if (deck%contacts%find(name) > 0) call deck%error(place, 'contact pair '//name//' is '// &
-            'defined twice')
-         call deck%contacts%add(name)
+         if (deck%index_of('contact pair', name) > 0) call deck%error(place, 'contact pair '// &
+            name//' is defined twice')
+         call deck%add_name('contact pair', name)
          if (scan(name, '/@') > 0) call deck%error(place, 'the name of a contact pair must not '// &
             'contain / or @')
          if (name == '.' .or. name == '..') call deck%error(place, 'a contact pair must not be '// &
@@ -176,28 +167,27 @@ contains
    end subroutine check_name
 
    !> Builds all ties, one for each data card.
-   subroutine build_ties(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
-      type(model_type), intent(inout) :: model             !! receives the ties
+   subroutine build_ties(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       integer :: i, k, n
 
       places = cards_of(deck%cards, 'TIE')
-      allocate(model%ties(data_count(deck%cards, places)))
+      allocate(deck%model%ties(data_count(deck%cards, places)))
       n = 0
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
-            call check_tie_card(card, model%ties(:n), deck)
+            call check_tie_card(card, deck%model%ties(:n), deck)
             do i = 1, size(card%data)
                n = n + 1
-               associate (tie => model%ties(n))
+               associate (tie => deck%model%ties(n))
                   tie%faces%is_tied = .true.
                   tie%faces%card = card%place%image
                   tie%faces%name = card%text('NAME')
                   tie%has_tolerance = card%has('POSITION TOLERANCE')
                   tie%faces%either_side = tie%has_tolerance
                   call take_within('>=0', card, 'POSITION TOLERANCE', deck, tie%tolerance)
-                  call read_faces(card, card%data(i), deck, model%mesh, tie%faces)
+                  call read_faces(card, card%data(i), deck, tie%faces)
                end associate
             end do
          end associate
@@ -222,16 +212,15 @@ contains
    end subroutine check_tie_card
 
    !> Reads one card of a step.
-   subroutine build_contact_change(k, step, model, deck)
+   subroutine build_contact_change(k, step, deck)
       integer, intent(in) :: k                             !! the keyword card
       integer, intent(in) :: step                          !! index of the step, 0 before the first
-      type(model_type), intent(inout) :: model             !! receives the change
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(contact_changes_type) :: changes
       type(friction_change_type) :: change
 
       if (step == 0) return
-      changes = model%steps(step)%changes
+      changes = deck%model%steps(step)%changes
       select case (deck%cards%keywords(k)%name)
       case ('CHANGE FRICTION')
          if (is_keyword(deck%cards, k + 1, 'FRICTION')) return
@@ -250,18 +239,17 @@ contains
                'FRICTION, INTERACTION= before it')
          end if
       case ('MODEL CHANGE')
-         call change_pairs(deck%cards%keywords(k), deck, model, changes)
+         call change_pairs(deck%cards%keywords(k), deck, changes)
       case default
-         call change_interferences(deck%cards%keywords(k), step, model, deck, changes)
+         call change_interferences(deck%cards%keywords(k), step, deck, changes)
       end select
-      model%steps(step)%changes = changes
+      deck%model%steps(step)%changes = changes
    end subroutine build_contact_change
 
    !> The interfaces that *MODEL CHANGE removes or adds.
-   subroutine change_pairs(card, deck, model, changes)
+   subroutine change_pairs(card, deck, changes)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(contact_changes_type), intent(inout) :: changes
       type(pair_change_type) :: change
       character(:), allocatable :: kind
@@ -280,17 +268,15 @@ contains
       end if
       if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
       do j = 1, size(card%data)
-         call read_contact(card%data(j), 2, 'slave surface, master surface', deck, model, &
-            change%contact)
+         call read_contact(card%data(j), 2, 'slave surface, master surface', deck, change%contact)
          if (change%contact > 0) changes%pairs = [changes%pairs, change]
       end do
    end subroutine change_pairs
 
    !> The interferences of some interfaces.
-   subroutine change_interferences(card, step, model, deck, changes)
+   subroutine change_interferences(card, step, deck, changes)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       type(contact_changes_type), intent(inout) :: changes
       type(interference_type) :: given
@@ -313,17 +299,16 @@ contains
          valid = .true.
          given%value = 1.0_dp
          if (given%shrinks) then
-            call read_contact(card%data(j), 2, 'slave surface, master surface', deck, model, &
-               given%contact)
+            call read_contact(card%data(j), 2, 'slave surface, master surface', deck, given%contact)
          else
             call read_contact(card%data(j), 3, 'slave surface, master surface, interference', &
-               deck, model, given%contact)
+               deck, given%contact)
             call need_field(card%data(j), 3, 'interference', deck, given%value, valid)
          end if
          if (given%contact == 0 .or. .not. valid) cycle
          changes%interferences = [changes%interferences, given]
          if (.not. given%shrinks) call check_clearance(card%data(j), &
-            model%contacts(given%contact), given%value, deck)
+            deck%model%contacts(given%contact), given%value, deck)
       end do
    end subroutine change_interferences
 
@@ -355,19 +340,18 @@ contains
    end subroutine check_clearance
 
    !> The interface of the two surfaces that a data card names; 0 after an error.
-   subroutine read_contact(data, most, layout, deck, model, contact)
+   subroutine read_contact(data, most, layout, deck, contact)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: most                 ! most fields
       character(*), intent(in) :: layout
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       integer, intent(out) :: contact
       integer :: master, slave
 
       call deck%need_surface(data, 1, 'slave surface', slave)
       call deck%need_surface(data, 2, 'master surface', master)
       call check_extra(data, most, layout, deck)
-      call find_contact(slave, master, model%contacts, model%mesh, data%place(1), deck, contact)
+      call find_contact(slave, master, data%place(1), deck, contact)
    end subroutine read_contact
 
 end module deck_builder_contact

@@ -10,8 +10,6 @@ module deck_builder_controls
       thermal_scheme_type
    use deck_context, only: deck_type
    use kinds, only: dp
-   use mesh, only: mesh_type
-   use model, only: model_type
    use steps, only: step_controls_type
    use print_requests, only: print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
@@ -54,7 +52,7 @@ contains
    !> Reads one *FIXED POINT; what it does not say stays as it was.
    subroutine build_fixed_point(card, deck, fixed_point)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck                  !! receives errors
+      type(deck_type), intent(inout) :: deck
       type(fixed_point_type), intent(inout) :: fixed_point    !! receives the controls
       character(:), allocatable :: method
 
@@ -69,7 +67,7 @@ contains
    !> Reads what one *RESTART says of writing; where to go on from is read before the steps are.
    subroutine build_restart(card, deck, controls)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck                  !! receives errors
+      type(deck_type), intent(inout) :: deck
       type(step_controls_type), intent(inout) :: controls     !! receives when they are written
       integer :: place
 
@@ -105,7 +103,7 @@ contains
    !> Reads one *THERMAL SCHEME; after an error the scheme stays as it was.
    subroutine build_thermal_scheme(card, deck, scheme)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck                  !! receives errors
+      type(deck_type), intent(inout) :: deck
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
       character(:), allocatable :: kind
 
@@ -136,7 +134,6 @@ contains
       real(dp) :: given(8), sums(3)
       logical :: valid
 
-      given = 0.0_dp
       call read_row(data, 'a1 >0/a2 >=0/a3 >=0/b1/b2/b3/c1/c2', deck, given, valid)
       if (.not. valid) return
       sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
@@ -156,7 +153,7 @@ contains
    !> Reads one *CONTINUATION.
    subroutine build_continuation(card, deck, continuation)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives errors
+      type(deck_type), intent(inout) :: deck
       type(continuation_type), intent(out) :: continuation
 
       continuation%is_on = .true.
@@ -171,16 +168,15 @@ contains
    end subroutine build_continuation
 
    !> Reads one *START; after an error the start stays as it was.
-   subroutine build_start(card, deck, model, start)
+   subroutine build_start(card, deck, start)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck             !! names of the interfaces; receives errors
-      type(model_type), intent(in) :: model              !! its interfaces
+      type(deck_type), intent(inout) :: deck
       type(start_type), intent(inout) :: start           !! receives the start
       character(:), allocatable :: from
 
       from = needed_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', deck)
       if (from == 'GIVEN') then
-         call build_given(card, deck, model, start)
+         call build_given(card, deck, start)
       else if (size(card%data) > 0 .and. from /= '') then
          call deck%error(card%data(1)%place(1), 'extra data card; *START has them with '// &
             'FROM=GIVEN only')
@@ -192,18 +188,16 @@ contains
    end subroutine build_start
 
    !> Interface and conductance, a card each.
-   subroutine build_given(card, deck, model, start)
+   subroutine build_given(card, deck, start)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(start_type), intent(inout) :: start
-      real(dp) :: given(size(model%contacts)), value(2)
+      real(dp) :: given(size(deck%model%contacts)), value(2)
       character(:), allocatable :: name
       integer :: i, k
       logical :: sound, valid
 
       given = 0.0_dp
-      value = 0.0_dp
       sound = .true.
       do k = 1, size(card%data)
          associate (data => card%data(k))
@@ -220,7 +214,7 @@ contains
       do i = 1, size(given)
          if (given(i) > 0.0_dp) cycle
          call deck%error(card%place, '*START, FROM=GIVEN gives no conductance to '// &
-            model%contacts(i)%name)
+            deck%model%contacts(i)%name)
          return
       end do
       start = start_type(kind=start_given, conductance=given)
@@ -228,11 +222,10 @@ contains
 
    !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
    !> former steps.
-   subroutine build_print(card, is_first, deck, mesh, requests)
+   subroutine build_print(card, is_first, deck, requests)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: is_first                     !! first of its keyword in its step
-      type(deck_type), intent(inout) :: deck   !! whether the sets are sound; notes; receives errors
-      type(mesh_type), intent(in) :: mesh                 !! has the sets
+      type(deck_type), intent(inout) :: deck
       type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
       type(print_request_type) :: request
       character(:), allocatable :: totals
@@ -244,19 +237,18 @@ contains
       keys = element_keys
       if (card%name == 'NODE PRINT') then
          keys = node_keys
-         call take_set(card, 'NSET', 'node set', deck%node_index%sets%find(card%text('NSET')), &
-            deck, request%set, is_known)
-         if (is_dropped(card, deck, mesh, request%set)) is_known = .false.
+         call take_set(card, 'NSET', 'node set', deck, request%set, is_known)
+         if (is_dropped(card, deck, request%set)) is_known = .false.
          totals = choice(card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
          request%each_node = totals /= 'ONLY'
          request%totals = totals /= 'NO'
       else
-         call take_set(card, 'ELSET', 'element set', deck%element_index%sets%find( &
-            card%text('ELSET')), deck, request%set, is_known)
+         call take_set(card, 'ELSET', 'element set', deck, request%set, is_known)
          if (request%set > 0) then
-            if (mesh%element_sets(request%set)%of_lines) then
-               call deck%warning(card%place_of('ELSET'), 'element set '//mesh%element_sets( &
-                  request%set)%name//' has only lines, springs or trusses: nothing is printed')
+            if (deck%mesh%element_sets(request%set)%of_lines) then
+               call deck%warning(card%place_of('ELSET'), 'element set '// &
+                  deck%mesh%element_sets(request%set)%name//' has only lines, springs or '// &
+                  'trusses: nothing is printed')
                is_known = .false.
             end if
          end if
@@ -277,33 +269,32 @@ contains
    end subroutine build_print
 
    !> Takes the set of a table. One that is not known is no error where the cards of sets have some.
-   subroutine take_set(card, parameter, noun, found, deck, set, is_known)
+   subroutine take_set(card, parameter, noun, deck, set, is_known)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter, noun
-      integer, intent(in) :: found                        ! its index, 0 for none
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: set
       logical, intent(out) :: is_known
 
-      if (deck%sets_sound .or. found > 0) call deck%take_named(card, parameter, noun, set)
+      if (deck%sets_sound .or. deck%index_of(noun, card%text(parameter)) > 0) call &
+         deck%take_named(card, parameter, noun, set)
       is_known = set > 0 .or. card%lacks(parameter)
    end subroutine take_set
 
    !> Whether ORDER=1 leaves no node of a set, which is warned of: there is nothing to print.
-   logical function is_dropped(card, deck, mesh, set)
+   logical function is_dropped(card, deck, set)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: set      ! 0 for all nodes
 
       is_dropped = .false.
       if (set == 0) return
-      associate (members => mesh%node_sets(set)%members)
+      associate (members => deck%mesh%node_sets(set)%members)
          is_dropped = size(members) > 0
          if (is_dropped) is_dropped = all(deck%dropped(members))
       end associate
       if (is_dropped) call deck%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
-         mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
+         deck%mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
    end function is_dropped
 
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.
@@ -338,7 +329,7 @@ contains
    !> FREQUENCY=n, default 1.
    subroutine read_frequency(card, deck, frequency, points)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck            !! *TIME POINTS; receives errors
+      type(deck_type), intent(inout) :: deck
       integer, intent(out) :: frequency                 !! n, at least 0
       type(time_points_type), intent(out) :: points     !! those that the card names
       integer :: i

@@ -8,7 +8,7 @@ module deck_builder_drawings
    use drawn_lines, only: drawn_line_type, sharpest_corner
    use element_types, only: rigid_line
    use kinds, only: dp
-   use mesh, only: mesh_type, surface_type
+   use mesh, only: surface_type
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
@@ -25,7 +25,7 @@ contains
    !> Reads the cards START, LINE and CIRCL of a surface.
    subroutine build_drawing(card, deck, surface)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck               !! receives errors
+      type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface         !! receives the drawing
       type(drawn_line_type) :: line
       real(dp) :: last(2), x(2, 2)
@@ -175,17 +175,16 @@ contains
          set = findloc(deck%line_number, number, dim=1)
          if (set > 0) lines = [set]
       else
-         set = deck%element_index%sets%find(name)
+         set = deck%index_of('element set', name)
          if (set > 0) lines = deck%line_sets(set)%members
       end if
    end function lines_of
 
    !> Builds the surface of the sides of rigid line elements: SPOS is on the left from the first to
    !> the second node, SNEG on the right.
-   subroutine build_line_surface(card, deck, mesh, surface)
+   subroutine build_line_surface(card, deck, surface)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck               !! receives errors
-      type(mesh_type), intent(in) :: mesh
+      type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface         !! receives the line
       integer, allocatable :: ends(:, :), lines(:), more(:)
       character(:), allocatable :: side
@@ -212,14 +211,13 @@ contains
                deck%line_nodes([2, 1], more(i)), side == 'SPOS')], [2, size(ends, 2) + 1])
          end do
       end do
-      call join_lines(card, lines, ends, mesh, deck, surface)
+      call join_lines(card, lines, ends, deck, surface)
    end subroutine build_line_surface
 
    !> Puts lines one behind the other.
-   subroutine join_lines(card, lines, ends, mesh, deck, surface)
+   subroutine join_lines(card, lines, ends, deck, surface)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: lines(:), ends(:, :)          ! (n), (2, n) nodes
-      type(mesh_type), intent(in) :: mesh
       type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface
       type(drawn_line_type) :: line
@@ -240,22 +238,14 @@ contains
          return
       end do
       line%line = lines(order)
-      line%start = mesh%coordinates(:, ends(1, order))
-      line%finish = mesh%coordinates(:, ends(2, order))
+      line%start = deck%mesh%coordinates(:, ends(1, order))
+      line%finish = deck%mesh%coordinates(:, ends(2, order))
       allocate (line%is_arc(size(lines)), source=.false.)
       line%centre = 0.0_dp*line%start
       line%closed = ends(1, order(1)) == ends(2, order(size(order)))
-      call check_smooth(spread_place(card%place, size(lines)), surface%name, line, deck)
+      call check_smooth([(card%place, i=1, size(lines))], surface%name, line, deck)
       call turn_round(line)
       surface%drawing = line
    end subroutine join_lines
-
-   pure function spread_place(place, n) result(places)
-      type(place_type), intent(in) :: place
-      integer, intent(in) :: n
-      type(place_type) :: places(n)
-
-      places = place
-   end function spread_place
 
 end module deck_builder_drawings

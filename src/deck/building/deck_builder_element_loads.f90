@@ -1,5 +1,5 @@
-!> Data cards of loads on elements: *DLOAD, *DFLUX and *FILM with an element or a set, *DSLOAD,
-!> *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
+!> Data cards of loads with a label: *DLOAD, *DFLUX and *FILM with an element, a set or a surface,
+!> *DSLOAD, *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
 module deck_builder_element_loads
    use card_values, only: need_field, plane_vector, read_row
    use cards, only: data_card_type
@@ -8,258 +8,229 @@ module deck_builder_element_loads
    use element_kinds, only: axisymmetric, element_corner_count, side_nodes
    use kinds, only: dp
    use load_requests, only: request_type
-   use mesh, only: mesh_type, surface_type
-   use model, only: model_type
    use spelling, only: known_choices
    use steps, only: centrifugal_round, load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_film_sink, load_gravity, load_pressure, &
       load_traction
-   use text, only: append, string_type, to_text, to_upper
+   use text, only: split_words, to_text, to_upper
    implicit none
    private
-   public :: build_element_load, build_surface_load
+   public :: build_element_load
+
+   !> A label, and what it stands for.
+   type :: label_type
+      character(7) :: name        !! without the number of a side
+      character(12) :: cards      !! that have it: of elements, of surfaces
+      integer :: kind             !! load_pressure, ...
+      integer :: component        !! of the load, R as X and Z as Y; 0 for a side of an element
+      character(118) :: layout    !! fields behind it, as read_row
+   end type label_type
+
+   character(*), parameter :: vector_layout = 'magnitude/direction x/direction y/direction z?'
+
+   type(label_type), parameter :: labels(12) = [ &
+      label_type('P', 'DLOAD/DSLOAD', load_pressure, 0, 'pressure'), &
+      label_type('TRVEC', 'DSLOAD', load_traction, 1, vector_layout), &
+      label_type('TRSHR', 'DSLOAD', load_traction, 1, vector_layout), &
+      label_type('BX', 'DLOAD', load_body_force, 1, 'force per volume'), &
+      label_type('BY', 'DLOAD', load_body_force, 2, 'force per volume'), &
+      label_type('BR', 'DLOAD', load_body_force, 1, 'force per volume'), &
+      label_type('BZ', 'DLOAD', load_body_force, 2, 'force per volume'), &
+      label_type('GRAV', 'DLOAD', load_gravity, 1, vector_layout), &
+      label_type('CENTRIF', 'DLOAD', load_centrifugal, 1, 'speed squared >=0/x of the axis/'// &
+      'y of the axis/z of the axis/direction x/direction y/direction z'), &
+      label_type('S', 'DFLUX/DSFLUX', load_face_heat, 0, 'heat flux'), &
+      label_type('BF', 'DFLUX', load_body_heat, 1, 'heat per volume'), &
+      label_type('F', 'FILM/SFILM', load_film_sink, 0, 'sink temperature/film coefficient >0')]
 
    real(dp), parameter :: straight = 1.0e-6_dp   !! bow of a side, by its length
 
 contains
 
    !> Takes one data card.
-   subroutine build_element_load(keyword, data, request, film_amplitude, model, deck)
-      character(*), intent(in) :: keyword                  !! DLOAD, DFLUX or FILM
+   subroutine build_element_load(keyword, data, request, film_amplitude, deck)
+      character(*), intent(in) :: keyword                  !! DLOAD, DSLOAD, ...
       type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request         !! step, amplitude, card and place
-      integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
-      type(model_type), intent(in) :: model                !! mesh and sets
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
-      character(:), allocatable :: label, labels
-      real(dp) :: values(9)
-      integer :: surface
-      logical :: known, valid
-
-      known = .true.
-      surface = named_surface(data, deck, model%mesh)
-      if (surface == 0) call deck%need_elements(data, 1, model%mesh%element_sets, &
-         request%target_type, known)
-      call need_field(data, 2, 'label of the load', deck, label, known)
-      if (len(label) == 0) return
-      label = to_upper(label)
-      select case (keyword)
-      case ('DLOAD')
-         labels = 'P1/P2/P3/P4/BX/BY/BR/BZ/GRAV/CENTRIF'
-      case ('DFLUX')
-         labels = 'S1/S2/S3/S4/BF'
-      case default
-         labels = 'F1/F2/F3/F4'
-      end select
-      if (surface > 0) then
-         labels = labels(1:1)
-         ! As in CalculiX: a number in the label does not count.
-         if (len(label) == 2 .and. index('01234', label(2:)) > 0) label = label(1:1)
-      end if
-      if (index('/'//labels//'/', '/'//label//'/') == 0) then
-         call report_label(keyword, label, labels, data, deck)
-         return
-      end if
-      request%component = 1
-      if (scan(label(2:), '1234') == 1) then
-         request%component = index('1234', label(2:2))
-         call check_face(data, request, model, deck, known)
-      end if
-      if (label == 'BR' .or. label == 'BZ') call check_axis(data, request, model%mesh, deck, known)
-      call read_values(data, '@element or set', label, deck, values, valid)
-      if (.not. (known .and. valid)) return
-      if (surface > 0) then
-         call add_on_faces(label, values, model%mesh%surfaces(surface), request, film_amplitude, &
-            deck)
-      else if (label == 'GRAV') then
-         call add_gravity(data, values, request, deck)
-      else if (label == 'CENTRIF') then
-         call add_rotation(data, values, request, deck)
-      else
-         call add_load(label, values, request, film_amplitude, deck)
-      end if
-   end subroutine build_element_load
-
-   !> Index of the surface that a card names in place of an element or a set; else 0.
-   integer function named_surface(data, deck, mesh)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(in) :: deck
-      type(mesh_type), intent(in) :: mesh
-      integer :: set
-
-      named_surface = deck%surfaces%find(data%text(1))
-      if (.not. data%has(1)) named_surface = 0
-      set = deck%element_index%sets%find(data%text(1))
-      if (set == 0) return
-      if (.not. mesh%element_sets(set)%of_lines) named_surface = 0
-   end function named_surface
-
-   !> Loads of one kind on all faces of a surface.
-   subroutine add_on_faces(label, values, surface, request, film_amplitude, deck)
-      character(*), intent(in) :: label
-      real(dp), intent(in) :: values(:)
-      type(surface_type), intent(in) :: surface            !! the faces
       type(request_type), intent(inout) :: request         !! step, amplitude, card and place
       integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
       type(deck_type), intent(inout) :: deck               !! receives the requests
-      integer :: i
+      type(label_type) :: load
+      type(request_type) :: film
+      character(:), allocatable :: advice, label, names, target, what
+      real(dp) :: values(9)
+      integer :: surface
+      logical :: known, of_surfaces, valid
 
-      request%set = 0
-      do i = 1, size(surface%faces, 2)
-         request%item = surface%faces(1, i)
-         request%component = surface%faces(2, i)
-         call add_load(label, values, request, film_amplitude, deck)
-      end do
-   end subroutine add_on_faces
-
-   !> The values behind a label.
-   subroutine read_values(data, target, label, deck, values, valid)
-      type(data_card_type), intent(in) :: data
-      character(*), intent(in) :: target                   ! layout of the first field
-      character(*), intent(in) :: label
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(out) :: values(9)                   ! (fields)
-      logical, intent(out) :: valid
-      character(:), allocatable :: layout
-
-      select case (label)
-      case ('GRAV', 'TRVEC', 'TRSHR')
-         layout = 'magnitude/direction x/direction y/direction z?'
-      case ('CENTRIF')
-         layout = 'speed squared >=0/x of the axis/y of the axis/z of the axis/'// &
-            'direction x/direction y/direction z'
-      case ('BX', 'BY', 'BR', 'BZ')
-         layout = 'force per volume'
-      case ('BF')
-         layout = 'heat per volume'
-      case default
-         if (label(1:1) == 'P') layout = 'pressure'
-         if (label(1:1) == 'S') layout = 'heat flux'
-         if (label(1:1) == 'F') layout = 'sink temperature/film coefficient >0'
-      end select
-      values = 0.0_dp
-      valid = .false.
+      of_surfaces = any(keyword == ['DSLOAD', 'DSFLUX', 'SFILM '])
+      known = .true.
+      if (of_surfaces) then
+         target = 'surface'
+         call deck%need_surface(data, 1, target, surface)
+         advice = 'prescribe the temperature of its reference node'
+         if (keyword == 'DSLOAD') advice = 'load its reference node by *CLOAD'
+         call need_faces(data%place(1), advice, deck, surface)
+         known = surface > 0
+      else
+         target = 'element or set'
+         surface = named_surface(data, deck)
+         if (surface == 0) call deck%need_target('element', data, 1, request%target_type, known)
+      end if
+      names = names_of(keyword, of_surfaces)
+      what = 'label of the load'
+      if (of_surfaces) what = names
+      call need_field(data, 2, what, deck, label, known)
+      if (len(label) == 0) return
+      label = to_upper(label)
+      if (surface > 0 .and. .not. of_surfaces) then
+         names = names(:1)
+         ! As in CalculiX: a number in the label does not count.
+         if (len(label) == 2 .and. scan(label(2:), '01234') > 0) label = label(:1)
+      end if
+      if (index('/'//names//'/', '/'//label//'/') == 0 .or. index(label, '/') > 0) then
+         call deck%error(data%place(2), 'unknown load '//label//' of *'//keyword// &
+            known_choices(label, split_words(names)))
+         return
+      end if
+      load = labels(findloc(labels%name == label(:scan(label//'1', '1234') - 1), .true., dim=1))
+      request%kind = load%kind
+      request%component = load%component
+      if (load%component == 0) request%component = index('1234', label(len(label):))
+      if (surface == 0) call check_elements(data, label, request, deck, known)
       ! The coefficient of a *FILM PROPERTY, which is refused.
-      if (label(1:1) == 'F' .and. deck%has_lost('film property', data%text(4))) return
-      call read_row(data, target//'/@'//label//'/'//layout, deck, values, valid)
-   end subroutine read_values
+      if (load%kind == load_film_sink .and. deck%has_lost('film property', data%text(4))) return
+      call read_row(data, '@'//target//'/@'//label//'/'//trim(load%layout), deck, values, valid)
+      if (.not. (known .and. valid)) return
+      request%value = values(3)
+      select case (load%kind)
+      case (load_traction, load_gravity)
+         call add_vector(label, data, values(3:6), surface, request, deck)
+      case (load_centrifugal)
+         call add_rotation(data, values, request, deck)
+      case (load_film_sink)
+         film = request
+         film%kind = load_film_coefficient
+         film%amplitude = film_amplitude
+         film%value = values(4)
+         call add_load(film, surface, deck)
+         call add_load(request, surface, deck)
+      case default
+         call add_load(request, surface, deck)
+      end select
+   end subroutine build_element_load
 
-   !> Reports a label that a keyword does not know.
-   subroutine report_label(keyword, label, labels, data, deck)
-      character(*), intent(in) :: keyword                  !! keyword
-      character(*), intent(in) :: label                    !! what was written
-      character(*), intent(in) :: labels                   !! what is known, separated by slashes
-      type(data_card_type), intent(in) :: data             !! the card; the label is field 2
-      type(deck_type), intent(inout) :: deck               !! receives the error
-      type(string_type), allocatable :: names(:)
-      integer :: first, slash
+   !> The labels of a card, separated by slashes; with the sides of an element where it has some.
+   pure function names_of(keyword, of_surfaces) result(names)
+      character(*), intent(in) :: keyword
+      logical, intent(in) :: of_surfaces
+      character(:), allocatable :: names
+      integer :: i, side
 
-      first = 1
-      do
-         slash = index(labels(first:)//'/', '/')
-         call append(names, labels(first:first + slash - 2))
-         first = first + slash
-         if (first > len(labels)) exit
+      names = ''
+      do i = 1, size(labels)
+         if (index('/'//trim(labels(i)%cards)//'/', '/'//keyword//'/') == 0) cycle
+         if (of_surfaces .or. labels(i)%component > 0) then
+            names = names//'/'//trim(labels(i)%name)
+         else
+            names = names//repeat('/'//trim(labels(i)%name)//'#', 4)
+         end if
       end do
-      call deck%error(data%place(2), 'unknown load '//label//' of *'//keyword// &
-         known_choices(label, names))
-   end subroutine report_label
+      do side = 1, 4
+         i = index(names, '#')
+         if (i > 0) names(i:i) = to_text(side)
+      end do
+      names = names(2:)
+   end function names_of
 
-   !> Every element of the request has the side.
-   subroutine check_face(data, request, model, deck, valid)
+   !> Index of the surface that a card names in place of an element or a set; else 0.
+   integer function named_surface(data, deck)
       type(data_card_type), intent(in) :: data
+      type(deck_type), intent(in) :: deck
+      integer :: set
+
+      named_surface = deck%index_of('surface', data%text(1))
+      if (.not. data%has(1)) named_surface = 0
+      set = deck%index_of('element set', data%text(1))
+      if (set == 0) return
+      if (.not. deck%mesh%element_sets(set)%of_lines) named_surface = 0
+   end function named_surface
+
+   !> Every element of the request has the side of a label, or the plane.
+   subroutine check_elements(data, label, request, deck, valid)
+      type(data_card_type), intent(in) :: data
+      character(*), intent(in) :: label
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer, allocatable :: elements(:)
       integer :: i
 
       if (.not. valid) return
-      elements = request%members(model%mesh%element_sets)
+      elements = request%members(deck%mesh%element_sets)
+      if (any(label == ['BR', 'BZ'])) then
+         valid = all(deck%mesh%element_plane(elements) == axisymmetric)
+         if (.not. valid) call deck%error(data%place(2), 'BR and BZ are forces on axisymmetric '// &
+            'elements; those of a plane are BX and BY')
+      end if
+      if (scan(label, '1234') == 0) return
       do i = 1, size(elements)
          if (.not. deck%element_valid(elements(i))) cycle
-         associate (sides => element_corner_count(model%mesh%element_kind(elements(i))))
+         associate (sides => element_corner_count(deck%mesh%element_kind(elements(i))))
             if (request%component <= sides) cycle
             call deck%error(data%place(2), 'element '// &
-               to_text(model%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
+               to_text(deck%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
          end associate
          valid = .false.
          return
       end do
-   end subroutine check_face
+   end subroutine check_elements
 
-   !> Every element of the request is axisymmetric.
-   subroutine check_axis(data, request, mesh, deck, valid)
-      type(data_card_type), intent(in) :: data
+   !> Adds a load, of a surface to each of its faces.
+   subroutine add_load(request, surface, deck)
       type(request_type), intent(in) :: request
-      type(mesh_type), intent(in) :: mesh
-      type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
-      integer, allocatable :: elements(:)
-
-      if (.not. valid) return
-      elements = request%members(mesh%element_sets)
-      valid = all(mesh%element_plane(elements) == axisymmetric)
-      if (.not. valid) call deck%error(data%place(2), 'BR and BZ are forces on axisymmetric '// &
-         'elements; those of a plane are BX and BY')
-   end subroutine check_axis
-
-   !> A load that is one number, or a film.
-   subroutine add_load(label, values, request, film_amplitude, deck)
-      character(*), intent(in) :: label
-      real(dp), intent(in) :: values(:)                    ! (fields)
-      type(request_type), intent(in) :: request
-      integer, intent(in) :: film_amplitude
+      integer, intent(in) :: surface                       ! 0 for none
       type(deck_type), intent(inout) :: deck
       type(request_type) :: load
+      integer :: i
 
       load = request
-      load%value = values(3)
-      select case (label)
-      case ('BX', 'BY', 'BR', 'BZ')   ! the radius is x, the axis y
-         load%kind = load_body_force
-         load%component = mod(index('XYRZ', label(2:2)) - 1, 2) + 1
-      case ('BF')
-         load%kind = load_body_heat
-      case default
-         if (label(1:1) == 'P') load%kind = load_pressure
-         if (label(1:1) == 'S') load%kind = load_face_heat
-         if (label(1:1) == 'F') load%kind = load_film_sink
-      end select
-      if (load%kind == load_film_sink) call add_film(load)
-      call deck%loads%add(load)
-   contains
-      subroutine add_film(sink)
-         type(request_type), intent(in) :: sink
-         type(request_type) :: film
-
-         film = sink
-         film%kind = load_film_coefficient
-         film%amplitude = film_amplitude
-         film%value = values(4)
-         call deck%loads%add(film)
-      end subroutine add_film
+      if (surface == 0) then
+         call deck%loads%add(load)
+         return
+      end if
+      load%set = 0
+      associate (faces => deck%mesh%surfaces(surface)%faces)
+         do i = 1, size(faces, 2)
+            load%item = faces(1, i)
+            load%component = faces(2, i)
+            if (load%kind == load_traction) load%component = 2*faces(2, i) - 2 + request%component
+            call deck%loads%add(load)
+         end do
+      end associate
    end subroutine add_load
 
-   !> Magnitude and direction; along x and along y the gravity is a load of its own.
-   subroutine add_gravity(data, values, request, deck)
+   !> Magnitude and direction; along x and along y the load is one of its own.
+   subroutine add_vector(label, data, given, surface, request, deck)
+      character(*), intent(in) :: label
       type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: values(:)                    ! (fields)
-      type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
+      real(dp), intent(in) :: given(4)
+      integer, intent(in) :: surface                       ! of tractions
+      type(request_type), intent(inout) :: request         ! step, amplitude, card, elements
+      type(deck_type), intent(inout) :: deck
       real(dp) :: vector(2)
       integer :: i
 
-      call plane_vector(data, 3, values(3:6), deck, vector)
-      request%kind = load_gravity
+      call plane_vector(data, 3, given, deck, vector)
+      if (label == 'TRSHR') then
+         call add_shear(surface, vector, data, request, deck)
+         return
+      end if
       do i = 1, 2
-         if (abs(vector(i)) <= 0.0_dp) cycle
+         if (surface == 0 .and. abs(vector(i)) <= 0.0_dp) cycle
          request%component = i
          request%value = vector(i)
-         call deck%loads%add(request)
+         call add_load(request, surface, deck)
       end do
-   end subroutine add_gravity
+   end subroutine add_vector
 
    !> Speed squared, a point and the direction of the axis: the y axis, or one along z, round which
    !> a plane turns. Round a point (x0, y0) the force is that round the origin less (x0, y0) times
@@ -268,7 +239,7 @@ contains
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: values(:)                    ! (fields)
       type(request_type), intent(inout) :: request         !! step, amplitude, card, elements
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
+      type(deck_type), intent(inout) :: deck
       real(dp) :: point(3), direction(3), loads(4)
       integer :: i
 
@@ -297,58 +268,9 @@ contains
       end if
    end subroutine add_rotation
 
-   !> Takes one data card.
-   subroutine build_surface_load(keyword, data, request, film_amplitude, model, deck)
-      character(*), intent(in) :: keyword                  !! DSLOAD, DSFLUX or SFILM
-      type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request         !! step, amplitude, card and place
-      integer, intent(in) :: film_amplitude                !! amplitude of the film coefficient
-      type(model_type), intent(in) :: model                !! surfaces
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
-      character(:), allocatable :: advice, label, labels
-      real(dp) :: values(9), vector(2)
-      integer :: i, surface
-      logical :: known, valid
-
-      advice = 'load its reference node by *CLOAD'
-      if (keyword /= 'DSLOAD') advice = 'prescribe the temperature of its reference node'
-      call deck%need_surface(data, 1, 'surface', surface)
-      call need_faces(model%mesh, data%place(1), advice, deck, surface)
-      labels = 'P/TRVEC/TRSHR'
-      if (keyword == 'DSFLUX') labels = 'S'
-      if (keyword == 'SFILM') labels = 'F'
-      known = .true.
-      call need_field(data, 2, labels, deck, label, known)
-      if (len(label) == 0) return
-      label = to_upper(label)
-      request%set = 0
-      if (index('/'//labels//'/', '/'//label//'/') == 0) then
-         call report_label(keyword, label, labels, data, deck)
-         return
-      end if
-      call read_values(data, '@surface', label, deck, values, valid)
-      if (surface == 0 .or. .not. valid) return
-      request%kind = load_traction
-      select case (label)
-      case ('TRVEC')
-         call plane_vector(data, 3, values(3:6), deck, vector)
-         do i = 1, 2
-            request%value = vector(i)
-            call add_faces(model%mesh%surfaces(surface), request, 2, i - 2, deck)
-         end do
-      case ('TRSHR')
-         call plane_vector(data, 3, values(3:6), deck, vector)
-         call add_shear(model%mesh, model%mesh%surfaces(surface), vector, data, request, deck)
-      case default
-         call add_on_faces(label, values, model%mesh%surfaces(surface), request, film_amplitude, &
-            deck)
-      end select
-   end subroutine build_surface_load
-
    !> Tractions of one magnitude along straight sides, in the sense of a vector.
-   subroutine add_shear(mesh, surface, vector, data, request, deck)
-      type(mesh_type), intent(in) :: mesh
-      type(surface_type), intent(in) :: surface
+   subroutine add_shear(surface, vector, data, request, deck)
+      integer, intent(in) :: surface
       real(dp), intent(in) :: vector(2)                    ! of that magnitude
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request
@@ -357,22 +279,24 @@ contains
       real(dp) :: chord(2), bow(2), along
       integer :: i, j, n
 
-      do i = 1, size(surface%faces, 2)
-         associate (element => surface%faces(1, i), face => surface%faces(2, i))
+      do i = 1, size(deck%mesh%surfaces(surface)%faces, 2)
+         associate (element => deck%mesh%surfaces(surface)%faces(1, i), &
+            face => deck%mesh%surfaces(surface)%faces(2, i))
             if (.not. deck%element_valid(element)) cycle
-            nodes = mesh%element_nodes(side_nodes(mesh%element_kind(element), face), element)
+            nodes = deck%mesh%element_nodes(side_nodes(deck%mesh%element_kind(element), face), &
+               element)
             n = size(nodes)
-            chord = mesh%coordinates(:, nodes(n)) - mesh%coordinates(:, nodes(1))
+            chord = deck%mesh%coordinates(:, nodes(n)) - deck%mesh%coordinates(:, nodes(1))
             chord = chord/norm2(chord)
-            bow = mesh%coordinates(:, nodes(n - 1)) - mesh%coordinates(:, nodes(1))
+            bow = deck%mesh%coordinates(:, nodes(n - 1)) - deck%mesh%coordinates(:, nodes(1))
             along = dot_product(chord, vector)
             if (abs(chord(1)*bow(2) - chord(2)*bow(1)) > straight*norm2(bow)) then
                call deck%error(data%place(2), 'TRSHR acts on straight sides, but that of '// &
-                  'element '//to_text(mesh%element_number(element))//' is curved; give TRVEC')
+                  'element '//to_text(deck%mesh%element_number(element))//' is curved; give TRVEC')
                return
             else if (abs(along) <= straight*norm2(vector) .and. norm2(vector) > 0.0_dp) then
                call deck%error(data%place(4), 'the direction is normal to the side of element '// &
-                  to_text(mesh%element_number(element)))
+                  to_text(deck%mesh%element_number(element)))
                return
             end if
             do j = 1, 2
@@ -384,20 +308,5 @@ contains
          end associate
       end do
    end subroutine add_shear
-
-   !> One request a face, its component a multiple of the face's number and an offset.
-   subroutine add_faces(surface, request, multiple, offset, deck)
-      type(surface_type), intent(in) :: surface
-      type(request_type), intent(inout) :: request
-      integer, intent(in) :: multiple, offset
-      type(deck_type), intent(inout) :: deck
-      integer :: i
-
-      do i = 1, size(surface%faces, 2)
-         request%item = surface%faces(1, i)
-         request%component = multiple*surface%faces(2, i) + offset
-         call deck%loads%add(request)
-      end do
-   end subroutine add_faces
 
 end module deck_builder_element_loads

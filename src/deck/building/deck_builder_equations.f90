@@ -12,7 +12,6 @@ module deck_builder_equations
    use kinds, only: dp
    use mesh, only: extent_of
    use load_requests, only: target_type
-   use model, only: model_type
    use sorting, only: sort_order
    use steps, only: dof_temperature
    use text, only: read_integer, to_text
@@ -35,9 +34,8 @@ module deck_builder_equations
 contains
 
    !> Builds all equations.
-   subroutine build_equations(deck, model)
-      type(deck_type), intent(inout) :: deck               !! numbers -> indexes; receives errors
-      type(model_type), intent(inout) :: model             !! receives the equations
+   subroutine build_equations(deck)
+      type(deck_type), intent(inout) :: deck
       type(term_type), allocatable :: terms(:)
       integer, allocatable :: places(:)
       type(equation_type), allocatable :: list(:)   ! (capacity)
@@ -52,24 +50,22 @@ contains
             data = 1
             do while (data <= size(card%data))
                first = data
-               call read_terms(card, data, deck, model, terms)
+               call read_terms(card, data, deck, terms)
                valid = allocated(terms)
-               if (valid) call check_terms(terms, model, deck, valid)
-               if (valid) call add_equations(terms, card%data(first)%place(1), model, deck, list, &
-                  count)
+               if (valid) call check_terms(terms, deck, valid)
+               if (valid) call add_equations(terms, card%data(first)%place(1), deck, list, count)
                if (.not. valid) call deck%lose('equation')
             end do
          end associate
       end do
-      model%equations = list(:count)
+      deck%model%equations = list(:count)
    end subroutine build_equations
 
    !> Reads one equation: the number of its terms, then the terms, any number on a card.
-   subroutine read_terms(card, data, deck, model, terms)
+   subroutine read_terms(card, data, deck, terms)
       type(keyword_card_type), intent(in) :: card
       integer, intent(inout) :: data               ! its first data card; then that behind it
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(term_type), allocatable, intent(out) :: terms(:)   ! unallocated after an error
       type(term_type), allocatable :: found(:)
       type(place_type) :: place
@@ -77,7 +73,6 @@ contains
       integer :: i, n
       logical :: valid
 
-      given = 0.0_dp
       place = card%data(data)%place(1)
       call read_row(card%data(data), '#number of terms >0', deck, given, valid)
       n = nint(given(1))
@@ -85,7 +80,7 @@ contains
       allocate (found(0))
       do while (valid .and. size(found) < n .and. data <= size(card%data))
          do i = 1, size(card%data(data)%fields), term_fields
-            call read_term(card%data(data), i, deck, model, found, valid)
+            call read_term(card%data(data), i, deck, found, valid)
          end do
          data = data + 1
       end do
@@ -100,23 +95,22 @@ contains
    end subroutine read_terms
 
    !> Reads one term: node or set, degree of freedom, coefficient.
-   subroutine read_term(card, position, deck, model, terms, valid)
+   subroutine read_term(card, position, deck, terms, valid)
       type(data_card_type), intent(in) :: card
       integer, intent(in) :: position
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(term_type), allocatable, intent(inout) :: terms(:)
       logical, intent(inout) :: valid
       type(term_type) :: term
       integer :: dof
 
       term%place = card%place(position)
-      call deck%need_nodes(card, position, model%mesh%node_sets, term%target_type, valid)
+      call deck%need_target('node', card, position, term%target_type, valid)
       call need_field(card, position + 1, 'degree of freedom', deck, dof, valid)
       call need_field(card, position + 2, 'coefficient', deck, term%coefficient, valid)
       if (.not. valid) return
-      term%dof = axis_in_plane(model%transforms, model%mesh%node_sets, &
-         term%members(model%mesh%node_sets), dof)
+      term%dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
+         term%members(deck%mesh%node_sets), dof)
       if (all(term%dof /= [1, 2, dof_temperature])) then
          call deck%error(card%place(position + 1), 'degree of freedom '//to_text(dof)//'; an '// &
             'equation relates 1 and 2, or 11')
@@ -127,16 +121,15 @@ contains
 
    !> Displacements and temperatures are solved one after the other; sets have one length; the first
    !> term, which the others determine, is there.
-   subroutine check_terms(terms, model, deck, valid)
+   subroutine check_terms(terms, deck, valid)
       type(term_type), intent(in) :: terms(:)
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer :: i, lengths(size(terms))
 
       lengths = 1
       do i = 1, size(lengths)
-         lengths(i) = size(terms(i)%members(model%mesh%node_sets))
+         lengths(i) = size(terms(i)%members(deck%mesh%node_sets))
          if (lengths(i) == 0) valid = .false.   ! its card has an error
          if (lengths(i) == 1 .or. maxval(lengths(:i - 1)) <= 1) cycle
          if (lengths(i) == maxval(lengths(:i - 1))) cycle
@@ -158,10 +151,9 @@ contains
    end subroutine check_terms
 
    !> Adds the equation, or one for each member of its sets in the order of the node numbers.
-   subroutine add_equations(terms, place, model, deck, list, count)
+   subroutine add_equations(terms, place, deck, list, count)
       type(term_type), intent(in) :: terms(:)
       type(place_type), intent(in) :: place        ! where the equation begins
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       type(equation_type), allocatable, intent(inout) :: list(:)   ! (capacity)
       integer, intent(inout) :: count
@@ -170,11 +162,11 @@ contains
       type(equation_type) :: equation
       integer :: i, k, n
 
-      n = maxval([(size(terms(i)%members(model%mesh%node_sets)), i=1, size(terms))])
+      n = maxval([(size(terms(i)%members(deck%mesh%node_sets)), i=1, size(terms))])
       allocate (nodes(n, size(terms)))
       do i = 1, size(terms)
-         members = terms(i)%members(model%mesh%node_sets)
-         members = members(sort_order(model%mesh%node_number(members)))
+         members = terms(i)%members(deck%mesh%node_sets)
+         members = members(sort_order(deck%mesh%node_number(members)))
          nodes(:, i) = members(min([(k, k=1, n)], size(members)))
       end do
       equation%title = '*EQUATION, '//deck%source%words_of(place)
@@ -202,35 +194,34 @@ contains
 
    !> Builds all couplings and rigid bodies. Each has a node for its rotation, which the builder of
    !> nodes left behind those of the deck.
-   subroutine build_couplings(deck, model)
-      type(deck_type), intent(inout) :: deck  !! numbers -> indexes; receives notes; receives errors
-      type(model_type), intent(inout) :: model             !! receives the couplings
+   subroutine build_couplings(deck)
+      type(deck_type), intent(inout) :: deck
       integer :: errors, k, n
 
       errors = deck%error_count()
-      allocate ( &
-         model%couplings(card_count(deck%cards, 'COUPLING') + card_count(deck%cards, 'RIGID BODY')))
+      allocate (deck%model%couplings(card_count(deck%cards, 'COUPLING') + card_count(deck%cards, &
+         'RIGID BODY')))
       n = 0
       do k = 1, size(deck%cards%keywords)
          if (deck%cards%keywords(k)%name == 'RIGID BODY') then
             n = n + 1
-            call begin_coupling(deck%cards%keywords(k), n, deck, model)
+            call begin_coupling(deck%cards%keywords(k), n, deck)
             if (deck%cards%keywords(k)%has('ROT NODE')) call find_reference('ROT NODE', &
-               deck%cards%keywords(k), deck, model, model%couplings(n)%rotation_node)
-            call build_rigid_body(deck%cards%keywords(k), deck, model, model%couplings(n))
+               deck%cards%keywords(k), deck, deck%model%couplings(n)%rotation_node)
+            call build_rigid_body(deck%cards%keywords(k), deck, deck%model%couplings(n))
          else if (deck%cards%keywords(k)%name == 'COUPLING') then
             n = n + 1
-            call begin_coupling(deck%cards%keywords(k), n, deck, model)
+            call begin_coupling(deck%cards%keywords(k), n, deck)
             call deck%need_named(deck%cards%keywords(k), 'SURFACE', 'surface', &
-               model%couplings(n)%surface)
-            call need_faces(model%mesh, deck%cards%keywords(k)%place_of('SURFACE'), 'it '// &
-               'follows the reference node of its *RIGID BODY', deck, model%couplings(n)%surface)
+               deck%model%couplings(n)%surface)
+            call need_faces(deck%cards%keywords(k)%place_of('SURFACE'), 'it follows the '// &
+               'reference node of its *RIGID BODY', deck, deck%model%couplings(n)%surface)
             if (is_keyword(deck%cards, k + 1, 'KINEMATIC')) cycle
             call deck%error(deck%cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
                'directly follow *COUPLING and name the degrees of freedom')
          else if (deck%cards%keywords(k)%name == 'KINEMATIC') then
             if (is_keyword(deck%cards, k - 1, 'COUPLING')) then
-               call read_degrees(deck%cards%keywords(k), deck, model%couplings(n))
+               call read_degrees(deck%cards%keywords(k), deck, deck%model%couplings(n))
             else
                call deck%error(deck%cards%keywords(k)%place, '*KINEMATIC must directly follow '// &
                   '*COUPLING')
@@ -238,32 +229,30 @@ contains
          end if
       end do
       if (deck%error_count() > errors) call deck%lose('equation')
-      call check_rigid_masters(model, deck)
+      call check_rigid_masters(deck)
    end subroutine build_couplings
 
    !> Title and reference node of a coupling, and the node of its rotation.
-   subroutine begin_coupling(card, n, deck, model)
+   subroutine begin_coupling(card, n, deck)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n                     ! index of the coupling
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(inout) :: model
 
-      associate (coupling => model%couplings(n))
-         coupling%rotation = size(model%mesh%node_number) - size(model%couplings) + n
+      associate (coupling => deck%model%couplings(n))
+         coupling%rotation = size(deck%mesh%node_number) - size(deck%model%couplings) + n
          coupling%card = card%place%image
          coupling%title = '*'//card%name//', '//deck%source%words_of(card%place)
-         call find_reference('REF NODE', card, deck, model, coupling%reference)
-         if (coupling%reference > 0) model%mesh%coordinates(:, coupling%rotation) = &
-            model%mesh%coordinates(:, coupling%reference)
+         call find_reference('REF NODE', card, deck, coupling%reference)
+         if (coupling%reference > 0) deck%mesh%coordinates(:, coupling%rotation) = &
+            deck%mesh%coordinates(:, coupling%reference)
       end associate
    end subroutine begin_coupling
 
    !> The node that a parameter names, which the card must have: its number, or a set of one node.
-   subroutine find_reference(parameter, card, deck, model, node)
+   subroutine find_reference(parameter, card, deck, node)
       character(*), intent(in) :: parameter
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck               !! numbers -> indexes; receives errors
-      type(model_type), intent(in) :: model                !! node sets
+      type(deck_type), intent(inout) :: deck
       integer, intent(out) :: node                         !! its index; 0 after an error
       character(:), allocatable :: name
       integer :: number, set
@@ -272,7 +261,7 @@ contains
       node = 0
       call need_parameter(card, parameter, deck, name)
       if (len(name) == 0) return
-      associate (place => card%place_of(parameter), sets => model%mesh%node_sets)
+      associate (place => card%place_of(parameter), sets => deck%mesh%node_sets)
          call read_integer(name, number, is_number)
          if (is_number) then
             node = deck%node_index%find(number)
@@ -314,7 +303,6 @@ contains
       integer :: dof, first, last
       logical :: valid
 
-      range = 0.0_dp
       call read_row(data, '#first degree of freedom/#last degree of freedom?', deck, range, valid)
       first = nint(range(1))
       last = first
@@ -342,31 +330,24 @@ contains
    end subroutine read_range
 
    !> Builds all transforms.
-   subroutine build_transforms(deck, model)
-      type(deck_type), intent(inout) :: deck   !! names of the node sets; receives errors
-      type(model_type), intent(inout) :: model             !! receives them
+   subroutine build_transforms(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       integer :: n
 
       places = cards_of(deck%cards, 'TRANSFORM')
-      allocate (model%transforms(size(places)))
+      allocate (deck%model%transforms(size(places)))
       do n = 1, size(places)
-         call build_transform(deck%cards%keywords(places(n)), deck, model%transforms(n))
-         call check_nodes(deck%cards%keywords(places(n)), n, model, deck)
+         associate (card => deck%cards%keywords(places(n)), transform => deck%model%transforms(n))
+            transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
+            transform%card = card%place%image
+            call deck%need_named(card, 'NSET', 'node set', transform%set)
+            transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
+            if (size(card%data) > 0) call read_points(card%data(1), deck, transform)
+            call check_nodes(card, n, deck)
+         end associate
       end do
    end subroutine build_transforms
-
-   subroutine build_transform(card, deck, transform)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(transform_type), intent(out) :: transform
-
-      transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
-      transform%card = card%place%image
-      call deck%need_named(card, 'NSET', 'node set', transform%set)
-      transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
-      if (size(card%data) > 0) call read_points(card%data(1), deck, transform)
-   end subroutine build_transform
 
    !> Two points: on the first axis and in the plane of the first two; or on the axis of a cylinder.
    subroutine read_points(data, deck, transform)
@@ -376,7 +357,6 @@ contains
       real(dp) :: given(6), x(3, 2)
       logical :: valid
 
-      given = 0.0_dp
       call read_row(data, 'x of point a/y of point a/z of point a?/x of point b/y of point b/'// &
          'z of point b?', deck, given, valid)
       x = reshape(given, shape(x))
@@ -423,26 +403,27 @@ contains
    end subroutine set_axes
 
    !> A node has one transform, and is not on the axis of it.
-   subroutine check_nodes(card, n, model, deck)
+   subroutine check_nodes(card, n, deck)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       integer :: i, k
 
-      if (model%transforms(n)%set == 0) return
-      associate (members => model%mesh%node_sets(model%transforms(n)%set)%members, &
-         number => model%mesh%node_number, x => model%mesh%coordinates)
+      if (deck%model%transforms(n)%set == 0) return
+      associate (members => deck%mesh%node_sets(deck%model%transforms(n)%set)%members, number => &
+         deck%mesh%node_number, x => deck%mesh%coordinates)
          do i = 1, size(members)
             do k = 1, n - 1
-               if (model%transforms(k)%set == 0) cycle
-               if (all(model%mesh%node_sets(model%transforms(k)%set)%members /= members(i))) cycle
-               call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
-                  ' has axes of its own by '//model%transforms(k)%title//' already')
+               if (deck%model%transforms(k)%set == 0) cycle
+               if (all(deck%mesh%node_sets(deck%model%transforms(k)%set)%members /= &
+                  members(i))) cycle
+               call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' '// &
+                  'has axes of its own by '//deck%model%transforms(k)%title//' already')
                return
             end do
-            if (.not. model%transforms(n)%cylindrical) cycle
-            if (norm2(x(:, members(i)) - model%transforms(n)%point) > negligible*extent_of(x)) cycle
+            if (.not. deck%model%transforms(n)%cylindrical) cycle
+            if (norm2(x(:, members(i)) - deck%model%transforms(n)%point) > &
+               negligible*extent_of(x)) cycle
             call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' is '// &
                'on the axis, where no direction is radial')
             return

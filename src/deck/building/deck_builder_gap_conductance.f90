@@ -10,7 +10,7 @@ module deck_builder_gap_conductance
    use text, only: read_real, to_text
    implicit none
    private
-   public :: build_gap_conductance, join_gap_conductance, is_of_clearance
+   public :: build_gap_conductance, is_of_clearance
    public :: gap_table_type, read_table, note_ends
 
    !> A table of conductance over the gap or the pressure. That of several temperatures has all
@@ -25,13 +25,13 @@ module deck_builder_gap_conductance
 contains
 
    !> Reads one *GAP CONDUCTANCE. With CLEARANCE it has the meaning that it has in Abaqus: beyond
-   !> the last row no heat crosses. Without, the law is one of its own: whether it acts is seen when
-   !> all laws of the interaction are known.
+   !> the last row no heat crosses. Without, it is for CalculiX, which knows no *GAP LAW, where one
+   !> gives the closed side.
    subroutine build_gap_conductance(card, name, is_open, deck, law)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
       logical, intent(in) :: is_open                       !! whether it is over the clearance
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives the open or the closed side
       type(gap_table_type) :: table
       character(:), allocatable :: title
@@ -45,15 +45,23 @@ contains
             'CLEARANCE exclude each other: both name the second column')
          if (law%open_kind /= law_none) call deck%error(card%place, 'a second open law in one '// &
             'surface interaction')
-      else if (law%closed_kind /= law_none) then
-         call deck%error(card%place, 'a second *GAP CONDUCTANCE in one surface interaction')
       end if
       call read_table(card, trim(merge('gap     ', 'pressure', is_open)), deck, table)
       if (deck%error_count() == errors) call check_columns(card, name, is_open, table, deck)
-      if (allocated(table%temperature)) then
-         call note_ends(title, name, 'mean temperatures', table%temperature, deck)
-         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
+      if (allocated(table%temperature)) call note_ends(title, name, 'mean temperatures', &
+         table%temperature, deck)
+      if (.not. is_open) then
+         call note_ends(title, name, 'pressures', table%abscissa, deck)
+         call deck%note('*GAP CONDUCTANCE: CalculiX switches NLGEOM on; here displacements and '// &
+            'strains are small')
+         if (law%closed_kind /= law_none) then
+            call deck%note('*GAP CONDUCTANCE of '//name//' is ignored: the closed *GAP LAW '// &
+               'takes precedence')
+            return
+         end if
       end if
+      if (allocated(table%temperature) .and. .not. allocated(law%by_temperature)) allocate ( &
+         law%by_temperature)
       if (is_open) then
          law%open_kind = law_clearance
          law%open_ends = .true.
@@ -71,9 +79,6 @@ contains
          end if
          call move_alloc(table%abscissa, law%table_pressure)
          call move_alloc(table%omega, law%closed_omega)
-         call note_ends(title, name, 'pressures', law%table_pressure, deck)
-         call deck%note('*GAP CONDUCTANCE: CalculiX switches NLGEOM on; here displacements and '// &
-            'strains are small')
       end if
    end subroutine build_gap_conductance
 
@@ -162,35 +167,12 @@ contains
       end do
    end subroutine check_last_gaps
 
-   !> Gives a law the closed side of *GAP CONDUCTANCE, unless *GAP LAW gives it another: then the
-   !> table is for CalculiX, which knows no *GAP LAW.
-   subroutine join_gap_conductance(table, name, deck, law)
-      type(conductance_law_type), intent(in) :: table      !! what build_gap_conductance made
-      character(*), intent(in) :: name                     !! name of the surface interaction
-      type(deck_type), intent(inout) :: deck               !! receives notes
-      type(conductance_law_type), intent(inout) :: law     !! receives the closed side
-
-      if (table%closed_kind == law_none) return
-      if (law%closed_kind /= law_none) then
-         call deck%note('*GAP CONDUCTANCE of '//name//' is ignored: the closed *GAP LAW takes '// &
-            'precedence')
-         return
-      end if
-      law%closed_kind = table%closed_kind
-      law%table_pressure = table%table_pressure
-      law%closed_omega = table%closed_omega
-      if (.not. allocated(table%by_temperature)) return
-      if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%closed_temperature = table%by_temperature%closed_temperature
-      law%by_temperature%closed_columns = table%by_temperature%closed_columns
-   end subroutine join_gap_conductance
-
    !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
    !> it and are in groups of one temperature.
    subroutine read_table(card, noun, deck, table)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(gap_table_type), intent(out) :: table
       character(:), allocatable :: layout
       real(dp) :: values(3, size(card%data))
@@ -199,7 +181,6 @@ contains
 
       layout = 'conductance >=0/'//noun//' >=0'
       if (card%name == 'GAP CONDUCTANCE') layout = layout//'/temperature?'
-      values = 0.0_dp
       call read_rows(card%data, layout, deck, values, valid)
       table%omega = values(1, :)
       table%abscissa = values(2, :)
@@ -293,7 +274,7 @@ contains
       character(*), intent(in) :: name                     !! name of the surface interaction
       character(*), intent(in) :: noun                     !! gaps, pressures or temperatures
       real(dp), intent(in) :: abscissas(:)                 !! (rows) ascending
-      type(deck_type), intent(inout) :: deck               !! receives the note
+      type(deck_type), intent(inout) :: deck
 
       call deck%note(what//' of '//name//': the table holds its end values outside the '//noun// &
          ' '//to_text(abscissas(1))//' to '//to_text(abscissas(size(abscissas))))

@@ -9,7 +9,7 @@ module deck_builder_gap_heat
    use element_kinds, only: axisymmetric
    use friction_laws, only: friction_heat_type, rough_coefficient
    use kinds, only: dp
-   use model, only: model_type, physical_constants_type
+   use model, only: model_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
@@ -19,30 +19,26 @@ module deck_builder_gap_heat
 contains
 
    !> Reads one *GAP HEAT GENERATION.
-   subroutine build_friction_heat(card, model, deck, heat)
+   subroutine build_friction_heat(card, deck, heat)
       type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model                !! with its mesh
-      type(deck_type), intent(inout) :: deck               !! receives errors
+      type(deck_type), intent(inout) :: deck
       type(friction_heat_type), intent(out) :: heat
       real(dp) :: values(3)
       logical :: valid
 
       heat%efficiency = 1.0_dp
       if (size(card%data) > 0) then
-         values = [heat%efficiency, heat%slave_share, heat%speed]
-         call read_row(card%data(1), 'eta (heat per work of friction)? >=0 <=1/f (share of the '// &
-            'slave)? >=0 <=1/sliding speed?', deck, values, valid)
-         if (valid) then
-            heat%efficiency = values(1)
-            heat%slave_share = values(2)
-            heat%speed = values(3)
-         end if
+         call read_row(card%data(1), 'eta (heat per work of friction)? >=0 <=1 =1/f (share of '// &
+            'the slave)? >=0 <=1 =0.5/sliding speed? =-1', deck, values, valid)
+         heat%efficiency = values(1)
+         heat%slave_share = values(2)
+         heat%speed = values(3)
          if (card%has('ANGULAR VELOCITY') .and. card%data(1)%has(3)) call deck%error( &
             card%data(1)%place(3), 'a sliding speed and ANGULAR VELOCITY= exclude each other; '// &
             'give one of them')
       end if
       if (.not. card%has('ANGULAR VELOCITY')) return
-      if (any(model%mesh%element_plane == axisymmetric)) then
+      if (any(deck%mesh%element_plane == axisymmetric)) then
          call take_within('>0', card, 'ANGULAR VELOCITY', deck, heat%angular_velocity)
       else
          call deck%error(card%place_of('ANGULAR VELOCITY'), 'ANGULAR VELOCITY= needs '// &
@@ -51,9 +47,8 @@ contains
    end subroutine build_friction_heat
 
    !> Heat of friction needs friction that allows slip, and time. Checked with all steps read.
-   subroutine check_friction_heat(deck, model)
-      type(deck_type), intent(inout) :: deck   !! receives errors and warnings
-      type(model_type), intent(in) :: model
+   subroutine check_friction_heat(deck)
+      type(deck_type), intent(inout) :: deck
       real(dp) :: largest
       integer :: k, n, s
 
@@ -62,19 +57,20 @@ contains
          associate (card => deck%cards%keywords(k))
             if (card%name == 'SURFACE INTERACTION') n = n + 1
             if (card%name /= 'GAP HEAT GENERATION' .or. n == 0) cycle
-            largest = largest_friction(model, n)
+            largest = largest_friction(deck%model, n)
             if (largest <= 0.0_dp) call deck%missing(card%place, 'interaction '// &
-               model%interactions(n)%name//' makes no heat of friction: it has no *FRICTION '// &
-               'above 0', '*FRICTION')
+               deck%model%interactions(n)%name//' makes no heat of friction: it has no '// &
+               '*FRICTION above 0', '*FRICTION')
             if (largest >= rough_coefficient) call deck%error(card%place, 'interaction '// &
-               model%interactions(n)%name//' is rough: its faces do not slip, so friction '// &
+               deck%model%interactions(n)%name//' is rough: its faces do not slip, so friction '// &
                'makes no heat; leave *GAP HEAT GENERATION out, or give a coefficient of friction')
-            if (model%interactions(n)%heat%leaves_plane()) cycle
-            s = findloc(solves_heat(model%steps%analysis) .and. solves_mechanics( &
-               model%steps%analysis) .and. .not. model%steps%is_transient, .true., dim=1)
+            if (deck%model%interactions(n)%heat%leaves_plane()) cycle
+            s = findloc(solves_heat(deck%model%steps%analysis) .and. &
+               solves_mechanics(deck%model%steps%analysis) .and. .not. &
+               deck%model%steps%is_transient, .true., dim=1)
             if (s > 0) call deck%warning(deck%analysis_place(s), 'step '//to_text(s)//' is '// &
                'steady, but friction makes heat by the rate of slip: the period of the step, '// &
-               to_text(model%steps(s)%period)//', counts as time')
+               to_text(deck%model%steps(s)%period)//', counts as time')
          end associate
       end do
    end subroutine check_friction_heat
@@ -99,32 +95,31 @@ contains
 
    !> Reads one *GAP RADIATION: emissivities of both faces, then view factors over the clearance.
    !> Two large grey faces exchange sigma/(1/e1 + 1/e2 - 1) (T1^4 - T2^4), times the view factor.
-   subroutine build_gap_radiation(card, constants, deck, law)
+   subroutine build_gap_radiation(card, deck, law)
       type(keyword_card_type), intent(in) :: card
-      type(physical_constants_type), intent(in) :: constants
-      type(deck_type), intent(inout) :: deck               !! receives a note and errors
+      type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives radiation in the open gap
       real(dp) :: emissivity(2)
       real(dp), allocatable :: gap(:), view_factor(:)
       logical :: valid
 
-      emissivity = 1.0_dp
-      call read_row(card%data(1), 'emissivity >0 <=1/emissivity >0 <=1', deck, emissivity, valid)
+      call read_row(card%data(1), 'emissivity >0 <=1 =1/emissivity >0 <=1 =1', deck, &
+         emissivity, valid)
       call read_view_factors(card%data(2:), deck, gap, view_factor)
       if (size(card%data) > 1 .and. view_factor(size(view_factor)) > 0.0_dp) call deck%note( &
          '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last view '// &
          'factor')
-      if (.not. constants%has_radiation) call deck%error(card%place, '*GAP RADIATION needs '// &
-         '*PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
+      if (.not. deck%model%constants%has_radiation) call deck%error(card%place, '*GAP '// &
+         'RADIATION needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
       if (law%open_kind == law_none) law%open_kind = law_gas
       if (allocated(law%by_temperature)) then
          if (law%by_temperature%radiance > 0.0_dp) call deck%error(card%place, '*GAP RADIATION '// &
             'beside EMISSIVITY= of *GAP LAW: leave one of them out')
       end if
       if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%radiance = constants%stefan_boltzmann*maxval(view_factor)/ &
-         (1.0_dp/emissivity(1) + 1.0_dp/emissivity(2) - 1.0_dp)
-      law%by_temperature%absolute_zero = constants%absolute_zero
+      law%by_temperature%radiance = deck%model%constants%stefan_boltzmann*maxval(view_factor)/( &
+         1.0_dp/emissivity(1) + 1.0_dp/emissivity(2) - 1.0_dp)
+      law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
       if (minval(view_factor) >= maxval(view_factor)) return
       law%view_gap = gap
       law%view_factor = view_factor/maxval(view_factor)
@@ -141,7 +136,7 @@ contains
 
       values(1, :) = 1.0_dp
       values(2, :) = 0.0_dp
-      call read_rows(rows, 'view factor >=0 <=1/clearance? >=0', deck, values, valid)
+      call read_rows(rows, 'view factor >=0 <=1 =1/clearance? >=0', deck, values, valid)
       view_factor = values(1, :)
       gap = values(2, :)
       do i = 2, size(rows)

@@ -7,7 +7,6 @@ module deck_builder_gap_laws
    use deck_builder_gap_conductance, only: gap_table_type, note_ends, read_table
    use deck_context, only: deck_type
    use kinds, only: dp
-   use model, only: physical_constants_type
    use text, only: largest_magnitude, to_text
    implicit none
    private
@@ -26,11 +25,10 @@ module deck_builder_gap_laws
 contains
 
    !> Reads one *GAP LAW.
-   subroutine build_gap_law(card, name, constants, deck, law)
+   subroutine build_gap_law(card, name, deck, law)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
-      type(physical_constants_type), intent(in) :: constants
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives one side
       type(gap_table_type) :: table
       character(:), allocatable :: kind
@@ -46,7 +44,7 @@ contains
       end if
       if (kind == 'GAS') then
          law%open_kind = law_gas
-         call build_gas_law(card, name, constants, deck, law)
+         call build_gas_law(card, name, deck, law)
          return
       end if
       do i = 1, size(of_gas)
@@ -79,7 +77,6 @@ contains
       real(dp) :: values(3)
       logical :: valid
 
-      values = 1.0_dp
       call read_row(data, 'C0 >=0/C1 >=0/n >0', deck, values, valid)
       if (valid .and. values(3) > largest_exponent) call deck%error(data%place(3), &
          'n must not exceed '//to_text(largest_exponent)//'; for rough faces it is about 0.95')
@@ -93,12 +90,11 @@ contains
    subroutine build_solid_spots(data, kind, deck, law)
       type(data_card_type), intent(in) :: data
       character(*), intent(in) :: kind                     !! CMY or ROSS-STOUTE
-      type(deck_type), intent(inout) :: deck               !! receives errors
+      type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives the closed side
       real(dp) :: value(5), magnitude
       logical :: valid
 
-      value = 1.0_dp
       if (kind == 'CMY') then
          call read_row(data, 'conductivity >0/conductivity >0/slope >0/roughness >0/hardness >0', &
             deck, value, valid)
@@ -136,11 +132,10 @@ contains
 
    !> omega = A/(B + JUMP + ROUGHNESS + gamma) + radiation; A and B of one row, or of a row for each
    !> mean temperature of the faces. A is positive, or 0 where faces radiate.
-   subroutine build_gas_law(card, name, constants, deck, law)
+   subroutine build_gas_law(card, name, deck, law)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                     !! name of the surface interaction
-      type(physical_constants_type), intent(in) :: constants
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives the open side
       character(:), allocatable :: layout
       real(dp) :: added(2), values(3, size(card%data))
@@ -151,16 +146,23 @@ contains
       call take_within('>=0', card, 'JUMP', deck, added(1))
       call take_within('>=0', card, 'ROUGHNESS', deck, added(2))
       law%added_length = sum(added)
-      call take_emissivity(card, constants, deck, law)
+      call take_emissivity(card, deck, law)
       layout = 'A >0/B >=0'
       if (card%has('EMISSIVITY')) layout = 'A >=0/B >=0'
       if (law%added_length > 0.0_dp) layout = layout(:index(layout, 'B'))//'? >=0'
       layout = layout//'/temperature'
       if (size(card%data) == 1) layout = layout//'?'
-      values = 0.0_dp
       do i = 1, size(card%data)
          call read_row(card%data(i), layout, deck, values(:, i), valid)
-         if (valid) call check_values(card%data(i), values(:2, i), law%added_length, deck)
+         ! The conductance at gap 0 is a number.
+         associate (least => values(2, i) + law%added_length)
+            if (valid .and. least <= 0.0_dp) then
+               call deck%error(card%data(i)%place(2), 'B must be positive')
+            else if (valid .and. values(1, i) > largest_magnitude*least) then
+               call deck%error(card%data(i)%place(1), 'the conductance A/B at gap 0 exceeds '// &
+                  to_text(largest_magnitude))
+            end if
+         end associate
          if (values(2, i) + law%added_length <= 0.0_dp) values(2, i) = 1.0_dp
          if (valid .and. any(values(3, :i - 1) >= values(3, i))) call deck%error( &
             card%data(i)%place(3), 'temperatures must ascend')
@@ -175,25 +177,9 @@ contains
       call note_ends('*GAP LAW, TYPE=GAS', name, 'mean temperatures', values(3, :), deck)
    end subroutine build_gas_law
 
-   !> B with the lengths that add to it is positive, and the conductance at gap 0 a number.
-   subroutine check_values(data, given, added, deck)
-      type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: given(2)    ! A and B
-      real(dp), intent(in) :: added       ! to B [length]
-      type(deck_type), intent(inout) :: deck
-
-      if (given(2) + added <= 0.0_dp) then
-         call deck%error(data%place(2), 'B must be positive')
-      else if (given(1) > largest_magnitude*(given(2) + added)) then
-         call deck%error(data%place(1), 'the conductance A/B at gap 0 exceeds '// &
-            to_text(largest_magnitude))
-      end if
-   end subroutine check_values
-
    !> sigma eps of the radiation between the faces.
-   subroutine take_emissivity(card, constants, deck, law)
+   subroutine take_emissivity(card, deck, law)
       type(keyword_card_type), intent(in) :: card
-      type(physical_constants_type), intent(in) :: constants
       type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law
       real(dp) :: emissivity
@@ -201,11 +187,11 @@ contains
       if (.not. card%has('EMISSIVITY')) return
       emissivity = 1.0_dp
       call take_within('>0 <=1', card, 'EMISSIVITY', deck, emissivity)
-      if (.not. constants%has_radiation) call deck%error(card%place_of('EMISSIVITY'), &
+      if (.not. deck%model%constants%has_radiation) call deck%error(card%place_of('EMISSIVITY'), &
          'EMISSIVITY= needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
       if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%radiance = emissivity*constants%stefan_boltzmann
-      law%by_temperature%absolute_zero = constants%absolute_zero
+      law%by_temperature%radiance = emissivity*deck%model%constants%stefan_boltzmann
+      law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
    end subroutine take_emissivity
 
 end module deck_builder_gap_laws

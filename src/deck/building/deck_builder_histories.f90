@@ -6,13 +6,11 @@ module deck_builder_histories
    use card_parameters, only: choice, chosen, take_parameter, take_within
    use card_values, only: decimal_comma, need_field, read_row, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
-   use deck_context, only: deck_type, take_name
+   use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_kinds, only: kind_count, plane_stress
    use kinds, only: dp
    use load_requests, only: request_type, target_type
-   use mesh, only: mesh_type
-   use model, only: model_type
    use text, only: read_integer, read_real, to_text, to_upper
    implicit none
    private
@@ -34,24 +32,22 @@ module deck_builder_histories
 contains
 
    !> Builds all amplitudes.
-   subroutine build_amplitudes(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives their names and errors
-      type(model_type), intent(inout) :: model             !! receives the amplitudes
+   subroutine build_amplitudes(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       integer :: n
 
       places = cards_of(deck%cards, 'AMPLITUDE')
-      allocate(model%amplitudes(size(places)))
+      allocate(deck%model%amplitudes(size(places)))
       do n = 1, size(places)
-         call take_name(deck%cards, places(n), 'amplitude', deck%amplitudes, &
-            deck%deck_report_type, model%amplitudes(n)%name)
-         call build_amplitude(deck%cards%keywords(places(n)), deck, model%amplitudes(n))
+         call deck%take_name(places(n), 'amplitude', deck%model%amplitudes(n)%name)
+         call build_amplitude(deck%cards%keywords(places(n)), deck, deck%model%amplitudes(n))
       end do
    end subroutine build_amplitudes
 
    !> Builds all *TIME POINTS: times, any number of them a card, or start, end and interval.
    subroutine build_time_points(deck)
-      type(deck_type), intent(inout) :: deck   !! receives them and errors
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       integer :: i, j, n
       logical :: valid
@@ -60,8 +56,7 @@ contains
       places = cards_of(deck%cards, 'TIME POINTS')
       allocate (deck%time_points(size(places)))
       do n = 1, size(places)
-         call take_name(deck%cards, places(n), 'time points', deck%time_point_names, &
-            deck%deck_report_type, deck%time_points(n)%name)
+         call deck%take_name(places(n), 'time points', deck%time_points(n)%name)
          associate (card => deck%cards%keywords(places(n)), points => deck%time_points(n))
             points%total_time = &
                choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
@@ -69,7 +64,6 @@ contains
             do j = 1, size(card%data)
                valid = .true.
                if (card%has('GENERATE')) then
-                  values = 0.0_dp
                   call read_row(card%data(j), 'start/end/interval', deck, values, valid)
                   if (valid .and. .not. (values(3) > 0.0_dp .and. &
                      values(2) >= values(1))) call deck%error(card%data(j)%place(3), 'time '// &
@@ -203,9 +197,8 @@ contains
    end function is_history
 
    !> Reads all initial temperatures.
-   subroutine build_temperatures(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives the requests and errors
-      type(model_type), intent(in) :: model                !! mesh and its sets
+   subroutine build_temperatures(deck)
+      type(deck_type), intent(inout) :: deck
       type(request_type) :: request
       character(:), allocatable :: kind
       integer, allocatable :: places(:)
@@ -213,7 +206,6 @@ contains
       logical :: valid
       real(dp) :: given(2)
 
-      given = 0.0_dp
       places = cards_of(deck%cards, 'INITIAL CONDITIONS')
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
@@ -228,8 +220,7 @@ contains
             do j = 1, size(card%data)
                request%place = card%data(j)%place(1)
                call read_row(card%data(j), '@node or set/temperature', deck, given, valid)
-               call deck%need_nodes(card%data(j), 1, model%mesh%node_sets, request%target_type, &
-                  valid)
+               call deck%need_target('node', card%data(j), 1, request%target_type, valid)
                request%value = given(2)
                if (valid) call deck%temperatures%add(request)
             end do
@@ -238,9 +229,8 @@ contains
    end subroutine build_temperatures
 
    !> Reads all initial stresses; later cards replace earlier ones.
-   subroutine build_initial_stresses(deck, mesh)
-      type(deck_type), intent(inout) :: deck               !! numbers of elements; receives errors
-      type(mesh_type), intent(inout) :: mesh               !! receives the stresses
+   subroutine build_initial_stresses(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: points(:)
       integer :: j, k
 
@@ -248,22 +238,22 @@ contains
          associate (card => deck%cards%keywords(k))
             if (card%name /= 'INITIAL CONDITIONS') cycle
             if (chosen(card, 'TYPE', initial_kinds) /= 'STRESS' .or. card%flawed) cycle
-            if (.not. allocated(mesh%initial_stress)) allocate (mesh%initial_stress(4, &
-               size(mesh%element_number)), source=0.0_dp)
-            points = spread(0, 1, size(mesh%element_number))
+            if (.not. allocated(deck%mesh%initial_stress)) allocate (deck%mesh%initial_stress(4, &
+               size(deck%mesh%element_number)), source=0.0_dp)
+            points = spread(0, 1, size(deck%mesh%element_number))
             do j = 1, size(card%data)
                if (size(card%data(j)%fields) > most_fields) then
-                  call take_point(card%data(j), deck, points, mesh)
+                  call take_point(card%data(j), deck, points)
                else
-                  call take_elements(card%data(j), deck, mesh)
+                  call take_elements(card%data(j), deck)
                end if
             end do
             do j = 1, size(points)
-               if (points(j) <= 0 .or. points(j) == solid_points(mesh%element_kind(j))) cycle
-               call deck%error(card%place, 'element '//to_text(mesh%element_number(j))//' has '// &
-                  'a stress at '//to_text(points(j))//' of the '// &
-                  to_text(solid_points(mesh%element_kind(j)))//' integration points that it '// &
-                  'has in CalculiX, and none at the others; an element has one stress here')
+               if (points(j) <= 0 .or. points(j) == solid_points(deck%mesh%element_kind(j))) cycle
+               call deck%error(card%place, 'element '//to_text(deck%mesh%element_number(j))//' '// &
+                  'has a stress at '//to_text(points(j))//' of the '// &
+                  to_text(solid_points(deck%mesh%element_kind(j)))//' integration points that '// &
+                  'it has in CalculiX, and none at the others; an element has one stress here')
                exit
             end do
          end associate
@@ -271,26 +261,24 @@ contains
    end subroutine build_initial_stresses
 
    !> Element or set, s11, s22, s33, s12; in plane stress Abaqus leaves s33 out.
-   subroutine take_elements(data, deck, mesh)
+   subroutine take_elements(data, deck)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(inout) :: mesh
       type(target_type) :: target
       integer, allocatable :: members(:)
       real(dp) :: given(5), stress(4)
       integer :: i, number
       logical :: is_flat, valid
 
-      given = 0.0_dp
       call read_row(data, '@element or set/s11/s22?/s33?/s12?', deck, given, valid)
-      call deck%need_elements(data, 1, mesh%element_sets, target, valid)
+      call deck%need_target('element', data, 1, target, valid)
       stress = given(2:)
       if (.not. valid) return
-      members = target%members(mesh%element_sets)
+      members = target%members(deck%mesh%element_sets)
       if (target%item > 0) then
          call read_integer(data%fields(2)%text, number, valid)
-         if (valid .and. number > 0 .and. number <= &
-            solid_points(mesh%element_kind(target%item))) then
+         if (valid .and. number > 0 .and. number <= solid_points(deck%mesh%element_kind( &
+            target%item))) then
             call deck%error(data%place(2), 'integration point or stress? Give '//layout//', or '// &
                'a stress with a decimal point')
             return
@@ -298,34 +286,32 @@ contains
       end if
       is_flat = .true.
       do i = 1, size(members)
-         is_flat = is_flat .and. mesh%element_plane(members(i)) == plane_stress
+         is_flat = is_flat .and. deck%mesh%element_plane(members(i)) == plane_stress
       end do
       if (is_flat .and. size(data%fields) == 4) stress = [stress(:2), 0.0_dp, stress(3)]
-      if (any(mesh%element_plane(members) == plane_stress) .and. abs(stress(3)) > 0.0_dp) then
+      if (any(deck%mesh%element_plane(members) == plane_stress) .and. abs(stress(3)) > 0.0_dp) then
          call deck%error(data%place(4), 's33 is 0 in plane stress; the card is element or set, '// &
             's11, s22, s12, or with s33=0 before s12')
          return
       end if
-      mesh%initial_stress(:, members) = spread(stress, 2, size(members))
+      deck%mesh%initial_stress(:, members) = spread(stress, 2, size(members))
    end subroutine take_elements
 
    !> One integration point of an element as CalculiX has it; all of its points have one stress.
-   subroutine take_point(data, deck, points, mesh)
+   subroutine take_point(data, deck, points)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       !> (elements) points that were given, -1 where one of them is wrong
       integer, intent(inout) :: points(:)
-      type(mesh_type), intent(inout) :: mesh
       type(target_type) :: target
       real(dp) :: given(8), stress(6)
       integer :: next, point
       logical :: valid
 
-      given = 0.0_dp
       next = 1
       call read_row(data, '@element/#integration point/s11/s22?/s33?/s12?/s13?/s23?', deck, given, &
          valid)
-      call deck%need_elements(data, 1, mesh%element_sets, target, valid)
+      call deck%need_target('element', data, 1, target, valid)
       point = nint(given(2))
       stress = given(3:)
       associate (item => target%item)
@@ -340,18 +326,18 @@ contains
                'is set, s11, s22, s33, s12, or '//layout)
          else if (any(abs(stress(5:)) > 0.0_dp)) then
             call deck%error(data%place(7), 's13 and s23 are 0 in a plane')
-         else if (mesh%element_plane(item) == plane_stress .and. abs(stress(3)) > 0.0_dp) then
+         else if (deck%mesh%element_plane(item) == plane_stress .and. abs(stress(3)) > 0.0_dp) then
             call deck%error(data%place(5), 's33 is 0 in plane stress')
-         else if (point /= next .or. point > solid_points(mesh%element_kind(item))) then
+         else if (point /= next .or. point > solid_points(deck%mesh%element_kind(item))) then
             call deck%error(data%place(2), 'the integration points of an element follow each '// &
-               'other from 1 to '//to_text(solid_points(mesh%element_kind(item)))//', as in '// &
-               'CalculiX')
-         else if (point > 1 .and. maxval(abs(stress(:4) - mesh%initial_stress(:, item))) > &
+               'other from 1 to '//to_text(solid_points(deck%mesh%element_kind(item)))//', as '// &
+               'in CalculiX')
+         else if (point > 1 .and. maxval(abs(stress(:4) - deck%mesh%initial_stress(:, item))) > &
             printed*maxval(abs(stress))) then
             call deck%error(data%place(2), 'the stress differs from that at point 1 of element '// &
-               to_text(mesh%element_number(item))//'; an element has one stress here')
+               to_text(deck%mesh%element_number(item))//'; an element has one stress here')
          else
-            if (point == 1) mesh%initial_stress(:, item) = stress(:4)
+            if (point == 1) deck%mesh%initial_stress(:, item) = stress(:4)
             points(item) = point
          end if
       end associate

@@ -1,26 +1,24 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
-   use card_parameters, only: take_parameter
-   use card_values, only: check_unneeded, read_row
+   use card_parameters, only: choice, take_parameter
+   use card_values, only: check_unneeded, read_row, read_rows
    use cards, only: cards_type, data_card_type, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
-   use deck_builder_behavior, only: build_behavior
-   use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance, &
-      join_gap_conductance
+   use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance
    use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
    use deck_builder_gap_laws, only: build_gap_law
-   use deck_context, only: deck_type, take_name
+   use deck_context, only: deck_type
    use deck_report, only: frictionless
    use deck_source, only: place_type
    use deck_structure, only: card_count
    use friction_laws, only: friction_law_type, rough_coefficient
    use kinds, only: dp
-   use model, only: model_type
+   use overlap_laws, only: overlap_law_type
    use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
       radiation_ends
-   use text, only: to_text
+   use text, only: to_text, to_upper
    implicit none
    private
    public :: build_interactions, build_friction
@@ -31,14 +29,15 @@ module deck_builder_interactions
 contains
 
    !> Builds all surface interactions; a law belongs to the last *SURFACE INTERACTION before it.
-   subroutine build_interactions(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors and warnings
-      type(model_type), intent(inout) :: model             !! receives the interactions
+   subroutine build_interactions(deck)
+      type(deck_type), intent(inout) :: deck
       type(interaction_type) :: interaction
       type(place_type) :: law_place
+      real(dp) :: thickness(1)
       integer :: k, n, errors
+      logical :: valid
 
-      allocate(model%interactions(card_count(deck%cards, 'SURFACE INTERACTION')))
+      allocate(deck%model%interactions(card_count(deck%cards, 'SURFACE INTERACTION')))
       n = 0
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
@@ -47,15 +46,19 @@ contains
             case ('SURFACE INTERACTION')
                errors = deck%error_count()
                n = n + 1
-               call take_name(deck%cards, k, 'surface interaction', deck%interactions, &
-                  deck%deck_report_type, model%interactions(n)%name)
+               call deck%take_name(k, 'surface interaction', deck%model%interactions(n)%name)
                law_place = card%place
-               call ignore_thickness(card, deck)
-               interaction = model%interactions(n)
-               call build_laws(k, model, deck, interaction, law_place)
-               model%interactions(n) = interaction
+               if (size(card%data) > 0) then
+                  ! Out of the plane; Abaqus needs it for surfaces of nodes alone.
+                  call read_row(card%data(1), 'thickness? >0 =1', deck, thickness, valid)
+                  call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of '// &
+                     '*SOLID SECTION is taken')
+               end if
+               interaction = deck%model%interactions(n)
+               call build_laws(k, deck, interaction, law_place)
+               deck%model%interactions(n) = interaction
                if (deck%error_count() > errors .or. card%flawed) cycle
-               call check_law(card, law_place, model%interactions(n), deck)
+               call check_law(card, law_place, deck%model%interactions(n), deck)
             case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'GAP HEAT GENERATION', &
                'GAP RADIATION', 'SURFACE BEHAVIOR')
                if (n == 0 .and. len(card%meant) == 0) then
@@ -69,34 +72,19 @@ contains
       end do
    end subroutine build_interactions
 
-   !> Thickness of the contact out of the plane, which Abaqus needs for surfaces of nodes alone.
-   subroutine ignore_thickness(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: thickness(1)
-      logical :: valid
-
-      if (size(card%data) == 0) return
-      thickness = 1.0_dp
-      call read_row(card%data(1), 'thickness? >0', deck, thickness, valid)
-      call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of *SOLID SECTION '// &
-         'is taken')
-   end subroutine ignore_thickness
-
    !> Reads the laws behind one *SURFACE INTERACTION.
-   subroutine build_laws(place, model, deck, interaction, law_place)
+   subroutine build_laws(place, deck, interaction, law_place)
       integer, intent(in) :: place
-      type(model_type), intent(in) :: model          ! with its mesh
       type(deck_type), intent(inout) :: deck
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
-      type(conductance_law_type) :: table
-      integer :: behavior, friction, heat, k, radiation
+      integer :: behavior, friction, heat, k, radiation, table
 
       behavior = 0
       friction = 0
       heat = 0
       radiation = 0
+      table = 0
       do k = place + 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
@@ -114,25 +102,32 @@ contains
                call build_behavior(card, deck, interaction%overlap)
             case ('GAP HEAT GENERATION')
                call count_once(k, heat, deck)
-               call build_friction_heat(card, model, deck, interaction%heat)
+               call build_friction_heat(card, deck, interaction%heat)
             case ('GAP RADIATION')
                call count_once(k, radiation, deck)
             case ('GAP LAW')
-               call build_gap_law(card, interaction%name, model%constants, deck, interaction%law)
+               call build_gap_law(card, interaction%name, deck, interaction%law)
             case ('GAP CONDUCTANCE')
                if (is_of_clearance(card, has_pressure(deck%cards, place))) then
                   call build_gap_conductance(card, interaction%name, .true., deck, interaction%law)
                else
-                  call build_gap_conductance(card, interaction%name, .false., deck, table)
+                  if (table > 0) then
+                     call deck%error(card%place, 'a second *GAP CONDUCTANCE in one surface '// &
+                        'interaction')
+                     call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
+                        .false., deck, interaction%law)
+                  end if
+                  table = k
                end if
             case default
                cycle
             end select
          end associate
       end do
-      call join_gap_conductance(table, interaction%name, deck, interaction%law)
-      if (radiation > 0) call build_gap_radiation(deck%cards%keywords(radiation), model%constants, &
-         deck, interaction%law)
+      if (table > 0) call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
+         .false., deck, interaction%law)
+      if (radiation > 0) call build_gap_radiation(deck%cards%keywords(radiation), deck, &
+         interaction%law)
    end subroutine build_laws
 
    !> Whether the laws behind a *SURFACE INTERACTION have a *GAP CONDUCTANCE, PRESSURE.
@@ -165,7 +160,7 @@ contains
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
    subroutine build_friction(card, deck, friction)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   !! receives notes and errors
+      type(deck_type), intent(inout) :: deck
       type(friction_law_type), intent(out) :: friction
 
       call take_parameter(card, 'TAUMAX', deck, friction%largest_shear)
@@ -191,7 +186,6 @@ contains
       real(dp) :: values(2)
       logical :: valid
 
-      values = 0.0_dp
       call read_row(data, 'coefficient of friction >=0/stick slope?', deck, values, valid)
       coefficient = values(1)
       if (coefficient > rough_coefficient) then
@@ -243,5 +237,69 @@ contains
          to_text(law_jump(law))//' where the gap closes without pressure'//there//': from '// &
          to_text(open)//' open to '//to_text(closed)//' closed'//advice)
    end subroutine check_law
+
+   !> Reads one *SURFACE BEHAVIOR: a law of faces that overlap; parameters of a penalty are ignored.
+   subroutine build_behavior(card, deck, law)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(overlap_law_type), intent(out) :: law           !! of hard faces, or of soft ones
+      character(:), allocatable :: kind
+      real(dp) :: values(2)
+      logical :: valid
+
+      kind = to_upper(card%text('PRESSURE-OVERCLOSURE'))
+      if (kind == 'TIED') then
+         call deck%error(card%place_of('PRESSURE-OVERCLOSURE'), 'PRESSURE-OVERCLOSURE='//kind// &
+            ' is refused: tied faces do not open; take *TIE')
+         return
+      end if
+      kind = choice(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD/EXPONENTIAL/TABULAR', deck, '')
+      select case (kind)
+      case ('EXPONENTIAL', 'TABULAR')
+         if (size(card%data) == 0) then
+            call deck%error(card%place, '*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE='//kind// &
+               ' has no data: '//trim(merge('c0, p0                                ', &
+               'pressure, overlap; a card for each row', kind == 'EXPONENTIAL')))
+         else if (kind == 'EXPONENTIAL') then
+            ! The pressure at the clearance c0 is a hundredth of p0.
+            call read_row(card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)
+            law%clearance = values(1)
+            law%touching_pressure = values(2)
+            if (size(card%data) > 1) call deck%error(card%data(2)%place(1), &
+               'an exponential law has one card: c0, p0')
+         else
+            call read_table(card%data, deck, law)
+         end if
+      case default
+         call deck%note('*SURFACE BEHAVIOR is ignored: contact is exact')
+      end select
+   end subroutine build_behavior
+
+   !> Rows of pressure, from 0 on, and overlap; both rise.
+   subroutine read_table(rows, deck, law)
+      type(data_card_type), intent(in) :: rows(:)
+      type(deck_type), intent(inout) :: deck
+      type(overlap_law_type), intent(inout) :: law
+      real(dp) :: values(2, size(rows))
+      integer :: i
+      logical :: valid
+
+      call read_rows(rows, 'pressure/overlap', deck, values, valid)
+      law%pressure = values(1, :)
+      law%overlap = values(2, :)
+      if (.not. valid) return
+      if (abs(law%pressure(1)) > 0.0_dp) call deck%error(rows(1)%place(1), 'the first row must '// &
+         'have pressure 0, and the overlap from which faces press')
+      if (size(rows) == 1) call deck%error(rows(1)%place(1), 'a table of pressure and overlap '// &
+         'needs two rows or more')
+      do i = 2, size(rows)
+         if (law%pressure(i) <= law%pressure(i - 1)) call deck%error(rows(i)%place(1), &
+            'pressures must rise: '//to_text(law%pressure(i))//' follows '// &
+            to_text(law%pressure(i - 1)))
+         if (law%overlap(i) <= law%overlap(i - 1)) call deck%error(rows(i)%place(2), 'overlaps '// &
+            'must rise: '//to_text(law%overlap(i))//' follows '//to_text(law%overlap(i - 1))// &
+            '; each card is pressure, overlap')
+      end do
+   end subroutine read_table
 
 end module deck_builder_interactions

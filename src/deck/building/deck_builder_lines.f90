@@ -39,7 +39,7 @@ contains
 
    !> Builds the lines, in the order of the deck; the nodes are known.
    subroutine build_lines(deck)
-      type(deck_type), intent(inout) :: deck   !! receives the lines and errors
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: name
       integer, allocatable :: places(:)
       integer :: k, j, n
@@ -90,7 +90,7 @@ contains
    subroutine read_node(data, q, deck, node, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: q                             !! node 1, 2, ... of the element
-      type(deck_type), intent(inout) :: deck               !! numbers -> indexes; receives errors
+      type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: node                       !! stays as it is without a number
       logical, intent(inout) :: valid                      !! false where it has no number
       integer :: number

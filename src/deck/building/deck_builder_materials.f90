@@ -2,10 +2,9 @@
 !> *SOLID SECTION, which give elements their material, its axes and their thickness.
 module deck_builder_materials
    use card_parameters, only: choice, take_parameter
-   use card_values, only: check_extra, check_unneeded, check_unneeded_temperature, need_field, &
-      read_row, take_field
+   use card_values, only: check_unneeded, check_unneeded_temperature, read_row
    use cards, only: data_card_type, keyword_card_type
-   use deck_context, only: deck_type, take_name
+   use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: card_count, cards_of, has_stand_in
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
@@ -15,22 +14,20 @@ module deck_builder_materials
    use kinds, only: dp
    use materials, only: anisotropic, engineering, isotropic, material_type, orientation_type, &
       orthotropic, property_keywords, property_type, set_property
-   use mesh, only: mesh_type
-   use model, only: model_type
-   use text, only: to_text
+   use text, only: split_words, string_type, to_text
    implicit none
    private
    public :: build_materials, build_orientations, build_sections
 
-   character(*), parameter :: isotropic_names(2) = [character(15) :: 'Young''s modulus', &
-      'Poisson''s ratio']
-   character(*), parameter :: engineering_names(9) = [character(4) :: 'E1', 'E2', 'E3', 'nu12', &
-      'nu13', 'nu23', 'G12', 'G13', 'G23']
-   character(*), parameter :: orthotropic_names(9) = [character(5) :: 'D1111', 'D1122', 'D2222', &
-      'D1133', 'D2233', 'D3333', 'D1212', 'D1313', 'D2323']
-   character(*), parameter :: anisotropic_names(21) = [character(5) :: 'D1111', 'D1122', &
-      'D2222', 'D1133', 'D2233', 'D3333', 'D1112', 'D2212', 'D3312', 'D1212', 'D1113', 'D2213', &
-      'D3313', 'D1213', 'D1313', 'D1123', 'D2223', 'D3323', 'D1223', 'D1323', 'D2323']
+   ! Constants of *ELASTIC, as read_row.
+   character(*), parameter :: isotropic_layout = 'Young''s modulus >0/Poisson''s ratio'
+   character(*), parameter :: engineering_layout = &
+      'E1 >0/E2 >0/E3 >0/nu12/nu13/nu23/G12 >0/G13 >0/G23 >0'
+   character(*), parameter :: orthotropic_layout = &
+      'D1111/D1122/D2222/D1133/D2233/D3333/D1212/D1313/D2323'
+   character(*), parameter :: anisotropic_layout = &
+      'D1111/D1122/D2222/D1133/D2233/D3333/D1112/D2212/D3312/D1212/D1113/D2213/D3313/D1213/'// &
+      'D1313/D1123/D2223/D3323/D1223/D1323/D2323'
 
    integer, parameter :: per_card = 8   !! constants of a property on a card
 
@@ -39,13 +36,12 @@ module deck_builder_materials
 contains
 
    !> Builds all materials; a property belongs to the last *MATERIAL before it.
-   subroutine build_materials(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives places and notes and errors
-      type(model_type), intent(inout) :: model             !! receives the materials
+   subroutine build_materials(deck)
+      type(deck_type), intent(inout) :: deck
       integer :: k, n
 
       n = card_count(deck%cards, 'MATERIAL')
-      allocate(model%materials(n), deck%material_place(n))
+      allocate(deck%model%materials(n), deck%material_place(n))
       n = 0
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
@@ -53,8 +49,7 @@ contains
             case ('MATERIAL')
                n = n + 1
                deck%material_place(n) = card%place
-               call take_name(deck%cards, k, 'material', deck%materials, deck%deck_report_type, &
-                  model%materials(n)%name)
+               call deck%take_name(k, 'material', deck%model%materials(n)%name)
                if (.not. deck%has_lost('material')) cycle
                call deck%lose('*ELASTIC')   ! another material may have these
                call deck%lose('*CONDUCTIVITY')
@@ -64,7 +59,7 @@ contains
                   if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')
                else if (size(card%data) > 0) then
-                  call build_property(card, deck, model%materials(n))
+                  call build_property(card, deck, deck%model%materials(n))
                end if
             case default
                cycle
@@ -88,10 +83,11 @@ contains
          call build_elasticity(card, deck, property, valid)
       case ('EXPANSION')
          material%has_expansion = .true.
-         property%names = [character(24) :: 'alpha11', 'alpha22', 'alpha33']
-         if (is_isotropic(card, deck)) property%names = &
-            [character(24) :: 'coefficient of expansion']
-         call read_rows(card, deck, property, valid)
+         if (is_isotropic(card, deck)) then
+            call read_property('coefficient of expansion', card, deck, property, valid)
+         else
+            call read_property('alpha11/alpha22/alpha33', card, deck, property, valid)
+         end if
          call take_parameter(card, 'ZERO', deck, material%no_strain)
          if (valid .and. card%has('ZERO')) then
             if (size(property%temperature) == 1) call deck%note('*EXPANSION: ZERO is ignored '// &
@@ -100,32 +96,19 @@ contains
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
          if (is_isotropic(card, deck)) then
-            call build_positive('conductivity', card, deck, property, valid)
+            call read_property('conductivity >0', card, deck, property, valid)
          else
             call build_conductivity(card, deck, property, valid)
          end if
       case ('SPECIFIC HEAT')
          material%has_specific_heat = .true.
-         call build_positive('specific heat', card, deck, property, valid)
+         call read_property('specific heat >0', card, deck, property, valid)
       case default
          material%has_density = .true.
-         call build_positive('density', card, deck, property, valid)
+         call read_property('density >0', card, deck, property, valid)
       end select
       if (valid) call set_property(material, property)
    end subroutine build_property
-
-   !> A property that is one positive number.
-   subroutine build_positive(name, card, deck, property, valid)
-      character(*), intent(in) :: name
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(property_type), intent(inout) :: property
-      logical, intent(out) :: valid                       ! whether it has no errors
-
-      property%names = [character(24) :: name]
-      call read_rows(card, deck, property, valid)
-      if (valid) call refuse_not_positive(card, property, [1], deck, valid)
-   end subroutine build_positive
 
    !> TYPE= of expansion and conductivity. CalculiX reads the first letters only, so longer words
    !> are in decks for it.
@@ -143,9 +126,8 @@ contains
       type(deck_type), intent(inout) :: deck
       type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                       ! whether it has no errors
-      integer, parameter :: moduli(6) = [1, 2, 3, 7, 8, 9]   ! of the engineering constants
       character(:), allocatable :: kind
-      integer :: row
+      integer :: cards, row
 
       kind = choice(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/'// &
          'ANISO/ANISOTROPIC', deck, '')
@@ -154,25 +136,23 @@ contains
       select case (kind)
       case ('ENGINEERING CONSTANTS')
          property%symmetry = engineering
-         property%names = engineering_names
+         call read_property(engineering_layout, card, deck, property, valid)
       case ('ORTHO', 'ORTHOTROPIC')
          property%symmetry = orthotropic
-         property%names = orthotropic_names
+         call read_property(orthotropic_layout, card, deck, property, valid)
       case ('ANISO', 'ANISOTROPIC')
          property%symmetry = anisotropic
-         property%names = anisotropic_names
+         call read_property(anisotropic_layout, card, deck, property, valid)
       case default
-         property%names = isotropic_names
+         call read_property(isotropic_layout, card, deck, property, valid)
       end select
-      call read_rows(card, deck, property, valid)
-      if (.not. valid) return
-      if (property%symmetry == isotropic) call refuse_not_positive(card, property, [1], deck, valid)
-      if (property%symmetry == engineering) call refuse_not_positive(card, property, moduli, deck, &
-         valid)
+      cards = cards_of_row(property)
       do row = 1, size(property%temperature)
-         if (.not. valid .and. property%symmetry /= isotropic) cycle
-         call check_elasticity(card%data(first_card(property, row))%place( &
-            merge(2, 1, property%symmetry == isotropic)), property, row, deck, valid)
+         if (.not. valid .and. property%symmetry /= isotropic) exit
+         associate (data => card%data(1 + (row - 1)*cards))
+            call check_elasticity(data%place(merge(2, 1, property%symmetry == isotropic)), &
+               property, row, deck, valid)
+         end associate
       end do
    end subroutine build_elasticity
 
@@ -182,16 +162,15 @@ contains
       type(property_type), intent(in) :: property
       integer, intent(in) :: row
       type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
+      logical, intent(inout) :: valid                     ! false where it does
+      character(:), allocatable :: fault
       real(dp) :: d(6, 6)
 
       associate (constants => property%values(:, row))
          select case (property%symmetry)
          case (isotropic)
             if (constants(2) > -1.0_dp .and. constants(2) < 0.5_dp) return
-            valid = .false.
-            call deck%error(place, 'Poisson''s ratio must lie between -1 and 0.5')
-            return
+            fault = 'Poisson''s ratio must lie between -1 and 0.5'
          case (engineering)
             d = engineering_elasticity(constants)
          case (orthotropic)
@@ -200,16 +179,18 @@ contains
             d = anisotropic_elasticity(constants)
          end select
       end associate
-      valid = .false.
-      if (couples_out_of_plane(d)) then
-         call deck%error(place, 'couplings of the shear 13 or 23 with strains in the plane are '// &
-            'refused: the plane would warp')
+      if (property%symmetry == isotropic) then
+         continue
+      else if (couples_out_of_plane(d)) then
+         fault = 'couplings of the shear 13 or 23 with strains in the plane are refused: the '// &
+            'plane would warp'
       else if (.not. is_positive_definite(d)) then
-         call deck%error(place, 'these constants are not positive definite: some strain would '// &
-            'release energy')
+         fault = 'these constants are not positive definite: some strain would release energy'
       else
-         valid = .true.
+         return
       end if
+      call deck%error(place, fault)
+      valid = .false.
    end subroutine check_elasticity
 
    !> K11 and K22; K33, which CalculiX wants, is read and means nothing in the plane.
@@ -222,12 +203,10 @@ contains
 
       fields = size(card%data(1)%fields)
       n = min(max(fields, 2), 3)
-      property%names = [character(24) :: 'K11', 'K22', 'K33']
-      property%names = property%names(:n)
-      call read_rows(card, deck, property, valid)
+      if (n == 2) call read_property('K11 >0/K22 >0', card, deck, property, valid)
+      if (n == 3) call read_property('K11 >0/K22 >0/K33', card, deck, property, valid)
       if (n == 3) call deck%note('*CONDUCTIVITY: K33 is ignored')
       if (.not. valid) return
-      call refuse_not_positive(card, property, [1, 2], deck, valid)
       if (n == 3) then
          ! Across the plane most materials conduct as along one of its axes.
          do row = 1, size(property%temperature)
@@ -241,14 +220,6 @@ contains
       property%values = property%values(:2, :)
    end subroutine build_conductivity
 
-   !> First data card of a row.
-   pure integer function first_card(property, row) result(first)
-      type(property_type), intent(in) :: property          ! with its names
-      integer, intent(in) :: row
-
-      first = 1 + (row - 1)*cards_of_row(property)
-   end function first_card
-
    pure integer function cards_of_row(property)
       type(property_type), intent(in) :: property          ! with its names
 
@@ -256,119 +227,88 @@ contains
    end function cards_of_row
 
    !> Reads the rows of a property: constants, eight on a card, and the temperature behind the last.
-   subroutine read_rows(card, deck, property, valid)
+   subroutine read_property(layout, card, deck, property, valid)
+      character(*), intent(in) :: layout                    ! of the constants, as read_row
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(property_type), intent(inout) :: property        ! receives values and temperatures
+      type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                         ! whether all could be read
-      integer :: behind, last, n, row
+      type(string_type), allocatable :: fields(:)
+      integer :: i, n, row
 
-      n = (size(card%data) - 1)/cards_of_row(property) + 1
-      allocate (property%values(size(property%names), n), property%temperature(n), source=0.0_dp)
-      behind = mod(size(property%names) - 1, per_card) + 2
-      valid = .not. card%flawed
-      if (.not. valid) return
-      do row = 1, n
-         call read_constants(card, first_card(property, row), property%names, deck, &
-            property%values(:, row), valid)
-         last = first_card(property, row + 1) - 1
-         if (last > size(card%data)) return
-         if (n > 1) then
-            call need_field(card%data(last), behind, 'temperature', deck, &
-               property%temperature(row), valid)
-            if (.not. valid .or. row == 1) cycle
-            if (property%temperature(row) > property%temperature(row - 1)) cycle
-            valid = .false.
-            call deck%error(card%data(last)%place(behind), 'the temperatures of the rows must '// &
-               'ascend: '//to_text(property%temperature(row))//' follows '// &
-               to_text(property%temperature(row - 1)))
-         else if (card%data(last)%has(behind)) then
-            ! One temperature behind them means nothing.
-            call take_field(card%data(last), behind, 'temperature', deck, &
-               property%temperature(row), valid)
-            call deck%note('the temperature field of a single property row is ignored')
-            if (valid) call check_unneeded_temperature(card%data(last), behind, deck)
-         end if
+      fields = split_words(layout)
+      allocate (property%names(size(fields)))
+      do i = 1, size(fields)
+         property%names(i) = fields(i)%value(:index(fields(i)%value//' >', ' >') - 1)
       end do
-   end subroutine read_rows
+      n = (size(card%data) - 1)/cards_of_row(property) + 1
+      allocate (property%values(size(fields), n), property%temperature(n), source=0.0_dp)
+      valid = .not. card%flawed
+      do row = 1, merge(n, 0, valid)
+         call read_property_row(fields, row, card, deck, property, valid)
+      end do
+   end subroutine read_property
 
-   !> Reads the constants of a row.
-   subroutine read_constants(card, first, names, deck, values, valid)
+   !> Reads one row, whose temperature means nothing where it is the only one.
+   subroutine read_property_row(fields, row, card, deck, property, valid)
+      type(string_type), intent(in) :: fields(:)            ! (constants)
+      integer, intent(in) :: row
       type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: first                          ! its first data card
-      character(*), intent(in) :: names(:)                  ! (constants)
       type(deck_type), intent(inout) :: deck
-      real(dp), intent(out) :: values(:)                    ! (constants)
-      logical, intent(inout) :: valid                       ! false where they cannot be read
-      integer :: behind, i, last, place
+      type(property_type), intent(inout) :: property
+      logical, intent(inout) :: valid                       ! false after an error
+      character(:), allocatable :: layout
+      real(dp) :: given(per_card + 1)
+      integer :: i, first, last, place
+      logical :: sound
 
-      values = 0.0_dp
-      last = first + (size(values) - 1)/per_card
-      do i = 1, size(values)
-         place = first + (i - 1)/per_card
+      place = (row - 1)*cards_of_row(property)
+      do first = 1, size(fields), per_card
+         place = place + 1
          if (place > size(card%data)) then
             call deck%error(card%data(size(card%data))%end, 'a card is missing after this one: '// &
-               trim(names(i)))
+               trim(property%names(first)))
             valid = .false.
             return
          end if
-         call need_field(card%data(place), mod(i - 1, per_card) + 1, trim(names(i)), deck, &
-            values(i), valid)
-         if (.not. card%data(place)%has(mod(i - 1, per_card) + 1)) return
-         if (place == last) cycle
-         if (mod(i, per_card) == 0) call check_extra(card%data(place), per_card, 'eight '// &
-            'constants', deck)
-      end do
-      behind = mod(size(values) - 1, per_card) + 2
-      call check_extra(card%data(last), behind, joined(names(per_card*(last - first) + 1:))// &
-         ', temperature', deck)
-   end subroutine read_constants
-
-   pure function joined(names) result(list)
-      character(*), intent(in) :: names(:)
-      character(:), allocatable :: list
-      integer :: i
-
-      list = trim(names(1))
-      do i = 2, size(names)
-         list = list//', '//trim(names(i))
-      end do
-   end function joined
-
-   !> Reports constants that must be positive and are not.
-   subroutine refuse_not_positive(card, property, which, deck, valid)
-      type(keyword_card_type), intent(in) :: card
-      type(property_type), intent(in) :: property         !! as read
-      integer, intent(in) :: which(:)                     !! indexes of those that must be positive
-      type(deck_type), intent(inout) :: deck              !! receives errors
-      logical, intent(inout) :: valid                     !! false where one is not
-      integer :: i, row
-
-      do row = 1, size(property%temperature)
-         do i = 1, size(which)
-            if (property%values(which(i), row) > 0.0_dp) cycle
-            valid = .false.
-            call deck%error(card%data(first_card(property, row) + (which(i) - 1)/per_card)%place( &
-               mod(which(i) - 1, per_card) + 1), trim(property%names(which(i)))//' must be '// &
-               'positive')
+         last = min(first + per_card - 1, size(fields))
+         layout = fields(first)%value
+         do i = first + 1, last
+            layout = layout//'/'//fields(i)%value
          end do
+         if (last == size(fields)) layout = layout//'/temperature'// &
+            trim(merge('?', ' ', size(property%temperature) == 1))
+         call read_row(card%data(place), layout, deck, given, sound)
+         property%values(first:last, row) = given(:last - first + 1)
+         property%temperature(row) = given(last - first + 2)
+         valid = valid .and. sound
       end do
-   end subroutine refuse_not_positive
+      associate (data => card%data(place), behind => size(fields) - per_card* &
+         (cards_of_row(property) - 1) + 1, temperature => property%temperature)
+         if (size(temperature) == 1 .and. data%has(behind)) then
+            call deck%note('the temperature field of a single property row is ignored')
+            call check_unneeded_temperature(data, behind, deck)
+         else if (row > 1 .and. valid) then
+            valid = temperature(row) > temperature(row - 1)
+            if (.not. valid) call deck%error(data%place(behind), 'the temperatures of the rows '// &
+               'must ascend: '//to_text(temperature(row))//' follows '// &
+               to_text(temperature(row - 1)))
+         end if
+      end associate
+   end subroutine read_property_row
 
    !> Builds all orientations.
-   subroutine build_orientations(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives their names and errors
-      type(model_type), intent(inout) :: model             !! receives the orientations
+   subroutine build_orientations(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       integer :: n
 
       places = cards_of(deck%cards, 'ORIENTATION')
-      allocate(model%orientations(size(places)))
+      allocate(deck%model%orientations(size(places)))
       do n = 1, size(places)
          associate (card => deck%cards%keywords(places(n)))
-            call take_name(deck%cards, places(n), 'orientation', deck%orientations, &
-               deck%deck_report_type, model%orientations(n)%name)
-            if (size(card%data) > 0) call build_axes(card, model%orientations(n), deck)
+            call deck%take_name(places(n), 'orientation', deck%model%orientations(n)%name)
+            if (size(card%data) > 0) call build_axes(card, deck%model%orientations(n), deck)
          end associate
       end do
    end subroutine build_orientations
@@ -385,7 +325,6 @@ contains
 
       system = choice(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, 'RECTANGULAR')
       associate (data => card%data(1))
-         given = 0.0_dp
          call read_row(data, 'x of a/y of a/z of a/x of b/y of b/z of b', deck, given, valid)
          a = given(:3)
          b = given(4:)
@@ -421,7 +360,6 @@ contains
       real(dp) :: angle, given(2)
       logical :: valid
 
-      given = 0.0_dp
       call read_row(data, '#axis/angle in degrees?', deck, given, valid)
       if (.not. valid) return
       if (nint(given(1)) /= 3) then
@@ -437,27 +375,25 @@ contains
    end subroutine turn_axes
 
    !> Builds all sections, and gives the elements theirs.
-   subroutine build_sections(deck, model)
-      type(deck_type), intent(inout) :: deck   !! receives notes, whether all is sound and errors
-      type(model_type), intent(inout) :: model             !! receives the sections
+   subroutine build_sections(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       real(dp) :: thickness(1)
       integer :: n, set
       logical :: valid
 
       places = cards_of(deck%cards, 'SOLID SECTION')
-      allocate(model%sections(size(places)))
+      allocate(deck%model%sections(size(places)))
       deck%sections_sound = &
          .not. (has_stand_in(deck%cards, 'SOLID SECTION') .or. deck%has_lost('element set'))
       valid = .true.
       do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)), section => model%sections(n))
+         associate (card => deck%cards%keywords(places(n)), section => deck%model%sections(n))
             call deck%need_named(card, 'MATERIAL', 'material', section%material)
             call deck%take_named(card, 'ORIENTATION', 'orientation', section%orientation)
             if (size(card%data) > 0) then
                associate (data => card%data(1))
-                  thickness = section%thickness
-                  call read_row(data, 'thickness? >0/@points', deck, thickness, valid)
+                  call read_row(data, 'thickness? >0 =1/@points', deck, thickness, valid)
                   section%thickness = thickness(1)
                   if (size(data%fields) > 1) then
                      call check_unneeded(data, 2, 'a number of points', deck)
@@ -465,39 +401,38 @@ contains
                   end if
                end associate
             end if
-            call give_section(card, n, deck, model%mesh, set)
+            call give_section(card, n, deck, set)
             if (size(card%data) > 0 .or. set == 0) cycle
-            if (any(model%mesh%element_plane( &
-               model%mesh%element_sets(set)%members) /= axisymmetric)) call deck%note('*SOLID '// &
-               'SECTION without a thickness: '//to_text(section%thickness))
+            if (any(deck%mesh%element_plane(deck%mesh%element_sets(set)%members) /= &
+               axisymmetric)) call deck%note('*SOLID SECTION without a thickness: '// &
+               to_text(section%thickness))
          end associate
       end do
    end subroutine build_sections
 
    !> Gives the elements of its set a section; its trusses take it later. Sections are not sound
    !> where that set is not known.
-   subroutine give_section(card, section, deck, mesh, set)
+   subroutine give_section(card, section, deck, set)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: section
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(inout) :: mesh
       integer, intent(out) :: set        ! that of the card; 0 after an error
       integer, allocatable :: kinds(:)   ! of the lines of the set
 
       call deck%need_named(card, 'ELSET', 'element set', set)
       if (set > 0) then
          kinds = deck%line_kind(deck%line_sets(set)%members)
-         if (all(kinds /= truss)) call deck%need_element_set(card, mesh%element_sets, set)
+         if (all(kinds /= truss)) call deck%need_element_set(card, set)
       end if
       deck%sections_sound = deck%sections_sound .and. set > 0
       if (set == 0) return
       if (size(kinds) > 0 .and. all(kinds /= truss)) call deck%warning(card%place_of('ELSET'), &
-         'element set '//mesh%element_sets(set)%name//' also has lines, which are ignored')
-      associate (members => mesh%element_sets(set)%members)
-         if (any(mesh%element_section(members) > 0)) call deck%warning(card%place, 'this '// &
+         'element set '//deck%mesh%element_sets(set)%name//' also has lines, which are ignored')
+      associate (members => deck%mesh%element_sets(set)%members)
+         if (any(deck%mesh%element_section(members) > 0)) call deck%warning(card%place, 'this '// &
             'section replaces an earlier one; elements concerned: '// &
-            to_text(count(mesh%element_section(members) > 0)))
-         mesh%element_section(members) = section
+            to_text(count(deck%mesh%element_section(members) > 0)))
+         deck%mesh%element_section(members) = section
       end associate
    end subroutine give_section
 

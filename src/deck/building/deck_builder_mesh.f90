@@ -12,7 +12,7 @@ module deck_builder_mesh
       quad8
    use element_types, only: take_element_type
    use kinds, only: dp
-   use mesh, only: add_node, extent_of, mesh_type, nodes_per_element
+   use mesh, only: add_node, extent_of, nodes_per_element
    use sorting, only: repeated
    use text, only: read_integer, to_text
    implicit none
@@ -26,9 +26,8 @@ module deck_builder_mesh
 contains
 
    !> Builds the nodes, in the order of the deck.
-   subroutine build_nodes(deck, mesh)
-      type(deck_type), intent(inout) :: deck               !! receives the numbers and errors
-      type(mesh_type), intent(inout) :: mesh               !! receives the nodes
+   subroutine build_nodes(deck)
+      type(deck_type), intent(inout) :: deck
       real(dp), allocatable :: heights(:)
       integer, allocatable :: places(:)
       integer :: j, k, n
@@ -36,7 +35,7 @@ contains
 
       places = cards_of(deck%cards, 'NODE')
       n = data_count(deck%cards, places)
-      allocate(mesh%node_number(n), mesh%coordinates(2, n), heights(n))
+      allocate(deck%mesh%node_number(n), deck%mesh%coordinates(2, n), heights(n))
       allocate(deck%node_place(n), deck%node_valid(n))
       n = 0
       told = .false.
@@ -45,8 +44,8 @@ contains
             do j = 1, size(rows)
                n = n + 1
                deck%node_place(n) = rows(j)%place(1)
-               call build_node(rows(j), deck, mesh%node_number(n), mesh%coordinates(:, n), &
-                  heights(n), deck%node_valid(n))
+               call build_node(rows(j), deck, deck%mesh%node_number(n), deck%mesh%coordinates(:, &
+                  n), heights(n), deck%node_valid(n))
                ! Decimal commas tear the coordinates, and the last of their parts means nothing.
                if (told .or. .not. may_be_decimals(rows(j), 5)) cycle
                call check_unneeded(rows(j), 5, 'a direction', deck)
@@ -55,57 +54,55 @@ contains
          end associate
       end do
       call move_alloc(heights, deck%node_height)
-      call drop_repeated(mesh, deck)
+      call drop_repeated(deck)
       if (n == 0) call deck%lose('node')
       deck%node_index%noun = 'node'
-      call deck%node_index%build(mesh%node_number)
-      call add_rotations(deck, mesh)
+      call deck%node_index%build(deck%mesh%node_number)
+      call add_rotations(deck)
    end subroutine build_nodes
 
    !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
-   subroutine drop_repeated(mesh, deck)
-      type(mesh_type), intent(inout) :: mesh
+   subroutine drop_repeated(deck)
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: kept(:), places(:)
-      logical :: keeps(size(mesh%node_number))
+      logical :: keeps(size(deck%mesh%node_number))
       integer :: i, first
 
-      places = repeated(mesh%node_number)
-      places = pack(places, mesh%node_number(places) > 0)
+      places = repeated(deck%mesh%node_number)
+      places = pack(places, deck%mesh%node_number(places) > 0)
       if (size(places) == 0) return
       keeps = .true.
       keeps(places) = .false.
       do i = 1, size(places)
-         first = findloc(mesh%node_number, mesh%node_number(places(i)), dim=1)
-         if (norm2(mesh%coordinates(:, places(i)) - &
-            mesh%coordinates(:, first)) > 0.0_dp) call deck%warning(deck%node_place(places(i)), &
-            'node '//to_text(mesh%node_number(first))//' is defined twice, first on '// &
+         first = findloc(deck%mesh%node_number, deck%mesh%node_number(places(i)), dim=1)
+         if (norm2(deck%mesh%coordinates(:, places(i)) - deck%mesh%coordinates(:, first)) > &
+            0.0_dp) call deck%warning(deck%node_place(places(i)), 'node '// &
+            to_text(deck%mesh%node_number(first))//' is defined twice, first on '// &
             deck%source%words_of(deck%node_place(first))//': the last place is used')
-         mesh%coordinates(:, first) = mesh%coordinates(:, places(i))
+         deck%mesh%coordinates(:, first) = deck%mesh%coordinates(:, places(i))
          deck%node_height(first) = deck%node_height(places(i))
          deck%node_place(first) = deck%node_place(places(i))
          deck%node_valid(first) = deck%node_valid(places(i))
       end do
       kept = pack([(i, i=1, size(keeps))], keeps)
-      mesh%node_number = mesh%node_number(kept)
-      mesh%coordinates = mesh%coordinates(:, kept)
+      deck%mesh%node_number = deck%mesh%node_number(kept)
+      deck%mesh%coordinates = deck%mesh%coordinates(:, kept)
       deck%node_place = deck%node_place(kept)
       deck%node_valid = deck%node_valid(kept)
       deck%node_height = deck%node_height(kept)
    end subroutine drop_repeated
 
    !> Adds a node for the rotation of each coupling and rigid body, which no card can name.
-   subroutine add_rotations(deck, mesh)
+   subroutine add_rotations(deck)
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(inout) :: mesh
       real(dp) :: place(2)
       integer :: k
 
-      if (size(mesh%node_number) == 0) return
+      if (size(deck%mesh%node_number) == 0) return
       do k = 1, size(deck%cards%keywords)
          if (all(deck%cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
-         place = mesh%coordinates(:, 1)
-         call add_node(mesh, place)
+         place = deck%mesh%coordinates(:, 1)
+         call add_node(deck%mesh, place)
          deck%node_place = [deck%node_place, deck%cards%keywords(k)%place]
          deck%node_valid = [deck%node_valid, .true.]
       end do
@@ -144,20 +141,19 @@ contains
 
    !> The nodes of elements lie in the plane z = 0, but for rounding. Others may be those of a
    !> drawing or of a rigid body.
-   subroutine check_heights(deck, mesh)
-      type(deck_type), intent(inout) :: deck   ! whether the elements are sound
-      type(mesh_type), intent(in) :: mesh
+   subroutine check_heights(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
-      logical :: has_element(0:size(mesh%node_number))
+      logical :: has_element(0:size(deck%mesh%node_number))
       real(dp) :: rounding
       integer :: e, i, j, k, number
       logical :: valid
 
-      if (size(mesh%node_number) == 0) return
-      rounding = height_rounding*extent_of(mesh%coordinates)
+      if (size(deck%mesh%node_number) == 0) return
+      rounding = height_rounding*extent_of(deck%mesh%coordinates)
       has_element = .false.
-      do e = 1, size(mesh%element_number)
-         if (deck%element_valid(e)) has_element(mesh%element_nodes(:, e)) = .true.
+      do e = 1, size(deck%mesh%element_number)
+         if (deck%element_valid(e)) has_element(deck%mesh%element_nodes(:, e)) = .true.
       end do
       has_element(0) = .false.
       if (.not. any(has_element(1:size(deck%node_height)) .and. &
@@ -214,22 +210,21 @@ contains
 
    !> Builds the elements, in the order of the deck; one of a type that cannot be used keeps its
    !> number only.
-   subroutine build_elements(deck, mesh)
-      type(deck_type), intent(inout) :: deck               !! receives the numbers and errors
-      type(mesh_type), intent(inout) :: mesh               !! receives the elements
+   subroutine build_elements(deck)
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: name, message, note
       integer, allocatable :: places(:)
       integer :: i, k, j, kind, n, plane
 
       places = element_cards(deck%cards, of_lines=.false.)
       n = data_count(deck%cards, places)
-      allocate(mesh%element_number(n), mesh%element_section(n))
-      allocate(mesh%element_nodes(nodes_per_element, n), source=0)
-      allocate(mesh%element_kind(n), source=quad8)
-      allocate(mesh%element_plane(n), source=plane_strain)
+      allocate(deck%mesh%element_number(n), deck%mesh%element_section(n))
+      allocate(deck%mesh%element_nodes(nodes_per_element, n), source=0)
+      allocate(deck%mesh%element_kind(n), source=quad8)
+      allocate(deck%mesh%element_plane(n), source=plane_strain)
       allocate(deck%element_place(n))
       allocate(deck%element_valid(n), source=.false.)
-      mesh%element_section = 0
+      deck%mesh%element_section = 0
       n = 0
       do i = 1, size(places)
          k = places(i)
@@ -247,25 +242,25 @@ contains
             n = n + 1
             deck%element_place(n) = deck%cards%keywords(k)%data(j)%place(1)
             call read_number(deck%cards%keywords(k)%data(j), 'element', deck, &
-               mesh%element_number(n))
+               deck%mesh%element_number(n))
             if (len(name) == 0 .or. len(message) > 0) cycle
-            mesh%element_kind(n) = kind
-            mesh%element_plane(n) = plane
+            deck%mesh%element_kind(n) = kind
+            deck%mesh%element_plane(n) = plane
             call read_element_nodes(deck%cards%keywords(k)%data(j), deck, &
-               mesh%element_nodes(:element_node_count(kind), n), deck%element_valid(n))
+               deck%mesh%element_nodes(:element_node_count(kind), n), deck%element_valid(n))
             call check_layout(deck%cards%keywords(k)%data(j), kind, deck%cards%keywords(k)%place, &
                deck)
          end do
       end do
-      call check_heights(deck, mesh)
+      call check_heights(deck)
       if (n == 0) call deck%lose('element')
       deck%element_index%noun = 'element'
-      call deck%element_index%build(mesh%element_number)
+      call deck%element_index%build(deck%mesh%element_number)
       ! Elements and lines have different numbers.
-      call check_repeated([deck%element_place, deck%line_place], &
-         [mesh%element_number, deck%line_number], deck)
+      call check_repeated([deck%element_place, deck%line_place], [deck%mesh%element_number, &
+         deck%line_number], deck)
       deck%member_index%noun = 'element'
-      call deck%member_index%build([mesh%element_number, deck%line_number])
+      call deck%member_index%build([deck%mesh%element_number, deck%line_number])
    end subroutine build_elements
 
    !> Warns of plane stress that gmsh wrote, which calls all elements so; once.

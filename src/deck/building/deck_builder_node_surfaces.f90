@@ -9,7 +9,6 @@ module deck_builder_node_surfaces
    use element_sides, only: element_sides_type, find_sides
    use kinds, only: dp
    use load_requests, only: target_type
-   use mesh, only: mesh_type
    use number_lists, only: number_list_type
    use text, only: to_text
    implicit none
@@ -19,9 +18,8 @@ module deck_builder_node_surfaces
 contains
 
    !> Finds the faces of all surfaces of nodes.
-   subroutine build_node_surfaces(deck, mesh)
-      type(deck_type), intent(inout) :: deck   !! receives their places, and notes and errors
-      type(mesh_type), intent(inout) :: mesh               !! with its node sets; receives the faces
+   subroutine build_node_surfaces(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       logical, allocatable :: named(:)
       integer :: n, errors
@@ -31,45 +29,42 @@ contains
          associate (card => deck%cards%keywords(places(n)))
             if (chosen(card, 'TYPE', surface_kinds) /= 'NODE') cycle
             errors = deck%error_count()
-            call read_nodes(card, deck, mesh, named)
+            call read_nodes(card, deck, named)
             if (deck%error_count() == errors .and. all(deck%element_valid)) then
-               call find_faces(card, named, mesh, deck, n)
+               call find_faces(card, named, deck, n)
             end if
-            if (size(mesh%surfaces(n)%faces, 2) == 0) call deck%lose('surface')
+            if (size(deck%mesh%surfaces(n)%faces, 2) == 0) call deck%lose('surface')
          end associate
       end do
    end subroutine build_node_surfaces
 
    !> The nodes that a surface names.
-   subroutine read_nodes(card, deck, mesh, named)
+   subroutine read_nodes(card, deck, named)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       logical, allocatable, intent(out) :: named(:)      ! (nodes)
       type(target_type) :: target
       integer :: j
       logical :: valid
       real(dp) :: area(2)
 
-      area = 0.0_dp
-      allocate (named(size(mesh%node_number)), source=.false.)
+      allocate (named(size(deck%mesh%node_number)), source=.false.)
       do j = 1, size(card%data)
          associate (data => card%data(j))
             call read_row(data, '@node or set/area?', deck, area, valid)
             if (data%has(2)) call deck%note('*SURFACE, TYPE=NODE: areas are ignored: those of '// &
                'the faces are taken')
-            call deck%need_nodes(data, 1, mesh%node_sets, target, valid)
+            call deck%need_target('node', data, 1, target, valid)
             if (.not. valid) cycle
-            named(target%members(mesh%node_sets)) = .true.
+            named(target%members(deck%mesh%node_sets)) = .true.
          end associate
       end do
    end subroutine read_nodes
 
    !> The outer sides of elements all of whose nodes are named. A node on none of them is an error.
-   subroutine find_faces(card, named, mesh, deck, surface)
+   subroutine find_faces(card, named, deck, surface)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: named(:)
-      type(mesh_type), intent(inout) :: mesh
       type(deck_type), intent(inout) :: deck
       integer, intent(in) :: surface
       type(element_sides_type) :: sides
@@ -77,10 +72,10 @@ contains
       logical :: taken(0:size(named))
       integer :: e, f
 
-      sides = find_sides(mesh)
+      sides = find_sides(deck%mesh)
       taken = .false.
-      do e = 1, size(mesh%element_number)
-         do f = 1, element_corner_count(mesh%element_kind(e))
+      do e = 1, size(deck%mesh%element_number)
+         do f = 1, element_corner_count(deck%mesh%element_kind(e))
             associate (side => sides%of_element(f, e))
                associate (nodes => pack(sides%ends(:, side), sides%ends(:, side) > 0))
                   if (sides%elements(2, side) > 0 .or. .not. all(named(nodes))) cycle
@@ -90,13 +85,14 @@ contains
             call found%add([e, f])
          end do
       end do
-      mesh%surfaces(surface)%faces = reshape(found%numbers(), [2, found%count/2])
-      deck%face_places(surface)%items = spread(card%place, 1, size(mesh%surfaces(surface)%faces, 2))
+      deck%mesh%surfaces(surface)%faces = reshape(found%numbers(), [2, found%count/2])
+      deck%face_places(surface)%items = spread(card%place, 1, &
+         size(deck%mesh%surfaces(surface)%faces, 2))
       e = findloc(named .and. .not. taken(1:), .true., dim=1)
-      if (e > 0) call deck%error(card%data(1)%place(1), 'node '//to_text(mesh%node_number(e))// &
-         ' of surface '//mesh%surfaces(surface)%name//' is on no side of an element, at the '// &
-         'edge of its body, whose nodes are all in the surface: add the nodes that are '// &
-         'missing, or name elements and faces S1 to S4')
+      if (e > 0) call deck%error(card%data(1)%place(1), 'node '// &
+         to_text(deck%mesh%node_number(e))//' of surface '//deck%mesh%surfaces(surface)%name// &
+         ' is on no side of an element, at the edge of its body, whose nodes are all in the '// &
+         'surface: add the nodes that are missing, or name elements and faces S1 to S4')
    end subroutine find_faces
 
 end module deck_builder_node_surfaces

@@ -5,10 +5,7 @@ module deck_builder_options
    use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
-   use deck_source, only: place_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
-   use mesh, only: mesh_type
-   use model, only: model_type
    use refined_regions, only: refined_region_type
    use steps, only: dof_temperature
    use text, only: read_integer, to_text, to_upper
@@ -22,37 +19,36 @@ module deck_builder_options
 contains
 
    !> Reads *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
-   subroutine build_options(deck, model)
-      type(deck_type), intent(inout) :: deck   !! receives plane, order, levels, axis and errors
-      type(model_type), intent(inout) :: model             !! receives heading, units, solver
+   subroutine build_options(deck)
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: solver
       integer :: k
 
-      model%heading = ''
-      model%units%length = ''
-      model%units%stress = ''
-      model%units%power = ''
-      model%units%temperature = ''
-      model%solver = solver_by_size
+      deck%model%heading = ''
+      deck%model%units%length = ''
+      deck%model%units%stress = ''
+      deck%model%units%power = ''
+      deck%model%units%temperature = ''
+      deck%model%solver = solver_by_size
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             select case (card%name)
             case ('HEADING')
-               if (size(card%data) == 0 .or. len(model%heading) > 0) cycle
-               model%heading = card%data(1)%fields(1)%text
+               if (size(card%data) == 0 .or. len(deck%model%heading) > 0) cycle
+               deck%model%heading = card%data(1)%fields(1)%text
             case ('OPTIONS')
-               call build_option_card(card, deck, model)
+               call build_option_card(card, deck)
             case ('PHYSICAL CONSTANTS')
-               call take_parameter(card, 'ABSOLUTE ZERO', deck, model%constants%absolute_zero)
-               if (card%has('STEFAN BOLTZMANN')) call take_within('>0', card, &
-                  'STEFAN BOLTZMANN', deck, model%constants%stefan_boltzmann)
-               model%constants%has_absolute_zero = card%has('ABSOLUTE ZERO')
-               model%constants%has_radiation = model%constants%has_absolute_zero .and. &
+               call take_parameter(card, 'ABSOLUTE ZERO', deck, deck%model%constants%absolute_zero)
+               if (card%has('STEFAN BOLTZMANN')) call take_within('>0', card, 'STEFAN BOLTZMANN', &
+                  deck, deck%model%constants%stefan_boltzmann)
+               deck%model%constants%has_absolute_zero = card%has('ABSOLUTE ZERO')
+               deck%model%constants%has_radiation = deck%model%constants%has_absolute_zero .and. &
                   card%has('STEFAN BOLTZMANN')
             case ('SOLVER')
                solver = needed_choice(card, 'TYPE', 'SKYLINE/MUMPS', deck)
-               if (solver == 'SKYLINE') model%solver = solver_skyline
-               if (solver == 'MUMPS') model%solver = solver_mumps
+               if (solver == 'SKYLINE') deck%model%solver = solver_skyline
+               if (solver == 'MUMPS') deck%model%solver = solver_mumps
             case ('REFINE')
                call build_levels(card, deck)
             case ('CONTROLS')
@@ -64,44 +60,41 @@ contains
       end do
    end subroutine build_options
 
-   subroutine build_option_card(card, deck, model)
+   subroutine build_option_card(card, deck)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(inout) :: model
       character(:), allocatable :: plane
 
       plane = choice(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', deck, '')
       if (plane == 'STRAIN') deck%plane = plane_strain
       if (plane == 'STRESS') deck%plane = plane_stress
       if (plane == 'AXISYMMETRIC') deck%plane = axisymmetric
-      if (card%has('ORDER')) call build_order(card, deck, model)
-      if (card%has('ERRORS')) model%estimates_errors = choice(card, 'ERRORS', 'YES/NO', deck, &
+      if (card%has('ORDER')) call build_order(card, deck)
+      if (card%has('ERRORS')) deck%model%estimates_errors = choice(card, 'ERRORS', 'YES/NO', deck, &
          'YES') == 'YES'
-      if (card%has('UNITS')) call build_units(card, model, deck)
+      if (card%has('UNITS')) call build_units(card, deck)
       if (.not. card%has('LOAD')) return
       deck%load_set = to_upper(card%text('LOAD'))
       deck%load_place = card%place_of('LOAD')
    end subroutine build_option_card
 
-   subroutine build_order(card, deck, model)
+   subroutine build_order(card, deck)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(inout) :: model
       integer :: errors
 
       errors = deck%error_count()
-      model%order_place = card%place_of('ORDER')
+      deck%model%order_place = card%place_of('ORDER')
       call take_parameter(card, 'ORDER', deck, deck%order)
       if (any(deck%order == [1, 2])) return
-      if (deck%error_count() == errors) call deck%error(model%order_place, 'ORDER= must be 1 '// &
-         '(elements without midside nodes) or 2 (elements as they are)')
+      if (deck%error_count() == errors) call deck%error(deck%model%order_place, 'ORDER= must '// &
+         'be 1 (elements without midside nodes) or 2 (elements as they are)')
       deck%order = 2
    end subroutine build_order
 
    !> UNITS="length stress power temperature".
-   subroutine build_units(card, model, deck)
+   subroutine build_units(card, deck)
       type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(inout) :: model
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: rest
       character(len(card%text('UNITS'))) :: words(4)
@@ -119,10 +112,10 @@ contains
             'power, temperature')
          return
       end if
-      model%units%length = trim(words(1))
-      model%units%stress = trim(words(2))
-      model%units%power = trim(words(3))
-      model%units%temperature = trim(words(4))
+      deck%model%units%length = trim(words(1))
+      deck%model%units%stress = trim(words(2))
+      deck%model%units%power = trim(words(3))
+      deck%model%units%temperature = trim(words(4))
    end subroutine build_units
 
    subroutine build_levels(card, deck)
@@ -143,7 +136,7 @@ contains
    !> Reads LEVELS= of *REFINE; 0 after an error.
    subroutine take_levels(card, deck, levels)
       type(keyword_card_type), intent(in) :: card          !! the *REFINE
-      type(deck_type), intent(inout) :: deck               !! receives errors
+      type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: levels                     !! 0 before
 
       if (card%lacks('LEVELS')) call deck%error(card%place, '*REFINE needs LEVELS=')
@@ -155,17 +148,14 @@ contains
    end subroutine take_levels
 
    !> Reads LOAD=nset,dof of *OPTIONS: the prescribed value that the load axis follows.
-   subroutine build_load_axis(last, deck, model)
-      type(place_type), intent(in) :: last                 !! where the deck ends
-      !> set, its place, and what is prescribed; receives errors
+   subroutine build_load_axis(deck)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(inout) :: model   !! receives node, degree of freedom and label
       character(:), allocatable :: name
       integer, allocatable :: members(:)
       integer :: comma, set, dof, i
       logical :: valid
 
-      model%load_label = 'time'
+      deck%model%load_label = 'time'
       if (.not. allocated(deck%load_set)) then
          call deck%note('*OPTIONS without LOAD=: the load axis is the time')
          return
@@ -174,16 +164,16 @@ contains
       if (comma == 0) comma = len(deck%load_set) + 1
       name = deck%load_set(:comma - 1)
       call read_integer(deck%load_set(min(comma + 1, len(deck%load_set) + 1):), dof, valid)
-      set = deck%node_index%sets%find(name)
-      if (valid .and. set > 0) dof = axis_in_plane(model%transforms, model%mesh%node_sets, &
-         model%mesh%node_sets(set)%members, dof)
+      set = deck%index_of('node set', name)
+      if (valid .and. set > 0) dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
+         deck%mesh%node_sets(set)%members, dof)
       if (.not. valid .or. .not. any(dof == [1, 2, dof_temperature])) then
          call deck%error(deck%load_place, 'LOAD= has a node set and a degree of freedom 1, 2 or 11')
          return
       end if
       call deck%look_up('node set', name, deck%load_place, set)
       if (set == 0) return
-      members = model%mesh%node_sets(set)%members
+      members = deck%mesh%node_sets(set)%members
       if (size(members) == 0) return
       members = pack(members, .not. deck%dropped(members))
       if (size(members) == 0) then
@@ -191,11 +181,11 @@ contains
             'midside nodes only; LOAD= needs one at a corner')
          return
       end if
-      model%load_node = members(1)
-      model%load_dof = dof
-      model%load_label = dof_name(dof)//' of '//name
+      deck%model%load_node = members(1)
+      deck%model%load_dof = dof
+      deck%model%load_label = dof_name(dof)//' of '//name
       if (.not. (deck%boundaries_sound .and. deck%sets_sound)) return
-      if (is_prescribed(deck, model)) return
+      if (is_prescribed(deck)) return
       do i = 1, deck%boundaries%count
          if (deck%boundaries%items(i)%component /= dof) cycle
          call deck%error(deck%load_place, 'LOAD= follows a value that no *BOUNDARY prescribes: '// &
@@ -203,9 +193,9 @@ contains
          return
       end do
       if (deck%has_lost('*STEP')) return
-      call deck%error(last, 'no *BOUNDARY prescribes any '//dof_name(dof)//' (degree of '// &
-         'freedom '//to_text(dof)//'), which LOAD='//deck%load_set//' of *OPTIONS follows; '// &
-         'give the values, as '//name//', '//to_text(dof)//', '//to_text(dof)//', value')
+      call deck%error(deck%cards%last, 'no *BOUNDARY prescribes any '//dof_name(dof)//' '// &
+         '(degree of freedom '//to_text(dof)//'), which LOAD='//deck%load_set//' of *OPTIONS '// &
+         'follows; give the values, as '//name//', '//to_text(dof)//', '//to_text(dof)//', value')
    end subroutine build_load_axis
 
    pure function dof_name(dof) result(name)
@@ -223,45 +213,42 @@ contains
    end function dof_name
 
    !> Whether a *BOUNDARY prescribes the degree of freedom of the load axis at its node.
-   pure logical function is_prescribed(deck, model)
+   pure logical function is_prescribed(deck)
       type(deck_type), intent(in) :: deck
-      type(model_type), intent(in) :: model
       integer :: i
 
       is_prescribed = .true.
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            if (request%component /= model%load_dof) cycle
-            if (request%item == model%load_node) return
+            if (request%component /= deck%model%load_dof) cycle
+            if (request%item == deck%model%load_node) return
             if (request%set == 0) cycle
-            if (any(model%mesh%node_sets(request%set)%members == model%load_node)) return
+            if (any(deck%mesh%node_sets(request%set)%members == deck%model%load_node)) return
          end associate
       end do
       is_prescribed = .false.
    end function is_prescribed
 
    !> Takes the *REFINE cards that name a surface or a set.
-   subroutine build_regions(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives errors
-      type(model_type), intent(inout) :: model             !! its mesh; receives the regions
+   subroutine build_regions(deck)
+      type(deck_type), intent(inout) :: deck
       type(refined_region_type) :: region
       integer :: k
 
-      allocate(model%regions(0))
+      allocate(deck%model%regions(0))
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             if (card%name /= 'REFINE') cycle
             if (.not. (card%has('SURFACE') .or. card%has('ELSET'))) cycle
-            call build_region(card, deck, model%mesh, region)
-            model%regions = [model%regions, region]
+            call build_region(card, deck, region)
+            deck%model%regions = [deck%model%regions, region]
          end associate
       end do
    end subroutine build_regions
 
-   subroutine build_region(card, deck, mesh, region)
+   subroutine build_region(card, deck, region)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       type(refined_region_type), intent(out) :: region
       integer :: surface
 
@@ -272,11 +259,10 @@ contains
             'give a card for each')
       else if (card%has('SURFACE')) then
          call deck%need_named(card, 'SURFACE', 'surface', surface)
-         call need_faces(mesh, card%place_of('SURFACE'), 'name the face that touches it', deck, &
-            surface)
+         call need_faces(card%place_of('SURFACE'), 'name the face that touches it', deck, surface)
          region%surfaces = [surface]
       else
-         call deck%need_element_set(card, mesh%element_sets, region%set)
+         call deck%need_element_set(card, region%set)
       end if
       if (card%has('DISTANCE')) call take_within('>0', card, 'DISTANCE', deck, region%distance)
    end subroutine build_region

@@ -6,8 +6,6 @@ module deck_builder_rigid
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use equations, only: coupling_type
-   use mesh, only: mesh_type
-   use model, only: model_type
    implicit none
    private
    public :: build_rigid_body, need_faces, check_rigid_masters
@@ -16,10 +14,9 @@ contains
 
    !> Reads what follows the reference node, which is known: sets of nodes and elements, and the
    !> surfaces that are lines.
-   subroutine build_rigid_body(card, deck, model, coupling)
+   subroutine build_rigid_body(card, deck, coupling)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck               !! receives errors
-      type(model_type), intent(inout) :: model             !! receives whom its surfaces follow
+      type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling       !! receives the rest
       character(*), parameter :: names(3) = [character(8) :: 'NSET', 'TIE NSET', 'PIN NSET']
       character(:), allocatable :: position
@@ -37,15 +34,15 @@ contains
       end do
       call deck%take_named(card, 'ELSET', 'element set', coupling%element_set)
       if (coupling%element_set > 0) then
-         lines = lines_of(model%mesh%element_sets(coupling%element_set)%name, deck)
+         lines = lines_of(deck%mesh%element_sets(coupling%element_set)%name, deck)
          coupling%nodes = pack(deck%line_nodes(:, lines), deck%line_nodes(:, lines) > 0)
       end if
       surface = 0
       call deck%take_named(card, 'ANALYTICAL SURFACE', 'surface', surface)
       if (surface > 0) then
-         if (.not. allocated(model%mesh%surfaces(surface)%drawing)) then
+         if (.not. allocated(deck%mesh%surfaces(surface)%drawing)) then
             call deck%error(card%place_of('ANALYTICAL SURFACE'), 'surface '// &
-               model%mesh%surfaces(surface)%name//' is no drawing; name one of *SURFACE, '// &
+               deck%mesh%surfaces(surface)%name//' is no drawing; name one of *SURFACE, '// &
                'TYPE=SEGMENTS, or the elements by ELSET=')
             return
          end if
@@ -54,8 +51,8 @@ contains
       isothermal = is_on(card, 'ISOTHERMAL', deck)
       ! Lines conduct no heat: they have one temperature.
       coupling%is_warm = isothermal .or. (size(lines) > 0 .and. size(coupling%node_sets) == 0)
-      do i = 1, size(model%mesh%surfaces)
-         associate (given => model%mesh%surfaces(i))
+      do i = 1, size(deck%mesh%surfaces)
+         associate (given => deck%mesh%surfaces(i))
             if (.not. allocated(given%drawing)) cycle
             if (i /= surface .and. .not. allocated(given%drawing%line)) cycle
             if (i /= surface) then
@@ -73,32 +70,30 @@ contains
    end subroutine build_rigid_body
 
    !> Refuses a rigid surface where faces of elements are needed.
-   subroutine need_faces(mesh, place, advice, deck, surface)
-      type(mesh_type), intent(in) :: mesh
+   subroutine need_faces(place, advice, deck, surface)
       type(place_type), intent(in) :: place                !! where it is named
       character(*), intent(in) :: advice                   !! what to name in its place
-      type(deck_type), intent(inout) :: deck               !! receives the error
+      type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: surface                    !! 0 for none, and after an error
 
       if (surface == 0) return
-      if (.not. allocated(mesh%surfaces(surface)%drawing)) return
-      call deck%error(place, 'surface '//mesh%surfaces(surface)%name//' is rigid: it has no '// &
-         'faces; '//advice)
+      if (.not. allocated(deck%mesh%surfaces(surface)%drawing)) return
+      call deck%error(place, 'surface '//deck%mesh%surfaces(surface)%name//' is rigid: it has '// &
+         'no faces; '//advice)
       surface = 0
    end subroutine need_faces
 
    !> Rigid surfaces in contact have a reference node.
-   subroutine check_rigid_masters(model, deck)
-      type(model_type), intent(in) :: model
-      type(deck_type), intent(inout) :: deck   !! receives errors
+   subroutine check_rigid_masters(deck)
+      type(deck_type), intent(inout) :: deck
       integer :: i
 
-      do i = 1, size(model%contacts)
-         if (model%contacts(i)%master == 0) cycle
-         associate (surface => model%mesh%surfaces(model%contacts(i)%master))
+      do i = 1, size(deck%model%contacts)
+         if (deck%model%contacts(i)%master == 0) cycle
+         associate (surface => deck%mesh%surfaces(deck%model%contacts(i)%master))
             if (.not. allocated(surface%drawing)) cycle
             if (surface%drawing%reference > 0) cycle
-            call deck%missing(place_type(image=model%contacts(i)%card), 'rigid surface '// &
+            call deck%missing(place_type(image=deck%model%contacts(i)%card), 'rigid surface '// &
                surface%name//' belongs to no *RIGID BODY, whose reference node it follows; '// &
                'give *RIGID BODY, REF NODE=node, '//trim(merge('ELSET=its elements         ', &
                'ANALYTICAL SURFACE=its name', allocated(surface%drawing%line))), 'equation')

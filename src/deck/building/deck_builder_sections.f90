@@ -8,8 +8,7 @@ module deck_builder_sections
    use deck_structure, only: cards_of
    use equations, only: coupling_type
    use kinds, only: dp
-   use mesh, only: mesh_type, surface_type
-   use model, only: model_type
+   use mesh, only: surface_type
    use section_cuts, only: cut_mesh, section_normal, unit_vector
    use text, only: to_text
    implicit none
@@ -19,18 +18,17 @@ module deck_builder_sections
 contains
 
    !> Builds all sections, behind the couplings: their nodes are behind all others.
-   subroutine build_pre_tensions(deck, model)
-      type(deck_type), intent(inout) :: deck   !! knows the nodes; receives notes; receives errors
-      type(model_type), intent(inout) :: model             !! receives sections, nodes, surfaces
+   subroutine build_pre_tensions(deck)
+      type(deck_type), intent(inout) :: deck
       type(coupling_type) :: section
       integer, allocatable :: places(:)
       integer :: k
 
       places = cards_of(deck%cards, 'PRE-TENSION SECTION')
       do k = 1, size(places)
-         call build_section(deck%cards%keywords(places(k)), deck, model, section)
+         call build_section(deck%cards%keywords(places(k)), deck, section)
          if (section%opposite > 0) then
-            model%couplings = [model%couplings, section]
+            deck%model%couplings = [deck%model%couplings, section]
          else
             call deck%lose('equation')
          end if
@@ -38,62 +36,60 @@ contains
    end subroutine build_pre_tensions
 
    !> Builds one section; without an opposite face after an error.
-   subroutine build_section(card, deck, model, section)
+   subroutine build_section(card, deck, section)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(inout) :: model
       type(coupling_type), intent(out) :: section
       character(:), allocatable :: fault
       logical :: valid
 
       section%card = card%place%image
       section%title = '*PRE-TENSION SECTION, '//deck%source%words_of(card%place)
-      call find_reference('NODE', card, deck, model, section%reference)
+      call find_reference('NODE', card, deck, section%reference)
       call deck%need_named(card, 'SURFACE', 'surface', section%surface)
-      call need_faces(model%mesh, card%place_of('SURFACE'), 'a section lies between elements '// &
-         'of a body', deck, section%surface)
+      call need_faces(card%place_of('SURFACE'), 'a section lies between elements of a body', deck, &
+         section%surface)
       valid = section%reference > 0 .and. section%surface > 0 .and. all(deck%element_valid)
-      if (valid) valid = size(model%mesh%surfaces(section%surface)%faces) > 0
-      if (valid) section%normal = section_normal(section%surface, model%mesh)
+      if (valid) valid = size(deck%mesh%surfaces(section%surface)%faces) > 0
+      if (valid) section%normal = section_normal(section%surface, deck%mesh)
       if (size(card%data) > 0) call read_normal(card%data(1), deck, section%normal, valid)
       if (.not. valid) return
       fault = ''
       if (norm2(section%normal) <= 0.0_dp) fault = 'is closed: it has no normal'
-      if (any(model%mesh%element_nodes == section%reference)) fault = 'has node '// &
-         to_text(model%mesh%node_number(section%reference))//', which elements have, too: '// &
-         'the reference node is a node of its own'
-      if (any(model%couplings%reference == section%reference)) fault = 'has node '// &
-         to_text(model%mesh%node_number(section%reference))//', which is the reference node '// &
-         'of another card'
-      if (len(fault) == 0) call cut(card, deck, model%mesh, section, fault)
+      if (any(deck%mesh%element_nodes == section%reference)) fault = 'has node '// &
+         to_text(deck%mesh%node_number(section%reference))//', which elements have, too: the '// &
+         'reference node is a node of its own'
+      if (any(deck%model%couplings%reference == section%reference)) fault = 'has node '// &
+         to_text(deck%mesh%node_number(section%reference))//', which is the reference node of '// &
+         'another card'
+      if (len(fault) == 0) call cut(card, deck, section, fault)
       if (len(fault) > 0) call deck%error(card%place, 'this section '//fault)
    end subroutine build_section
 
    !> Cuts the mesh, and adds the other face.
-   subroutine cut(card, deck, mesh, section, fault)
+   subroutine cut(card, deck, section, fault)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(inout) :: mesh
       type(coupling_type), intent(inout) :: section
       character(:), allocatable, intent(out) :: fault
       type(surface_type) :: other
       integer :: first, last
 
-      call cut_mesh(section%surface, mesh, other%faces, first, fault)
+      call cut_mesh(section%surface, deck%mesh, other%faces, first, fault)
       if (len(fault) > 0) return
-      last = size(mesh%node_number)
+      last = size(deck%mesh%node_number)
       ! No deck can name it.
       other%name = section%title
       other%card = section%card
-      mesh%surfaces = [mesh%surfaces, other]
-      section%opposite = size(mesh%surfaces)
+      deck%mesh%surfaces = [deck%mesh%surfaces, other]
+      section%opposite = size(deck%mesh%surfaces)
       deck%face_places = [deck%face_places, deck%face_places(section%surface)]
       deck%node_place = [deck%node_place, spread(card%place, 1, last - first + 1)]
       deck%node_valid = [deck%node_valid, spread(.true., 1, last - first + 1)]
       deck%dropped = [deck%dropped, spread(.false., 1, last - first + 1)]
       call deck%note(section%title//': the elements of its surface have the nodes '// &
-         to_text(mesh%node_number(first))//' to '//to_text(mesh%node_number(last))//' there, '// &
-         'which the deck does not have')
+         to_text(deck%mesh%node_number(first))//' to '//to_text(deck%mesh%node_number(last))// &
+         ' there, which the deck does not have')
    end subroutine cut
 
    !> The normal; its third component is 0.
@@ -105,7 +101,6 @@ contains
       real(dp) :: given(3)
       logical :: sound
 
-      given = 0.0_dp
       call read_row(data, 'x of the normal/y of the normal/z of the normal?', deck, given, sound)
       valid = valid .and. sound
       if (.not. sound) return

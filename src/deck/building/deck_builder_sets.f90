@@ -6,13 +6,13 @@ module deck_builder_sets
    use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side
    use deck_builder_lines, only: is_line_card
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_type, item_index_type, place_list_type, read_target, take_name
+   use deck_context, only: deck_type, item_index_type, place_list_type, read_target
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
    use element_sides, only: element_sides_type, find_sides
    use kinds, only: dp
    use load_requests, only: target_type
-   use mesh, only: mesh_type, set_type, surface_type
+   use mesh, only: set_type, surface_type
    use number_lists, only: number_list_type
    use sorting, only: sort_order, unique_sorted
    use text, only: read_integer, to_text, to_upper
@@ -22,7 +22,7 @@ module deck_builder_sets
 
    !> Sets of nodes or of elements while they grow.
    type :: draft_type
-      type(item_index_type) :: numbers   !! numbers of nodes or of elements, names -> indexes
+      type(item_index_type) :: numbers   !! of nodes or of elements
       integer :: sets = 0                       !! number of sets
       type(set_type), allocatable :: items(:)   !! (capacity) their names
       type(number_list_type), allocatable :: members(:)   !! (capacity) some more than once
@@ -32,11 +32,9 @@ contains
 
    !> Builds all sets of nodes or of elements, lines among them; a name that is on several cards
    !> is one set.
-   subroutine build_sets(noun, deck, mesh, sets)
+   subroutine build_sets(noun, deck, sets)
       character(*), intent(in) :: noun                           !! node or element
-      !> numbers -> indexes; receives the names; receives errors
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh  !! for nodes: has the element sets and surfaces
       type(set_type), allocatable, intent(out) :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
@@ -48,7 +46,7 @@ contains
       allocate(draft%items(size(deck%cards%keywords)), draft%members(size(deck%cards%keywords)))
       draft%numbers = deck%node_index
       if (noun == 'element') draft%numbers = deck%member_index
-      first = [0, size(mesh%element_number)]
+      first = [0, size(deck%mesh%element_number)]
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             if (card%name == definer) then
@@ -64,13 +62,11 @@ contains
                end if
                first(kind) = first(kind) + count
             else if (card%name == parameter) then
-               call build_set(card, deck, mesh, draft)
+               call build_set(card, deck, draft)
             end if
          end associate
       end do
       allocate(sets(draft%sets))
-      if (noun == 'node') deck%node_index%sets = draft%numbers%sets
-      if (noun == 'element') deck%element_index%sets = draft%numbers%sets
       do i = 1, draft%sets
          call move_alloc(draft%items(i)%name, sets(i)%name)
          sets(i)%members = unique_sorted(draft%members(i)%numbers())
@@ -105,22 +101,21 @@ contains
       logical :: is_number
 
       name = to_upper(card%text(parameter))
-      set = draft%numbers%sets%find(name)
+      set = deck%index_of(draft%numbers%noun//' set', name)
       if (set > 0) return
       call read_integer(name, number, is_number)
       if (is_number) call deck%error(card%place_of(parameter), 'the name of a set must not be '// &
          'a number')
-      call draft%numbers%sets%add(name)
+      call deck%add_name(draft%numbers%noun//' set', name)
       draft%sets = draft%sets + 1
       set = draft%sets
       draft%items(set)%name = name
    end subroutine open_set
 
    !> Reads one *NSET or *ELSET card.
-   subroutine build_set(card, deck, mesh, draft)
+   subroutine build_set(card, deck, draft)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       type(draft_type), intent(inout) :: draft
       character(:), allocatable :: name
       integer, allocatable :: nodes(:)
@@ -133,7 +128,7 @@ contains
       known = draft%sets
       call open_set(card, card%name, deck, draft, set)
       if (draft%numbers%noun == 'node') then
-         call find_nodes(card, deck, mesh, nodes)
+         call find_nodes(card, deck, nodes)
          call draft%members(set)%add(nodes)
       end if
       do j = 1, size(card%data)
@@ -154,10 +149,9 @@ contains
    end subroutine build_set
 
    !> The nodes of the element set or the surface that an *NSET card names; some repeatedly.
-   subroutine find_nodes(card, deck, mesh, nodes)
+   subroutine find_nodes(card, deck, nodes)
       type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck   ! lines of element sets
-      type(mesh_type), intent(in) :: mesh                     ! element sets and surfaces
+      type(deck_type), intent(inout) :: deck
       integer, allocatable, intent(out) :: nodes(:)
       type(number_list_type) :: found
       integer :: i, set, surface
@@ -166,16 +160,16 @@ contains
       surface = 0
       call deck%take_named(card, 'ELSET', 'element set', set)
       if (set > 0) then
-         call found%add([mesh%element_nodes(:, mesh%element_sets(set)%members)])
+         call found%add([deck%mesh%element_nodes(:, deck%mesh%element_sets(set)%members)])
          call found%add([deck%line_nodes(:, deck%line_sets(set)%members)])
       end if
       call deck%take_named(card, 'SURFACE', 'surface', surface)
-      call need_faces(mesh, card%place_of('SURFACE'), 'name its reference node', deck, surface)
+      call need_faces(card%place_of('SURFACE'), 'name its reference node', deck, surface)
       if (surface > 0) then
-         associate (faces => mesh%surfaces(surface)%faces)
+         associate (faces => deck%mesh%surfaces(surface)%faces)
             do i = 1, size(faces, 2)
-               call found%add(mesh%element_nodes(side_nodes(mesh%element_kind(faces(1, i)), &
-                  faces(2, i)), faces(1, i)))
+               call found%add(deck%mesh%element_nodes(side_nodes(deck%mesh%element_kind(faces(1, &
+                  i)), faces(2, i)), faces(1, i)))
             end do
          end associate
       end if
@@ -194,8 +188,7 @@ contains
       integer :: first, last, step, number, count, found, first_missing, k
       logical :: valid
 
-      given = [0.0_dp, 0.0_dp, 1.0_dp]
-      call read_row(data, '#first number/#last number/#increment?', deck, given, valid)
+      call read_row(data, '#first number/#last number/#increment? =1', deck, given, valid)
       first = nint(given(1))
       last = nint(given(2))
       step = nint(given(3))
@@ -228,27 +221,24 @@ contains
    end subroutine generate
 
    !> Builds all surfaces.
-   subroutine build_surfaces(deck, mesh)
-      type(deck_type), intent(inout) :: deck               !! receives their places and errors
-      type(mesh_type), intent(inout) :: mesh               !! receives the surfaces
+   subroutine build_surfaces(deck)
+      type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       integer :: n
 
       places = cards_of(deck%cards, 'SURFACE')
-      allocate(mesh%surfaces(size(places)), deck%face_places(size(places)))
+      allocate(deck%mesh%surfaces(size(places)), deck%face_places(size(places)))
       do n = 1, size(places)
-         call take_name(deck%cards, places(n), 'surface', deck%surfaces, deck%deck_report_type, &
-            mesh%surfaces(n)%name)
-         call build_surface(deck%cards%keywords(places(n)), deck, mesh, mesh%surfaces(n), &
+         call deck%take_name(places(n), 'surface', deck%mesh%surfaces(n)%name)
+         call build_surface(deck%cards%keywords(places(n)), deck, deck%mesh%surfaces(n), &
             deck%face_places(n))
       end do
    end subroutine build_surfaces
 
    !> Builds one surface; a face that is named twice counts once, in the order of elements.
-   subroutine build_surface(card, deck, mesh, surface, places)
+   subroutine build_surface(card, deck, surface, places)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       type(surface_type), intent(inout) :: surface
       type(place_list_type), intent(inout) :: places   ! receives where each face is named
       character(:), allocatable :: kind
@@ -268,7 +258,7 @@ contains
          call build_drawing(card, deck, surface)
       else if (size(card%data) > 0) then
          if (is_rigid_side(card%data(1), deck)) then
-            call build_line_surface(card, deck, mesh, surface)
+            call build_line_surface(card, deck, surface)
             kind = 'RIGID'
          end if
       end if
@@ -279,18 +269,18 @@ contains
       do j = 1, size(card%data)
          ! An element set that has lines, without a face.
          if (.not. card%data(j)%has(2) .and. has_lines(card%data(j), deck)) then
-            call add_line_faces(card%data(j), deck, mesh, found)
+            call add_line_faces(card%data(j), deck, found)
             call named%add(spread(j, 1, found%count - named%count))
             cycle
          end if
          valid = .true.
-         call deck%need_elements(card%data(j), 1, mesh%element_sets, target, valid)
+         call deck%need_target('element', card%data(j), 1, target, valid)
          ! An unknown set may be one of lines, which has no face.
          if (valid .or. card%data(j)%has(2)) call read_face(card%data(j), deck, face, valid)
          call check_extra(card%data(j), 2, 'element or set, face', deck)
          if (.not. valid) cycle
-         elements = target%members(mesh%element_sets)
-         call check_face(card%data(j), mesh, elements, face, deck, valid)
+         elements = target%members(deck%mesh%element_sets)
+         call check_face(card%data(j), elements, face, deck, valid)
          if (.not. valid) cycle
          call found%add(4*elements + face - 1)
          call named%add(spread(j, 1, size(elements)))
@@ -311,17 +301,16 @@ contains
       type(deck_type), intent(in) :: deck
       integer :: set
 
-      set = deck%element_index%sets%find(data%text(1))
+      set = deck%index_of('element set', data%text(1))
       has_lines = set > 0
       if (has_lines) has_lines = size(deck%line_sets(set)%members) > 0
    end function has_lines
 
    !> Adds the faces under the lines of a set; the first line under which there is none, or one
    !> inside a body, is an error.
-   subroutine add_line_faces(data, deck, mesh, found)
+   subroutine add_line_faces(data, deck, found)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       type(number_list_type), intent(inout) :: found
       type(element_sides_type) :: sides
       integer, allocatable :: members(:), uses(:)
@@ -330,9 +319,9 @@ contains
 
       call check_extra(data, 1, 'element set of lines', deck)
       if (.not. all(deck%element_valid)) return
-      members = deck%line_sets(deck%element_index%sets%find(data%text(1)))%members
+      members = deck%line_sets(deck%index_of('element set', data%text(1)))%members
       allocate (uses(size(members)), source=0)
-      sides = find_sides(mesh)
+      sides = find_sides(deck%mesh)
       do i = 1, size(members)
          side = side_of_line(deck%line_nodes(:, members(i)), sides)
          if (side == 0) cycle
@@ -351,13 +340,14 @@ contains
       associate (nodes => deck%line_nodes(:, members(bad)))
          if (any(nodes(:2) == 0)) return
          i = findloc(nodes > 0, .true., dim=1, back=.true.)
-         if (all(mesh%element_nodes /= nodes(1) .and. mesh%element_nodes /= nodes(2))) then
+         if (all(deck%mesh%element_nodes /= nodes(1) .and. deck%mesh%element_nodes /= nodes(2))) &
+            then
             fault = fault//', nor do its nodes: its curve is the side of no surface in the '// &
                'drawing, such as a second one at the place of one that is; take that one'
          end if
-         call deck%error(data%place(1), 'line '//to_text(deck%line_number(members(bad)))// &
-            ' from node '//to_text(mesh%node_number(nodes(1)))//' to '// &
-            to_text(mesh%node_number(nodes(i)))//' '//fault)
+         call deck%error(data%place(1), 'line '//to_text(deck%line_number(members(bad)))//' '// &
+            'from node '//to_text(deck%mesh%node_number(nodes(1)))//' to '// &
+            to_text(deck%mesh%node_number(nodes(i)))//' '//fault)
       end associate
    end subroutine add_line_faces
 
@@ -374,18 +364,17 @@ contains
    end function side_of_line
 
    !> Every element of a data card has the face.
-   subroutine check_face(data, mesh, elements, face, deck, valid)
+   subroutine check_face(data, elements, face, deck, valid)
       type(data_card_type), intent(in) :: data
-      type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: elements(:), face
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer :: i
 
       do i = 1, size(elements)
-         if (face <= element_corner_count(mesh%element_kind(elements(i)))) cycle
-         call deck%error(data%place(2), 'element '//to_text(mesh%element_number(elements(i)))// &
-            ' is a triangle and has no face S'//to_text(face))
+         if (face <= element_corner_count(deck%mesh%element_kind(elements(i)))) cycle
+         call deck%error(data%place(2), 'element '//to_text(deck%mesh%element_number(elements( &
+            i)))//' is a triangle and has no face S'//to_text(face))
          valid = .false.
          return
       end do

@@ -11,8 +11,6 @@ module deck_builder_steps
    use deck_context, only: deck_type
    use deck_structure, only: card_count, cards_of
    use kinds, only: dp
-   use mesh, only: mesh_type
-   use model, only: model_type
    use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
       increment_growth, least_increment, planned_increments, solves_heat, solves_mechanics, &
       step_controls_type, step_type
@@ -40,9 +38,8 @@ module deck_builder_steps
 contains
 
    !> Builds all steps, in their order.
-   subroutine build_steps(deck, model)
-      type(deck_type), intent(inout) :: deck               !! receives requests and notes and errors
-      type(model_type), intent(inout) :: model             !! receives the steps
+   subroutine build_steps(deck)
+      type(deck_type), intent(inout) :: deck
       type(step_controls_type) :: controls
       type(card_counts_type) :: counts
       type(step_type) :: before
@@ -53,7 +50,7 @@ contains
       deck%analyses_sound = .not. deck%has_lost('*STEP')
       deck%boundaries_sound = deck%analyses_sound
       n = card_count(deck%cards, 'STEP')
-      allocate(model%steps(n), deck%step_place(n), deck%analysis_place(n))
+      allocate(deck%model%steps(n), deck%step_place(n), deck%analysis_place(n))
       n = 0
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
@@ -62,13 +59,11 @@ contains
                n = n + 1
                counts = card_counts_type(has_amplitude=card%has('AMPLITUDE'))
                deck%step_place(n) = card%place
-               if (n > 1) before = model%steps(n - 1)
-               call begin_step(card, before, deck, model%steps(n))
-               if (card%has('PERTURBATION')) call check_perturbation(card, n > 1, &
-                  size(model%contacts) > 0, deck)
+               if (n > 1) before = deck%model%steps(n - 1)
+               call begin_step(card, n > 1, before, deck, deck%model%steps(n))
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
-               call begin_analysis(card, n, counts, deck, model%steps)
+               call begin_analysis(card, n, counts, deck, deck%model%steps)
             case ('END STEP')
                if (counts%analyses > 0) cycle
                deck%analyses_sound = .false.
@@ -76,34 +71,34 @@ contains
                   '*COUPLED TEMPERATURE-DISPLACEMENT')
             case ('FIXED POINT', 'RESTART', 'START', 'THERMAL SCHEME')
                has_scheme = has_scheme .or. card%name == 'THERMAL SCHEME'
-               call build_control(card, deck, model, controls)
+               call build_control(card, deck, controls)
             case ('CONTINUATION')
-               if (n > 0) call build_continuation(card, deck, model%steps(n)%continuation)
+               if (n > 0) call build_continuation(card, deck, deck%model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
                'SFILM', 'TEMPERATURE')
-               call build_load_card(card, n, model, deck)
+               call build_load_card(card, n, deck)
             case ('CHANGE FRICTION', 'FRICTION', 'MODEL CHANGE', 'CONTACT INTERFERENCE')
-               call build_contact_change(k, n, model, deck)
+               call build_contact_change(k, n, deck)
             case default
                if (card%meant == 'STATIC' .or. card%name == 'NO ANALYSIS') then
                   ! One that is refused is reported already.
                   counts%analyses = counts%analyses + 1
                   deck%analyses_sound = .false.
                else if (n > 0) then
-                  call build_output(card, deck, model%mesh, counts, model%steps(n))
+                  call build_output(card, deck, counts, deck%model%steps(n))
                end if
             end select
          end associate
-         if (n > 0) call take_controls(controls, has_scheme, counts%is_uncoupled, model%steps(n))
+         if (n > 0) call take_controls(controls, has_scheme, counts%is_uncoupled, &
+            deck%model%steps(n))
       end do
-      call warn_of_nlgeom(deck, model%steps)
+      call warn_of_nlgeom(deck, deck%model%steps)
    end subroutine build_steps
 
    !> Reads a card that controls this step and later ones.
-   subroutine build_control(card, deck, model, controls)
+   subroutine build_control(card, deck, controls)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(step_controls_type), intent(inout) :: controls
 
       select case (card%name)
@@ -112,7 +107,7 @@ contains
       case ('RESTART')
          call build_restart(card, deck, controls)
       case ('START')
-         call build_start(card, deck, model, controls%start)
+         call build_start(card, deck, controls%start)
       case default
          call build_thermal_scheme(card, deck, controls%scheme)
       end select
@@ -144,10 +139,9 @@ contains
    end subroutine warn_of_nlgeom
 
    !> Reads a card of a step that asks for output; others are ignored.
-   subroutine build_output(card, deck, mesh, counts, step)
+   subroutine build_output(card, deck, counts, step)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       type(card_counts_type), intent(inout) :: counts
       type(step_type), intent(inout) :: step
 
@@ -157,10 +151,10 @@ contains
          call build_file_output(card, counts%files, deck, step)
       case ('NODE PRINT')
          counts%node_prints = counts%node_prints + 1
-         call build_print(card, counts%node_prints == 1, deck, mesh, step%node_prints)
+         call build_print(card, counts%node_prints == 1, deck, step%node_prints)
       case ('EL PRINT')
          counts%element_prints = counts%element_prints + 1
-         call build_print(card, counts%element_prints == 1, deck, mesh, step%element_prints)
+         call build_print(card, counts%element_prints == 1, deck, step%element_prints)
       case ('STABILITY')
          if (step%analysis /= analysis_coupled .or. counts%analyses == 0) then
             call deck%error(card%place, '*STABILITY needs a step with *COUPLED '// &
@@ -177,8 +171,9 @@ contains
    end subroutine build_output
 
    !> Reads *STEP; output goes on as in the step before.
-   subroutine begin_step(card, before, deck, step)
+   subroutine begin_step(card, is_later, before, deck, step)
       type(keyword_card_type), intent(in) :: card
+      logical, intent(in) :: is_later
       type(step_type), intent(in) :: before
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
@@ -198,22 +193,16 @@ contains
       if (allocated(before%node_prints)) step%node_prints = before%node_prints
       if (allocated(before%element_prints)) step%element_prints = before%element_prints
       step%nlgeom = is_on(card, 'NLGEOM', deck)
-   end subroutine begin_step
-
-   !> A perturbation of the initial state is a step, unless contact changes with the load.
-   subroutine check_perturbation(card, is_later, has_contact, deck)
-      type(keyword_card_type), intent(in) :: card
-      logical, intent(in) :: is_later, has_contact
-      type(deck_type), intent(inout) :: deck
-
-      if (is_later .or. has_contact) then
+      ! A perturbation of the initial state is a step, unless contact changes with the load.
+      if (.not. card%has('PERTURBATION')) return
+      if (is_later .or. size(deck%model%contacts) > 0) then
          call deck%error(card%place_of('PERTURBATION'), 'PERTURBATION is refused on *STEP: '// &
             trim(merge('steps go on from the one before', 'contact changes with the load  ', &
             is_later))//'; leave it out')
       else
          call deck%note('*STEP: PERTURBATION is ignored: the step begins with the initial state')
       end if
-   end subroutine check_perturbation
+   end subroutine begin_step
 
    !> Reads the analysis of step n, the only one that it may have.
    subroutine begin_analysis(card, n, counts, deck, steps)
@@ -254,7 +243,6 @@ contains
       step%direct = is_on(card, 'DIRECT', deck)
       if (size(card%data) > 0) then
          call build_increments(card%data(1), deck, step)
-         if (card%name == 'HEAT TRANSFER') call check_rate(card%data(1), deck)
       else
          call deck%note('*'//card%name//' without data: one increment, period 1')
       end if
@@ -364,22 +352,24 @@ contains
    !> First increment, period, smallest and largest increment.
    subroutine build_increments(data, deck, step)
       type(data_card_type), intent(in) :: data             !! data card of the analysis
-      type(deck_type), intent(inout) :: deck               !! receives notes and errors and warnings
+      type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step               !! receives the times
       real(dp) :: given(5)
       integer :: comma, most
       logical :: valid
 
       most = merge(5, 4, step%analysis == analysis_heat)
-      given = [step%first_increment, step%period, 0.0_dp, 0.0_dp, 0.0_dp]
-      call read_row(data, 'first increment?/period?/smallest increment?/largest increment?'// &
-         trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
+      call read_row(data, 'first increment? =1/period? =1/smallest increment?/largest '// &
+         'increment?'//trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
       step%first_increment = given(1)
       step%period = given(2)
       step%smallest_increment = min(smallest_part*step%period, step%first_increment)
       step%largest_increment = step%first_increment
       if (data%has(3)) step%smallest_increment = given(3)
       if (data%has(4)) step%largest_increment = given(4)
+      ! With it Abaqus ends a step early.
+      if (most == 5 .and. data%has(5)) call deck%warning(data%place(5), 'the fifth field, the '// &
+         'rate of temperature at which END=SS ends a step, is ignored: the step lasts its period')
       if (.not. data%has(1)) call deck%note('first increment not given: 1')
       if (.not. data%has(2)) call deck%note('period not given: 1')
       if (step%direct .and. (data%has(3) .or. data%has(4))) call deck%note('smallest and '// &
@@ -407,15 +397,6 @@ contains
             ': a smaller part of the period is lost in rounding')
       end if
    end subroutine build_increments
-
-   !> Warns of the fifth field of *HEAT TRANSFER, with which Abaqus ends a step early.
-   subroutine check_rate(data, deck)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-
-      if (data%has(5)) call deck%warning(data%place(5), 'the fifth field, the rate of '// &
-         'temperature at which END=SS ends a step, is ignored: the step lasts its period')
-   end subroutine check_rate
 
    !> Whether the times of a step are positive, and the first increment lies between the smallest
    !> and the period.

@@ -12,7 +12,7 @@ module deck_builder_verify
    use deck_structure, only: cards_of, data_count
    use kinds, only: dp
    use load_requests, only: target_type
-   use model, only: model_type, verify_type
+   use model, only: verify_type
    use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_contact_points, &
       of_history, of_interface, of_nodes, of_sections, quantity_type
@@ -26,14 +26,13 @@ module deck_builder_verify
 contains
 
    !> Builds all checks.
-   subroutine build_verifications(deck, model)
-      type(deck_type), intent(inout) :: deck               !! numbers of nodes; receives errors
-      type(model_type), intent(inout) :: model             !! receives the checks
+   subroutine build_verifications(deck)
+      type(deck_type), intent(inout) :: deck
       character(:), allocatable :: kind
       integer, allocatable :: places(:)
       integer :: k, j, n
 
-      allocate(model%verifications(data_count(deck%cards, cards_of(deck%cards, 'VERIFY'))))
+      allocate(deck%model%verifications(data_count(deck%cards, cards_of(deck%cards, 'VERIFY'))))
       n = 0
       places = cards_of(deck%cards, 'VERIFY')
       do k = 1, size(places)
@@ -41,29 +40,27 @@ contains
             kind = needed_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', deck)
             do j = 1, size(card%data)
                n = n + 1
-               model%verifications(n)%kind = kind
-               model%verifications(n)%source = card%text('SOURCE')
-               call build_check(card%data(j), deck, model, model%verifications(n))
+               deck%model%verifications(n)%kind = kind
+               deck%model%verifications(n)%source = card%text('SOURCE')
+               call build_check(card%data(j), deck, deck%model%verifications(n))
             end do
          end associate
       end do
-      if (deck%analyses_sound) call check_heat_quantities(deck%verifiable, model, deck)
+      if (deck%analyses_sound) call check_heat_quantities(deck)
    end subroutine build_verifications
 
    !> Reports quantities of heat in a deck none of whose steps solves heat.
-   subroutine check_heat_quantities(verifiable, model, deck)
-      type(quantity_type), intent(in) :: verifiable(:)     !! what *VERIFY may name
-      type(model_type), intent(in) :: model                !! steps and checks
-      type(deck_type), intent(inout) :: deck               !! receives errors
+   subroutine check_heat_quantities(deck)
+      type(deck_type), intent(inout) :: deck
       integer :: i, quantity
       logical :: is_told
 
-      if (size(model%steps) == 0 .or. any(model%steps%analysis /= analysis_static)) return
-      do i = 1, size(model%verifications)
-         associate (check => model%verifications(i))
-            quantity = find_quantity(verifiable, check%quantity)
+      if (size(deck%model%steps) == 0 .or. any(deck%model%steps%analysis /= analysis_static)) return
+      do i = 1, size(deck%model%verifications)
+         associate (check => deck%model%verifications(i))
+            quantity = find_quantity(deck%verifiable, check%quantity)
             if (quantity == 0) cycle
-            if (all(verifiable(quantity)%needs /= [needs_heat, needs_coupling])) cycle
+            if (all(deck%verifiable(quantity)%needs /= [needs_heat, needs_coupling])) cycle
             call deck%confirm_cause(heatless, is_told)
             if (is_told) return
             call deck%error(place_type(check%line, check%columns(1)), 'no step of this deck '// &
@@ -75,10 +72,9 @@ contains
    end subroutine check_heat_quantities
 
    !> quantity, where, when, value, tolerance, REL|ABS.
-   subroutine build_check(data, deck, model, check)
+   subroutine build_check(data, deck, check)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(verify_type), intent(inout) :: check
       type(place_type) :: places(2)
       real(dp) :: values(6)
@@ -94,10 +90,9 @@ contains
       call read_quantity(data, deck%verifiable, '', deck, quantity)
       if (quantity > 0) then
          check%quantity = trim(deck%verifiable(quantity)%name)
-         call check_where(data, deck%verifiable(quantity)%kind, deck, model, check)
+         call check_where(data, deck%verifiable(quantity)%kind, deck, check)
       end if
-      if (deck%analyses_sound) call read_when(data, model, deck, check)
-      values = 0.0_dp
+      if (deck%analyses_sound) call read_when(data, deck, check)
       call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', deck, values, &
          valid)
       check%value = values(4)
@@ -144,11 +139,10 @@ contains
    end subroutine read_quantity
 
    !> Checks where a quantity is judged; the only interface of a deck need not be named.
-   subroutine check_where(data, kind, deck, model, check)
+   subroutine check_where(data, kind, deck, check)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(verify_type), intent(inout) :: check
 
       if (kind == of_history) then
@@ -156,50 +150,50 @@ contains
             'leave this field empty')
          return
       end if
-      if ((kind == of_interface .or. kind == of_contact_points) .and. size(model%contacts) == &
+      if ((kind == of_interface .or. kind == of_contact_points) .and. size(deck%model%contacts) == &
          0) then
          call deck%missing(data%place(1), 'the deck has no *CONTACT PAIR: there is no '// &
             check%quantity)
          return
       end if
-      if (kind == of_sections .and. .not. any(model%couplings%is_section())) then
+      if (kind == of_sections .and. .not. any(deck%model%couplings%is_section())) then
          call deck%missing(data%place(1), 'the deck has no *PRE-TENSION SECTION: there is no '// &
             check%quantity, 'equation')
          return
       end if
       if (any(to_upper(check%where) == ['MIN', 'MAX'])) return
       if (kind == of_nodes .or. kind == of_sections) then
-         call check_nodes(data, kind, deck, model)
-      else if (kind == of_interface .and. check%where == '' .and. size(model%contacts) == 1) then
-         check%where = model%contacts(1)%name
+         call check_nodes(data, kind, deck)
+      else if (kind == of_interface .and. check%where == '' .and. size(deck%model%contacts) == 1) &
+         then
+         check%where = deck%model%contacts(1)%name
       else
          call check_interface(data, kind, deck)
       end if
    end subroutine check_where
 
    !> A node or a node set, one of whose nodes at least has values.
-   subroutine check_nodes(data, kind, deck, model)
+   subroutine check_nodes(data, kind, deck)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
-      logical :: used(0:size(model%mesh%node_number))
+      logical :: used(0:size(deck%mesh%node_number))
       type(target_type) :: target
       integer, allocatable :: nodes(:)
       logical :: valid
 
       valid = .true.
-      call deck%need_nodes(data, 2, model%mesh%node_sets, target, valid)
+      call deck%need_target('node', data, 2, target, valid)
       if (.not. valid) return
       used = .false.
       if (kind == of_sections) then
-         used(section_nodes(model%couplings)) = .true.
+         used(section_nodes(deck%model%couplings)) = .true.
       else
-         used([model%mesh%element_nodes]) = .true.
-         used(1:) = used(1:) .or. constrained_nodes(model%equations, model%couplings, &
-            size(used) - 1) .or. equation_nodes(model%bars%elongation, size(used) - 1)
+         used([deck%mesh%element_nodes]) = .true.
+         used(1:) = used(1:) .or. constrained_nodes(deck%model%equations, deck%model%couplings, &
+            size(used) - 1) .or. equation_nodes(deck%model%bars%elongation, size(used) - 1)
       end if
-      nodes = target%members(model%mesh%node_sets)
+      nodes = target%members(deck%mesh%node_sets)
       nodes = pack(nodes, used(nodes))
       if (size(nodes) == 0 .and. kind == of_sections) then
          call deck%error(data%place(2), data%text(2)//' is not the reference node of a '// &
@@ -242,9 +236,8 @@ contains
    end subroutine check_interface
 
    !> A total time that an increment meets, or LAST.
-   subroutine read_when(data, model, deck, check)
+   subroutine read_when(data, deck, check)
       type(data_card_type), intent(in) :: data
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       type(verify_type), intent(inout) :: check
       real(dp) :: start, rest
@@ -255,22 +248,22 @@ contains
       if (check%at_last) return
       valid = .true.
       call need_field(data, 3, 'time or LAST', deck, check%when, valid)
-      if (.not. valid .or. size(model%steps) == 0) return
+      if (.not. valid .or. size(deck%model%steps) == 0) return
       start = 0.0_dp
-      do s = 1, size(model%steps)
-         associate (step => model%steps(s))
+      do s = 1, size(deck%model%steps)
+         associate (step => deck%model%steps(s))
             rest = start + step%period - check%when
             if (rest >= -increment_rounding*step%first_increment) exit
             start = start + step%period
          end associate
       end do
-      if (check%when <= 0.0_dp .or. s > size(model%steps)) then
+      if (check%when <= 0.0_dp .or. s > size(deck%model%steps)) then
          call deck%error(data%place(3), 'no increment ends at this time; the steps end at '// &
-            to_text(sum(model%steps%period)))
-      else if (model%steps(s)%direct) then
-         associate (n => (check%when - start)/model%steps(s)%first_increment)
-            if (abs(n - anint(n)) > increment_rounding .and. &
-               rest > increment_rounding*model%steps(s)%first_increment) then
+            to_text(sum(deck%model%steps%period)))
+      else if (deck%model%steps(s)%direct) then
+         associate (n => (check%when - start)/deck%model%steps(s)%first_increment)
+            if (abs(n - anint(n)) > increment_rounding .and. rest > &
+               increment_rounding*deck%model%steps(s)%first_increment) then
                call deck%error(data%place(3), 'no increment of this DIRECT step ends at this time')
             end if
          end associate
@@ -278,51 +271,48 @@ contains
    end subroutine read_when
 
    !> Reads the targets of all cards.
-   subroutine build_accuracy(estimated, deck, model)
+   subroutine build_accuracy(estimated, deck)
       type(quantity_type), intent(in) :: estimated(:)      !! quantities whose errors are estimated
-      type(deck_type), intent(inout) :: deck   !! names of the contact pairs; receives errors
-      type(model_type), intent(inout) :: model             !! receives the targets
+      type(deck_type), intent(inout) :: deck
       integer :: k, j
 
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             if (card%name /= 'ACCURACY') cycle
-            if (.not. allocated(model%accuracy%targets)) then
-               allocate (model%accuracy%targets(0))
-               call check_deck(card, model, deck)
+            if (.not. allocated(deck%model%accuracy%targets)) then
+               allocate (deck%model%accuracy%targets(0))
+               call check_deck(card, deck)
             end if
-            call take_from(1, card, 'ROUNDS', deck, model%accuracy%rounds)
+            call take_from(1, card, 'ROUNDS', deck, deck%model%accuracy%rounds)
             do j = 1, size(card%data)
-               call build_target(card%data(j), estimated, deck, model)
+               call build_target(card%data(j), estimated, deck)
             end do
          end associate
       end do
    end subroutine build_accuracy
 
    !> The targets need an interface and estimates.
-   subroutine check_deck(card, model, deck)
+   subroutine check_deck(card, deck)
       type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
 
-      if (size(model%contacts) == 0) call deck%missing(card%place, 'the deck has no *CONTACT '// &
-         'PAIR: there is no quantity that *ACCURACY could name')
-      if (reason_of_deck(model) /= no_reason) then
+      if (size(deck%model%contacts) == 0) call deck%missing(card%place, 'the deck has no '// &
+         '*CONTACT PAIR: there is no quantity that *ACCURACY could name')
+      if (reason_of_deck(deck%model) /= no_reason) then
          call deck%error(card%place, '*ACCURACY needs bounds of errors, which do not know '// &
-            words_of_reason(reason_of_deck(model))//'; refine by *REFINE and, where heat is '// &
-            'stored, LOCAL ERROR=')
+            words_of_reason(reason_of_deck(deck%model))//'; refine by *REFINE and, where heat '// &
+            'is stored, LOCAL ERROR=')
          return
       end if
-      if (.not. model%estimates_errors) call deck%error(card%place, '*ACCURACY needs estimated '// &
-         'errors; leave ERRORS=NO out of *OPTIONS')
+      if (.not. deck%model%estimates_errors) call deck%error(card%place, '*ACCURACY needs '// &
+         'estimated errors; leave ERRORS=NO out of *OPTIONS')
    end subroutine check_deck
 
    !> quantity, target, REL|ABS, interface.
-   subroutine build_target(data, estimated, deck, model)
+   subroutine build_target(data, estimated, deck)
       type(data_card_type), intent(in) :: data
       type(quantity_type), intent(in) :: estimated(:)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(inout) :: model
       type(accuracy_target_type) :: target
       real(dp) :: values(4)
       integer :: errors, i
@@ -332,7 +322,6 @@ contains
       call read_quantity(data, estimated, 'no error of '//data%text(1)//' is estimated', deck, i)
       target%quantity = ''
       if (i > 0) target%quantity = trim(estimated(i)%name)
-      values = 0.0_dp
       call read_row(data, '@quantity/target >0/@REL or ABS/@contact pair', deck, values, valid)
       target%bound = values(2)
       select case (to_upper(data%text(3)))
@@ -346,17 +335,18 @@ contains
          call deck%error(data%place(3), ''''//data%text(3)//''' is neither REL nor ABS')
       end select
       target%interface = 0
-      if (data%has(4) .and. size(model%contacts) > 0) then
+      if (data%has(4) .and. size(deck%model%contacts) > 0) then
          call deck%look_up('contact pair', data%text(4), data%place(4), target%interface)
       end if
-      do i = 1, size(model%accuracy%targets)
-         associate (other => model%accuracy%targets(i))
+      do i = 1, size(deck%model%accuracy%targets)
+         associate (other => deck%model%accuracy%targets(i))
             if (other%quantity == target%quantity .and. any(target%interface == [0, &
                other%interface] .or. other%interface == 0)) call deck%error(data%place(1), 'an '// &
                'earlier card has a target of '//target%quantity//' already')
          end associate
       end do
-      if (deck%error_count() == errors) model%accuracy%targets = [model%accuracy%targets, target]
+      if (deck%error_count() == errors) deck%model%accuracy%targets = &
+         [deck%model%accuracy%targets, target]
    end subroutine build_target
 
 end module deck_builder_verify

@@ -2,8 +2,9 @@
 !> whether the deck uses all that it defines, for whole steps; what it does not may be a slip.
 module deck_checks
    use amplitudes, only: amplitude_type, amplitude_value
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: keyword_card_type
    use deck_context, only: deck_type
+   use deck_structure, only: cards_of
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
    use kinds, only: dp, long
@@ -34,53 +35,50 @@ module deck_checks
 contains
 
    !> Checks the model before it is refined.
-   subroutine check_model(deck, model)
-      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
-      type(model_type), intent(in) :: model
-      integer :: uses(4, size(model%mesh%element_number))
-      logical :: inverted(size(model%mesh%element_number))
+   subroutine check_model(deck)
+      type(deck_type), intent(inout) :: deck
+      integer :: uses(4, size(deck%mesh%element_number))
+      logical :: inverted(size(deck%mesh%element_number))
       character(:), allocatable :: fault
 
       ! The mesh once it is refined.
-      fault = numbering_fault(model%mesh, size(model%mesh%element_number)*4_long**deck%levels)
+      fault = numbering_fault(deck%mesh, size(deck%mesh%element_number)*4_long**deck%levels)
       if (len(fault) > 0) call deck%error(deck%levels_place, fault)
-      call check_sections(deck, model)
-      call check_materials(deck, model)
-      call check_planes(deck, model%mesh)
-      call check_orientations(deck, model)
-      call check_jacobians(deck, model%mesh, inverted)
-      call check_slenderness(deck, model%mesh)
-      call check_sides(deck, model%mesh, inverted, uses)
-      call check_loads(deck, model, uses)
+      call check_sections(deck)
+      call check_materials(deck)
+      call check_planes(deck)
+      call check_orientations(deck)
+      call check_jacobians(deck, inverted)
+      call check_slenderness(deck)
+      call check_sides(deck, inverted, uses)
+      call check_loads(deck, uses)
    end subroutine check_model
 
    !> Every element has a section.
-   subroutine check_sections(deck, model)
+   subroutine check_sections(deck)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       integer :: without, e
 
-      without = count(model%mesh%element_section == 0)
-      if (size(model%sections) == 0 .or. without == 0) return
+      without = count(deck%mesh%element_section == 0)
+      if (size(deck%model%sections) == 0 .or. without == 0) return
       if (.not. (deck%sections_sound .and. deck%sets_sound)) return
-      e = findloc(model%mesh%element_section, 0, dim=1)
+      e = findloc(deck%mesh%element_section, 0, dim=1)
       call deck%error(deck%element_place(e), 'no *SOLID SECTION for element '// &
-         to_text(model%mesh%element_number(e))//'; elements without one: '//to_text(without))
+         to_text(deck%mesh%element_number(e))//'; elements without one: '//to_text(without))
    end subroutine check_sections
 
    !> Every material in use has what the steps need.
-   subroutine check_materials(deck, model)
+   subroutine check_materials(deck)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       logical :: mechanics, heat
       integer :: m
 
       if (.not. deck%analyses_sound) return
-      mechanics = any(solves_mechanics(model%steps%analysis))
-      heat = any(solves_heat(model%steps%analysis))
-      do m = 1, size(model%materials)
-         if (.not. any(model%sections%material == m)) cycle
-         associate (material => model%materials(m))
+      mechanics = any(solves_mechanics(deck%model%steps%analysis))
+      heat = any(solves_heat(deck%model%steps%analysis))
+      do m = 1, size(deck%model%materials)
+         if (.not. any(deck%model%sections%material == m)) cycle
+         associate (material => deck%model%materials(m))
             if (mechanics .and. .not. material%has_elasticity) call deck%missing( &
                deck%material_place(m), 'material '//material%name//' has no *ELASTIC, which a '// &
                'step with displacements needs', '*ELASTIC')
@@ -92,55 +90,52 @@ contains
             if (equivalent_poisson(material%elasticity) <= most_compressible) cycle
             ! Elements with too many integration points lock; six-node triangles do not, but their
             ! mean stress scatters and does not converge.
-            call warn_of_kinds(deck, model, m, [quad8, triangle3], 'elements such as ', ' are '// &
-               'too stiff')
-            call warn_of_kinds(deck, model, m, [triangle6], 'the stresses of elements such as ', &
-               ' scatter')
+            call warn_of_kinds(deck, m, [quad8, triangle3], 'elements such as ', ' are too stiff')
+            call warn_of_kinds(deck, m, [triangle6], 'the stresses of elements such as ', ' '// &
+               'scatter')
          end associate
       end do
    end subroutine check_materials
 
    !> Warns of the first element of some kinds that has the material and is not in plane stress.
-   subroutine warn_of_kinds(deck, model, m, kinds, subject, trouble)
+   subroutine warn_of_kinds(deck, m, kinds, subject, trouble)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       integer, intent(in) :: m
       integer, intent(in) :: kinds(:)
       character(*), intent(in) :: subject, trouble
       integer :: e, kind
 
-      associate (mesh => model%mesh)
+      associate (mesh => deck%mesh)
          do e = 1, size(mesh%element_number)
             if (mesh%element_section(e) == 0 .or. .not. deck%element_valid(e)) cycle
-            if (model%sections(mesh%element_section(e))%material /= m) cycle
+            if (deck%model%sections(mesh%element_section(e))%material /= m) cycle
             if (mesh%element_plane(e) == plane_stress) cycle
             kind = mesh%element_kind(e)
             if (deck%order == 1) kind = linear_kind(kind)
             if (all(kind /= kinds)) cycle
-            call deck%warning(deck%material_place(m), 'material '//model%materials(m)%name// &
+            call deck%warning(deck%material_place(m), 'material '//deck%model%materials(m)%name// &
                ' is nearly incompressible: '//subject//to_text(mesh%element_number(e))//trouble// &
-               ' with it; take '// &
-               trim(merge('CAX8R', 'CPE8R', mesh%element_plane(e) == axisymmetric)))
+               ' with it; take '//trim(merge('CAX8R', 'CPE8R', mesh%element_plane(e) == &
+               axisymmetric)))
             return
          end do
       end associate
    end subroutine warn_of_kinds
 
    !> The axis of a cylindrical orientation is parallel to z, where an axisymmetric model has none.
-   subroutine check_orientations(deck, model)
+   subroutine check_orientations(deck)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       integer :: e
 
-      do e = 1, size(model%mesh%element_number)
-         if (model%mesh%element_section(e) == 0) cycle
-         if (model%mesh%element_plane(e) /= axisymmetric) cycle
-         associate (index => model%sections(model%mesh%element_section(e))%orientation)
+      do e = 1, size(deck%mesh%element_number)
+         if (deck%mesh%element_section(e) == 0) cycle
+         if (deck%mesh%element_plane(e) /= axisymmetric) cycle
+         associate (index => deck%model%sections(deck%mesh%element_section(e))%orientation)
             if (index == 0) cycle
-            if (.not. model%orientations(index)%cylindrical) cycle
-            call deck%error(deck%element_place(e), 'element '// &
-               to_text(model%mesh%element_number(e))//' is axisymmetric: the cylindrical '// &
-               'orientation '//model%orientations(index)%name//' has its axis along z')
+            if (.not. deck%model%orientations(index)%cylindrical) cycle
+            call deck%error(deck%element_place(e), 'element '//to_text(deck%mesh%element_number( &
+               e))//' is axisymmetric: the cylindrical orientation '// &
+               deck%model%orientations(index)%name//' has its axis along z')
             return
          end associate
       end do
@@ -148,18 +143,17 @@ contains
 
    !> Warns of definitions without use, and of amplitudes that end long before their step or begin
    !> after it. The deck has no errors, of which these may only be the consequence.
-   subroutine check_usage(deck, model)
-      type(deck_type), intent(inout) :: deck              !! requests; receives warnings
-      type(model_type), intent(in) :: model               !! amplitudes and steps
-      logical :: told(size(model%amplitudes))
+   subroutine check_usage(deck)
+      type(deck_type), intent(inout) :: deck
+      logical :: told(size(deck%model%amplitudes))
 
       call check_names('MATERIAL', 'material', deck)
       call check_names('SURFACE INTERACTION', 'surface interaction', deck)
       call check_names('SURFACE', 'surface', deck)
       call check_names('AMPLITUDE', 'amplitude', deck)
       told = .false.
-      call check_amplitudes(deck%boundaries, model, told, deck)
-      call check_amplitudes(deck%loads, model, told, deck)
+      call check_amplitudes(deck%boundaries, told, deck)
+      call check_amplitudes(deck%loads, told, deck)
    end subroutine check_usage
 
    !> Warns once of the cards of a keyword whose names no card refers to. A library that a deck
@@ -237,33 +231,34 @@ contains
 
    !> Warns of amplitudes that end long before the step in which a request begins to follow them,
    !> begin after it, or have peaks within fixed increments.
-   subroutine check_amplitudes(requests, model, told, deck)
+   subroutine check_amplitudes(requests, told, deck)
       type(request_list_type), intent(in) :: requests
-      type(model_type), intent(in) :: model
       logical, intent(inout) :: told(:)
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
+      integer, allocatable :: cards(:)
       real(dp) :: start, last
       integer :: a, i, s
 
+      cards = cards_of(deck%cards, 'AMPLITUDE')
       do i = 1, requests%count
          a = requests%items(i)%amplitude
          if (a == 0) cycle
          if (told(a)) cycle
          s = max(requests%items(i)%step, 1)
          start = 0.0_dp
-         if (model%amplitudes(a)%total_time) start = sum(model%steps(:s - 1)%period)
-         associate (curve => model%amplitudes(a), period => model%steps(s)%period)
+         if (deck%model%amplitudes(a)%total_time) start = sum(deck%model%steps(:s - 1)%period)
+         associate (curve => deck%model%amplitudes(a), period => deck%model%steps(s)%period)
             message = ''
             last = curve%times(size(curve%times))
-            if (is_idle(curve, start, merge(sum(model%steps(s:)%period), period, &
+            if (is_idle(curve, start, merge(sum(deck%model%steps(s:)%period), period, &
                curve%total_time))) then
                message = 'amplitude '//curve%name//' is 0 throughout step '//to_text(s)// &
                   ', which begins to use it'
                if (.not. curve%total_time) message = message//'; without TIME=TOTAL TIME its '// &
                   'times count from the start of the step'
             end if
-            if (message == '') message = missed_peak(curve, model, s)
+            if (message == '') message = missed_peak(curve, deck%model, s)
             if (message == '' .and. last - start < long_before*period .and. &
                .not. is_level(curve)) message = 'amplitude '//curve%name//' ends at '// &
                to_text(last)//', long before the end of step '//to_text(s)//' at '// &
@@ -271,7 +266,7 @@ contains
                to_text(curve%values(size(curve%values)))//', is kept'
             if (message == '') cycle
             told(a) = .true.
-            call deck%warning(deck%cards%keywords(card_of(deck%cards, a))%place, message)
+            call deck%warning(deck%cards%keywords(cards(a))%place, message)
          end associate
       end do
    end subroutine check_amplitudes
@@ -327,18 +322,5 @@ contains
 
       is_level = all(abs(curve%values - curve%values(1)) <= 0.0_dp)
    end function is_level
-
-   !> Index of the card that defines the n-th amplitude.
-   pure integer function card_of(cards, n)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: n
-      integer :: found
-
-      found = 0
-      do card_of = 1, size(cards%keywords)
-         if (cards%keywords(card_of)%name == 'AMPLITUDE') found = found + 1
-         if (found == n) return
-      end do
-   end function card_of
 
 end module deck_checks

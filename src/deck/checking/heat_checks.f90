@@ -23,17 +23,15 @@ contains
 
    !> Warns of contact pairs that no heat crosses, and of materials whose expansion over the range
    !> of the temperatures of the deck is no small strain.
-   subroutine check_heat_paths(model, deck)
-      type(model_type), intent(in) :: model               !! with its loads and supports
-      type(deck_type), intent(inout) :: deck              !! receives warnings
+   subroutine check_heat_paths(deck)
+      type(deck_type), intent(inout) :: deck
       integer :: i
 
-      call check_expansion(model, deck)
-      call check_secants(model, deck)
-      if (.not. any(solves_heat(model%steps%analysis))) return
-      do i = 1, size(model%contacts)
-         associate (contact => model%contacts(i), &
-            interaction => model%interactions(model%contacts(i)%interaction))
+      call check_expansion(deck)
+      if (.not. any(solves_heat(deck%model%steps%analysis))) return
+      do i = 1, size(deck%model%contacts)
+         associate (contact => deck%model%contacts(i), interaction => &
+            deck%model%interactions(deck%model%contacts(i)%interaction))
             if (interaction%law%open_kind /= law_none) cycle
             if (interaction%law%closed_kind /= law_none) cycle
             call deck%warning(place_type(image=contact%card), 'no heat crosses '//contact%name// &
@@ -45,20 +43,19 @@ contains
 
    !> Warns of nodes of bodies without an initial temperature where others have one that is not 0.
    !> The mesh is not refined yet.
-   subroutine check_starts(deck, model)
-      type(deck_type), intent(inout) :: deck   !! initial temperatures; receives the warning
-      type(model_type), intent(in) :: model
-      logical :: starts_at_0(0:size(model%mesh%node_number))
+   subroutine check_starts(deck)
+      type(deck_type), intent(inout) :: deck
+      logical :: starts_at_0(0:size(deck%mesh%node_number))
       integer :: i
 
-      associate (given => deck%temperatures, mesh => model%mesh)
+      associate (given => deck%temperatures, mesh => deck%mesh)
          if (given%count == 0) then
-            call check_no_start(deck, model)
+            call check_no_start(deck)
             return
          end if
          if (.not. any(abs(given%items(:given%count)%value) > 0.0_dp)) return
-         if (.not. (any(solves_heat(model%steps%analysis)) .or. &
-            any(model%materials%has_expansion))) return
+         if (.not. (any(solves_heat(deck%model%steps%analysis)) .or. &
+            any(deck%model%materials%has_expansion))) return
          starts_at_0 = .false.
          starts_at_0([mesh%element_nodes]) = .true.
          starts_at_0(0) = .false.
@@ -70,9 +67,9 @@ contains
                starts_at_0(given%items(i)%item) = .false.
             end if
          end do
-         do i = 1, size(model%couplings)
-            if (.not. model%couplings(i)%is_section()) cycle
-            associate (pairs => facing_nodes(model%couplings(i), mesh))
+         do i = 1, size(deck%model%couplings)
+            if (.not. deck%model%couplings(i)%is_section()) cycle
+            associate (pairs => facing_nodes(deck%model%couplings(i), mesh))
                starts_at_0(pairs(2, :)) = .false.
             end associate
          end do
@@ -85,15 +82,14 @@ contains
 
    !> Warns where bodies that expand are heated and no initial temperature is given, unless a
    !> temperature of 0 or on either side of it shows that they count from 0.
-   subroutine check_no_start(deck, model)
-      type(deck_type), intent(inout) :: deck   !! *BOUNDARY, loads; receives the warning
-      type(model_type), intent(in) :: model
+   subroutine check_no_start(deck)
+      type(deck_type), intent(inout) :: deck
       type(request_type), allocatable :: given(:)
       integer :: i
 
-      if (.not. any(solves_mechanics(model%steps%analysis))) return
-      if (.not. any([(maxval(abs(model%materials(model%sections(i)%material)%expansion)) > &
-         0.0_dp, i=1, size(model%sections))])) return
+      if (.not. any(solves_mechanics(deck%model%steps%analysis))) return
+      if (.not. any([(maxval(abs(deck%model%materials(deck%model%sections(i)%material)%expansion)) &
+         > 0.0_dp, i=1, size(deck%model%sections))])) return
       associate (boundaries => deck%boundaries, loads => deck%loads)
          allocate (given(0))
          if (boundaries%count > 0) given = pack(boundaries%items(:boundaries%count), &
@@ -109,58 +105,44 @@ contains
          'value 0 where temperatures are rises')
    end subroutine check_no_start
 
-   !> Warns of the first *EXPANSION that is too large for small strains.
-   subroutine check_expansion(model, deck)
-      type(model_type), intent(in) :: model
+   !> Warns of the first *EXPANSION that is too large for small strains, and of tables whose secants
+   !> begin far from the initial temperature: farther than a quarter of what the table spans.
+   subroutine check_expansion(deck)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: ends(2), range, strain
-      integer :: k, m
-
-      ends = temperature_range(model)
-      range = ends(2) - ends(1)
-      m = 0
-      do k = 1, size(deck%cards%keywords)
-         if (deck%cards%keywords(k)%name == 'MATERIAL') m = m + 1
-         if (deck%cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
-         if (.not. any(model%sections%material == m)) cycle
-         strain = maxval(abs(model%materials(m)%expansion))*range
-         if (strain <= small_strain) cycle
-         call deck%warning(deck%cards%keywords(k)%place, 'the expansion of '// &
-            model%materials(m)%name//' over the range of the temperatures, '//to_text(range)// &
-            ', is a strain of '//to_text(strain)//', but the theory assumes small strains; '// &
-            'check the unit of *EXPANSION, 1/temperature')
-         return
-      end do
-   end subroutine check_expansion
-
-   !> Warns of tables of expansion coefficients whose secants begin far from the initial
-   !> temperature: farther than a quarter of what the table spans.
-   subroutine check_secants(model, deck)
-      type(model_type), intent(in) :: model
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: initial
+      real(dp) :: ends(2), initial, range, strain
       integer :: e, i, k, m
+      logical :: is_told
 
+      ends = temperature_range(deck%model)
+      range = ends(2) - ends(1)
+      is_told = .false.
       m = 0
       do k = 1, size(deck%cards%keywords)
          if (deck%cards%keywords(k)%name == 'MATERIAL') m = m + 1
          if (deck%cards%keywords(k)%name /= 'EXPANSION' .or. m == 0) cycle
-         e = findloc(model%sections(model%mesh%element_section)%material, m, dim=1)
-         if (e == 0) cycle
-         if (.not. follows_temperature(model%materials(m), of_expansion)) cycle
-         associate (material => model%materials(m))
+         e = findloc(deck%model%sections(deck%mesh%element_section)%material, m, dim=1)
+         associate (material => deck%model%materials(m), place => deck%cards%keywords(k)%place)
+            strain = maxval(abs(material%expansion))*range
+            if (strain > small_strain .and. .not. is_told .and. &
+               any(deck%model%sections%material == m)) then
+               call deck%warning(place, 'the expansion of '//material%name//' over the range '// &
+                  'of the temperatures, '//to_text(range)//', is a strain of '//to_text(strain)// &
+                  ', but the theory assumes small strains; check the unit of *EXPANSION, '// &
+                  '1/temperature')
+               is_told = .true.
+            end if
+            if (e == 0 .or. .not. follows_temperature(material, of_expansion)) cycle
             i = findloc(material%given%kind, of_expansion, dim=1)
-            initial = model%initial_temperature(model%mesh%element_nodes(1, e))
+            initial = deck%model%initial_temperature(deck%mesh%element_nodes(1, e))
             associate (rows => material%given(i)%temperature)
                if (abs(initial - material%no_strain) <= far*(rows(size(rows)) - rows(1))) cycle
             end associate
-            call deck%warning(deck%cards%keywords(k)%place, 'the coefficients of '// &
-               material%name//' are secants from ZERO='//to_text(material%no_strain)//' on, '// &
-               'far from the initial temperature '//to_text(initial)//'; give the ZERO= that '// &
-               'they were measured from')
+            call deck%warning(place, 'the coefficients of '//material%name//' are secants from '// &
+               'ZERO='//to_text(material%no_strain)//' on, far from the initial temperature '// &
+               to_text(initial)//'; give the ZERO= that they were measured from')
          end associate
       end do
-   end subroutine check_secants
+   end subroutine check_expansion
 
    !> Least and largest of the temperatures that the deck gives: initial ones, prescribed ones and
    !> sinks of films, with the extreme factors of their amplitudes.

@@ -6,7 +6,6 @@ module load_checks
    use element_kinds, only: axisymmetric
    use kinds, only: dp
    use load_requests, only: request_type
-   use model, only: model_type
    use order_reduction, only: side_corners
    use steps, only: analysis_static, centrifugal_round, dof_temperature, load_body_heat, &
       load_centrifugal, load_face_heat, load_film_coefficient, load_force, load_gravity, &
@@ -19,18 +18,17 @@ module load_checks
 contains
 
    !> Checks the requests before the model is refined.
-   subroutine check_loads(deck, model, uses)
-      type(deck_type), intent(inout) :: deck   !! requests; receives errors and warnings
-      type(model_type), intent(in) :: model
+   subroutine check_loads(deck, uses)
+      type(deck_type), intent(inout) :: deck
       integer, intent(in) :: uses(:, :)  !! (4, elements) elements that meet at each side
-      logical :: used(0:size(model%mesh%node_number))
+      logical :: used(0:size(deck%mesh%node_number))
       integer :: i, card
 
       ! Where an element is not known, no node is known to be without one.
       used = deck%has_lost('element') .or. .not. all(deck%element_valid)
-      used([model%mesh%element_nodes]) = .true.
-      used(1:) = used(1:) .or. constrained_nodes(model%equations, model%couplings, size(used) - 1) &
-         .or. equation_nodes(model%bars%elongation, size(used) - 1)
+      used([deck%mesh%element_nodes]) = .true.
+      used(1:) = used(1:) .or. constrained_nodes(deck%model%equations, deck%model%couplings, &
+         size(used) - 1) .or. equation_nodes(deck%model%bars%elongation, size(used) - 1)
       card = 0
       do i = 1, deck%loads%count
          associate (request => deck%loads%items(i))
@@ -40,38 +38,37 @@ contains
             select case (request%kind)
             case (load_force, load_nodal_heat)
                if (.not. (deck%has_lost('equation') .or. deck%has_lost('element') .or. &
-                  all(used(request%members(model%mesh%node_sets))))) then
+                  all(used(request%members(deck%mesh%node_sets))))) then
                   call deck%error(request%place, trim(merge('a force', 'heat   ', &
                      request%kind == load_force))//' on a node that no element has')
                end if
             case (load_gravity)
-               call check_density(request, model, 'GRAV', deck)
+               call check_density(request, 'GRAV', deck)
             case (load_centrifugal)
-               call check_density(request, model, 'CENTRIF', deck)
-               call check_axis(request, model, deck)
+               call check_density(request, 'CENTRIF', deck)
+               call check_axis(request, deck)
             case (load_temperature)
-               if (deck%analyses_sound .and. model%steps(request%step)%analysis /= &
+               if (deck%analyses_sound .and. deck%model%steps(request%step)%analysis /= &
                   analysis_static) call deck%error(request%place, 'the step solves for '// &
                   'temperatures; *BOUNDARY with degree of freedom 11 prescribes them')
             case (load_pressure, load_face_heat, load_film_coefficient)
-               call check_faces(request, model, uses, deck)
+               call check_faces(request, uses, deck)
             case default
                continue
             end select
-            if (deck%analyses_sound) call check_effect(request, model, deck)
+            if (deck%analyses_sound) call check_effect(request, deck)
          end associate
       end do
-      call check_boundaries(deck, model, used)
+      call check_boundaries(deck, used)
    end subroutine check_loads
 
    !> Loads of a step that add up at one location have the same time history.
-   subroutine check_amplitudes(deck, model)
-      type(deck_type), intent(inout) :: deck               !! requests; receives an error
-      type(model_type), intent(in) :: model                !! its loads on the mesh of the deck
+   subroutine check_amplitudes(deck)
+      type(deck_type), intent(inout) :: deck
       integer :: i, s
 
-      do s = 1, size(model%steps)
-         associate (loads => model%steps(s)%loads, requests => deck%loads%items)
+      do s = 1, size(deck%model%steps)
+         associate (loads => deck%model%steps(s)%loads, requests => deck%loads%items)
             do i = 2, size(loads)
                if (loads(i)%kind /= loads(i - 1)%kind .or. loads(i)%item /= loads(i - 1)%item .or. &
                   loads(i)%component /= loads(i - 1)%component) cycle
@@ -86,12 +83,11 @@ contains
 
    !> Index of the first step in which heat is loaded or a temperature prescribed; that behind the
    !> last step when there is none.
-   pure integer function first_heat(deck, model)
-      type(deck_type), intent(in) :: deck              !! requests
-      type(model_type), intent(in) :: model            !! steps
+   pure integer function first_heat(deck)
+      type(deck_type), intent(in) :: deck
       integer :: i
 
-      first_heat = size(model%steps) + 1
+      first_heat = size(deck%model%steps) + 1
       do i = 1, deck%boundaries%count
          if (deck%boundaries%items(i)%component == dof_temperature) then
             first_heat = min(first_heat, max(1, deck%boundaries%items(i)%step))
@@ -112,35 +108,33 @@ contains
    end function is_heat
 
    !> Every material of the loaded elements has a density.
-   subroutine check_density(request, model, label, deck)
+   subroutine check_density(request, label, deck)
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
       character(*), intent(in) :: label
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: elements(:)
       integer :: i, section, m
 
-      elements = request%members(model%mesh%element_sets)
+      elements = request%members(deck%mesh%element_sets)
       do i = 1, size(elements)
-         section = model%mesh%element_section(elements(i))
+         section = deck%mesh%element_section(elements(i))
          if (section == 0) cycle
-         m = model%sections(section)%material
+         m = deck%model%sections(section)%material
          if (m == 0) cycle
-         if (model%materials(m)%has_density) cycle
-         call deck%missing(request%place, 'material '//model%materials(m)%name//' has no '// &
+         if (deck%model%materials(m)%has_density) cycle
+         call deck%missing(request%place, 'material '//deck%model%materials(m)%name//' has no '// &
             '*DENSITY, which '//label//' needs', '*DENSITY')
          return
       end do
    end subroutine check_density
 
    !> CENTRIF turns a body of revolution round its axis, and a plane round an axis along z.
-   subroutine check_axis(request, model, deck)
+   subroutine check_axis(request, deck)
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: planes(:)
 
-      planes = model%mesh%element_plane(request%members(model%mesh%element_sets))
+      planes = deck%mesh%element_plane(request%members(deck%mesh%element_sets))
       if (request%component == centrifugal_round) then
          if (any(planes /= axisymmetric)) call deck%error(request%place, 'plane elements turn '// &
             'round an axis along z: point x, y, 0, direction 0, 0, 1')
@@ -151,12 +145,11 @@ contains
    end subroutine check_axis
 
    !> Warns of what comes after the last step that solves for what it loads.
-   subroutine check_effect(request, model, deck)
+   subroutine check_effect(request, deck)
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
 
-      associate (analyses => model%steps(request%step:)%analysis)
+      associate (analyses => deck%model%steps(request%step:)%analysis)
          if (is_heat(request%kind)) then
             if (.not. any(solves_heat(analyses))) call deck%warning(request%place, 'a heat '// &
                'load without effect: no step from here on solves heat')
@@ -168,26 +161,24 @@ contains
    end subroutine check_effect
 
    !> Warns of loads on sides between two elements.
-   subroutine check_faces(request, model, uses, deck)
+   subroutine check_faces(request, uses, deck)
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
       integer, intent(in) :: uses(:, :)
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: elements(:)
 
-      elements = request%members(model%mesh%element_sets)
+      elements = request%members(deck%mesh%element_sets)
       elements = pack(elements, uses(request%component, elements) > 1)
       if (size(elements) == 0) return
       call deck%warning(request%place, 'side '//to_text(request%component)//' of element '// &
-         to_text(model%mesh%element_number(elements(1)))//' lies inside a body; the load still '// &
+         to_text(deck%mesh%element_number(elements(1)))//' lies inside a body; the load still '// &
          'acts there'//others(size(elements), '; elements with such a side: '))
    end subroutine check_faces
 
    !> Checks *BOUNDARY: whether it acts on something, in a step that has use for it, and says one
    !> thing only.
-   subroutine check_boundaries(deck, model, used)
+   subroutine check_boundaries(deck, used)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       logical, intent(in) :: used(0:)                      ! (0:nodes) whether elements have them
       integer, allocatable :: nodes(:)
       integer :: i, card
@@ -197,31 +188,30 @@ contains
       card = 0
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            if (deck%analyses_sound) call check_support_effect(request, model, deck)
+            if (deck%analyses_sound) call check_support_effect(request, deck)
             if (request%card == card) cycle
             card = request%card
             ! As CalculiX does.
-            nodes = request%members(model%mesh%node_sets)
+            nodes = request%members(deck%mesh%node_sets)
             nodes = pack(nodes, .not. used(nodes))
             if (size(nodes) > 0 .and. .not. unknown) call deck%warning(request%place, 'node '// &
-               to_text(model%mesh%node_number(nodes(1)))//' belongs to no element: what is '// &
+               to_text(deck%mesh%node_number(nodes(1)))//' belongs to no element: what is '// &
                'prescribed there has no effect'//others(size(nodes), '; nodes without one: '))
          end associate
       end do
-      if (any(deck%dropped)) call check_dropped(deck, model)
-      do i = 0, size(model%steps)
-         call check_conflicts(deck, i, model)
+      if (any(deck%dropped)) call check_dropped(deck)
+      do i = 0, size(deck%model%steps)
+         call check_conflicts(deck, i)
       end do
    end subroutine check_boundaries
 
    !> Warns of values that come after the last step that solves for what they prescribe. Supports of
    !> 0 do no harm.
-   subroutine check_support_effect(request, model, deck)
+   subroutine check_support_effect(request, deck)
       type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
 
-      associate (analyses => model%steps(max(1, request%step):)%analysis)
+      associate (analyses => deck%model%steps(max(1, request%step):)%analysis)
          if (request%component == dof_temperature) then
             if (.not. (any(solves_heat(analyses)) .or. deck%has_lost('heat'))) call deck%warning( &
                request%place, 'a temperature without effect: no step from here on solves heat; '// &
@@ -234,35 +224,35 @@ contains
    end subroutine check_support_effect
 
    !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
-   subroutine check_dropped(deck, model)
+   subroutine check_dropped(deck)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
-      integer :: corners(2, size(model%mesh%node_number))
-      integer :: first(3, size(model%mesh%node_number))   ! first step that gives a value
+      integer :: corners(2, size(deck%mesh%node_number))
+      integer :: first(3, size(deck%mesh%node_number))   ! first step that gives a value
       integer, allocatable :: nodes(:)
       integer :: i, j, card
 
-      corners = side_corners(model%mesh)
+      corners = side_corners(deck%mesh)
       first = huge(first)
       do i = deck%boundaries%count, 1, -1
          associate (request => deck%boundaries%items(i))
-            first(min(request%component, 3), request%members(model%mesh%node_sets)) = &
-               max(1, request%step)
+            first(min(request%component, 3), request%members(deck%mesh%node_sets)) = max(1, &
+               request%step)
          end associate
       end do
       card = 0
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            nodes = request%members(model%mesh%node_sets)
+            nodes = request%members(deck%mesh%node_sets)
             if (.not. all(deck%dropped(nodes)) .or. request%card == card) cycle
             do j = 1, size(nodes)
                if (all(first(min(request%component, 3), corners(:, nodes(j))) <= &
                   max(1, request%step))) cycle
                card = request%card
-               call deck%error(request%place, 'ORDER=1 drops midside node '//to_text( &
-                  model%mesh%node_number(nodes(j)))//' and what is prescribed there; prescribe '// &
-                  'it at the corners of its side, '//to_text(model%mesh%node_number(corners(1, &
-                  nodes(j))))//' and '//to_text(model%mesh%node_number(corners(2, nodes(j)))))
+               call deck%error(request%place, 'ORDER=1 drops midside node '// &
+                  to_text(deck%mesh%node_number(nodes(j)))//' and what is prescribed there; '// &
+                  'prescribe it at the corners of its side, '// &
+                  to_text(deck%mesh%node_number(corners(1, nodes(j))))//' and '// &
+                  to_text(deck%mesh%node_number(corners(2, nodes(j)))))
                exit
             end do
          end associate
@@ -271,11 +261,10 @@ contains
 
    !> Warns where a data card replaces what another one of the same step prescribes. What is
    !> before the first step may be replaced in it.
-   subroutine check_conflicts(deck, step, model)
+   subroutine check_conflicts(deck, step)
       type(deck_type), intent(inout) :: deck
       integer, intent(in) :: step                          ! 0 for what is before the first
-      type(model_type), intent(in) :: model
-      integer :: given(3, size(model%mesh%node_number)), i, j, dof, n, node
+      integer :: given(3, size(deck%mesh%node_number)), i, j, dof, n, node
       integer, allocatable :: nodes(:)
 
       given = 0
@@ -283,7 +272,7 @@ contains
          associate (request => deck%boundaries%items(i))
             if (request%step /= step) cycle
             dof = min(request%component, 3)
-            nodes = request%members(model%mesh%node_sets)
+            nodes = request%members(deck%mesh%node_sets)
             n = 0
             do j = 1, size(nodes)
                if (given(dof, nodes(j)) > 0) then
@@ -298,9 +287,9 @@ contains
                given(dof, nodes(j)) = i
             end do
             if (n > 0) call deck%warning(request%place, 'node '// &
-               to_text(model%mesh%node_number(node))//': another card of this step gives '// &
-               'degree of freedom '//to_text(request%component)//' another value; the last '// &
-               'value is used ('//counted(n, 'node')//')')
+               to_text(deck%mesh%node_number(node))//': another card of this step gives degree '// &
+               'of freedom '//to_text(request%component)//' another value; the last value is '// &
+               'used ('//counted(n, 'node')//')')
          end associate
       end do
    end subroutine check_conflicts

@@ -42,29 +42,29 @@ module mesh_checks
 contains
 
    !> Beside axisymmetric elements there are none in plane strain; the radius is not negative.
-   subroutine check_planes(deck, mesh)
-      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
-      type(mesh_type), intent(in) :: mesh
-      integer :: e, q, is_axisymmetric, strained
-      logical :: turns(size(mesh%element_plane))
+   subroutine check_planes(deck)
+      type(deck_type), intent(inout) :: deck
+      integer :: e, q, ring, strained
+      logical :: turns(size(deck%mesh%element_plane))
 
-      turns = mesh%element_plane == axisymmetric .and. deck%element_valid
-      is_axisymmetric = findloc(turns, .true., dim=1)
-      strained = findloc(mesh%element_plane == plane_strain .and. deck%element_valid, .true., dim=1)
-      if (is_axisymmetric > 0 .and. strained > 0) then
-         call deck%error(deck%element_place(max(is_axisymmetric, strained)), 'element '// &
-            to_text(mesh%element_number(is_axisymmetric))//' is axisymmetric and element '// &
-            to_text(mesh%element_number(strained))//' in plane strain: plane elements beside '// &
-            'axisymmetric ones are in plane stress, such as CPS4')
+      turns = deck%mesh%element_plane == axisymmetric .and. deck%element_valid
+      ring = findloc(turns, .true., dim=1)
+      strained = findloc(deck%mesh%element_plane == plane_strain .and. deck%element_valid, .true., &
+         dim=1)
+      if (ring > 0 .and. strained > 0) then
+         call deck%error(deck%element_place(max(ring, strained)), 'element '// &
+            to_text(deck%mesh%element_number(ring))//' is axisymmetric and element '// &
+            to_text(deck%mesh%element_number(strained))//' in plane strain: plane elements '// &
+            'beside axisymmetric ones are in plane stress, such as CPS4')
          return
       end if
       do e = 1, size(turns)
          if (.not. turns(e)) cycle
-         do q = 1, element_node_count(mesh%element_kind(e))
-            if (mesh%coordinates(1, mesh%element_nodes(q, e)) >= 0.0_dp) cycle
-            call deck%error(deck%element_place(e), 'element '//to_text(mesh%element_number(e))// &
-               ' is axisymmetric: x is the radius, but node '// &
-               to_text(mesh%node_number(mesh%element_nodes(q, e)))//' has x < 0')
+         do q = 1, element_node_count(deck%mesh%element_kind(e))
+            if (deck%mesh%coordinates(1, deck%mesh%element_nodes(q, e)) >= 0.0_dp) cycle
+            call deck%error(deck%element_place(e), 'element '//to_text(deck%mesh%element_number( &
+               e))//' is axisymmetric: x is the radius, but node '// &
+               to_text(deck%mesh%node_number(deck%mesh%element_nodes(q, e)))//' has x < 0')
             exit
          end do
       end do
@@ -72,17 +72,16 @@ contains
 
    !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
    !> free.
-   subroutine check_sides(deck, mesh, inverted, uses)
-      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors
-      type(mesh_type), intent(in) :: mesh
+   subroutine check_sides(deck, inverted, uses)
+      type(deck_type), intent(inout) :: deck
       logical, intent(in) :: inverted(:)   !! (elements) whether their sides may not be as meant
       !> (4, elements) elements that meet at each side; 0 where an error says that it is wrong
       integer, intent(out) :: uses(:, :)
-      type(element_side_type) :: sides(4*size(mesh%element_number))
+      type(element_side_type) :: sides(4*size(deck%mesh%element_number))
       integer, allocatable :: order(:)
       integer :: first, last, n
 
-      call list_sides(deck%element_valid .and. .not. inverted, mesh, sides, n)
+      call list_sides(deck%element_valid .and. .not. inverted, deck%mesh, sides, n)
       order = sort_order(sides(:n)%high)
       order = order(sort_order(sides(order)%low))
       uses = 0
@@ -94,11 +93,11 @@ contains
             if (sides(order(last + 1))%high /= sides(order(first))%high) exit
             last = last + 1
          end do
-         call check_meeting(deck, mesh, sides(order(first:last)), uses)
+         call check_meeting(deck, sides(order(first:last)), uses)
          first = last + 1
       end do
-      call check_middles(deck, mesh, sides(:n))
-      call check_faces(deck, mesh, uses)
+      call check_middles(deck, sides(:n))
+      call check_faces(deck, uses)
    end subroutine check_sides
 
    !> The sides of sound elements, in the order of the elements.
@@ -125,9 +124,8 @@ contains
    end subroutine list_sides
 
    !> Checks the elements that meet between two corners.
-   subroutine check_meeting(deck, mesh, sides, uses)
+   subroutine check_meeting(deck, sides, uses)
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       type(element_side_type), intent(in) :: sides(:)
       integer, intent(inout) :: uses(:, :)
       character(:), allocatable :: fault
@@ -143,24 +141,24 @@ contains
             cycle
          else if (min(sides(1)%middle, sides(2)%middle) == 0) then
             fault = 'has a different number of nodes from its neighbour '// &
-               to_text(mesh%element_number(sides(1)%element))//' on the side'
+               to_text(deck%mesh%element_number(sides(1)%element))//' on the side'
          else
             fault = 'has a different midside node from its neighbour '// &
-               to_text(mesh%element_number(sides(1)%element))//' on the side'
+               to_text(deck%mesh%element_number(sides(1)%element))//' on the side'
          end if
-         call deck%error(deck%element_place(sides(i)%element), 'element '//to_text( &
-            mesh%element_number(sides(i)%element))//' '//fault//' between nodes '//to_text( &
-            mesh%node_number(sides(i)%low))//' and '//to_text(mesh%node_number(sides(i)%high)))
+         call deck%error(deck%element_place(sides(i)%element), 'element '// &
+            to_text(deck%mesh%element_number(sides(i)%element))//' '//fault//' between nodes '// &
+            to_text(deck%mesh%node_number(sides(i)%low))//' and '// &
+            to_text(deck%mesh%node_number(sides(i)%high)))
       end do
    end subroutine check_meeting
 
    !> A midside node is no corner, and belongs to one side.
-   subroutine check_middles(deck, mesh, sides)
+   subroutine check_middles(deck, sides)
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       type(element_side_type), intent(in) :: sides(:)
-      logical :: corner(size(mesh%node_number))
-      integer :: first(size(mesh%node_number)), i
+      logical :: corner(size(deck%mesh%node_number))
+      integer :: first(size(deck%mesh%node_number)), i
 
       corner = .false.
       corner(sides%low) = .true.
@@ -173,37 +171,36 @@ contains
             if (.not. corner(node) .and. sides(first(node))%low == sides(i)%low .and. &
                sides(first(node))%high == sides(i)%high) cycle
             call deck%error(deck%element_place(sides(i)%element), 'element '// &
-               to_text(mesh%element_number(sides(i)%element))//' does not share the side with '// &
-               'midside node '//to_text(mesh%node_number(node))//' with its neighbour')
+               to_text(deck%mesh%element_number(sides(i)%element))//' does not share the side '// &
+               'with midside node '//to_text(deck%mesh%node_number(node))//' with its neighbour')
          end associate
       end do
    end subroutine check_middles
 
    !> Faces of surfaces are free: reported once a surface, where the first is named. What is loaded
    !> through such a face is not told again.
-   subroutine check_faces(deck, mesh, uses)
+   subroutine check_faces(deck, uses)
       type(deck_type), intent(inout) :: deck
-      type(mesh_type), intent(in) :: mesh
       integer, intent(inout) :: uses(:, :)   !! (4, elements) elements that meet at each side
       logical :: wrong(size(uses, 1), size(uses, 2))
       logical, allocatable :: inside(:)
       integer :: i, s
 
       wrong = .false.
-      do s = 1, size(mesh%surfaces)
-         associate (faces => mesh%surfaces(s)%faces)
+      do s = 1, size(deck%mesh%surfaces)
+         associate (faces => deck%mesh%surfaces(s)%faces)
             allocate(inside(size(faces, 2)))
             do i = 1, size(inside)
                inside(i) = uses(faces(2, i), faces(1, i)) > 1
                wrong(faces(2, i), faces(1, i)) = wrong(faces(2, i), faces(1, i)) .or. inside(i)
             end do
             i = findloc(inside, .true., dim=1)
-            if (i > 0) call deck%error(deck%face_places(s)%items(i), 'face S'// &
-               to_text(faces(2, i))//' of element '//to_text(mesh%element_number(faces(1, i)))// &
-               ' in surface '//mesh%surfaces(s)%name//' lies inside a body: another element '// &
+            if (i > 0) call deck%error(deck%face_places(s)%items(i), 'face S'//to_text(faces(2, &
+               i))//' of element '//to_text(deck%mesh%element_number(faces(1, i)))//' in '// &
+               'surface '//deck%mesh%surfaces(s)%name//' lies inside a body: another element '// &
                'has its nodes; bodies that touch need nodes of their own there, in gmsh '// &
-               'without BooleanFragments and Coherence'// &
-               others(count(inside), '; faces of the surface that do: '))
+               'without BooleanFragments and Coherence'//others(count(inside), '; faces of the '// &
+               'surface that do: '))
             deallocate(inside)
          end associate
       end do
@@ -212,9 +209,8 @@ contains
 
    !> The Jacobian is positive at the integration points of every element. Elements that go round
    !> clockwise are reported once.
-   subroutine check_jacobians(deck, mesh, inverted)
-      type(deck_type), intent(inout) :: deck !! places for messages; receives errors
-      type(mesh_type), intent(in) :: mesh
+   subroutine check_jacobians(deck, inverted)
+      type(deck_type), intent(inout) :: deck
       logical, intent(out) :: inverted(:)    !! (elements) whether its sides may be wrong
       real(dp), allocatable :: jacobians(:)
       logical :: clockwise(size(inverted))
@@ -225,19 +221,19 @@ contains
       clockwise = .false.
       do e = 1, size(inverted)
          if (.not. deck%element_valid(e)) cycle
-         jacobians = point_jacobians(mesh, e)
+         jacobians = point_jacobians(deck%mesh, e)
          inverted(e) = any(jacobians <= 0.0_dp)
          clockwise(e) = all(jacobians < 0.0_dp)
          if (.not. inverted(e) .or. clockwise(e)) cycle
          g = minloc(jacobians, dim=1)
-         call integration_rule(mesh%element_kind(e), points, weights)
-         x = matmul(mesh%coordinates(:, mesh%element_nodes(:element_node_count( &
-            mesh%element_kind(e)), e)), element_shape(mesh%element_kind(e), points(:, g)))
-         call deck%error(deck%element_place(e), inversion(mesh, e, 'integration point '// &
+         call integration_rule(deck%mesh%element_kind(e), points, weights)
+         x = matmul(deck%mesh%coordinates(:, deck%mesh%element_nodes(:element_node_count( &
+            deck%mesh%element_kind(e)), e)), element_shape(deck%mesh%element_kind(e), points(:, g)))
+         call deck%error(deck%element_place(e), inversion(deck%mesh, e, 'integration point '// &
             to_text(g)//' at '//to_text(x(1))//', '//to_text(x(2))))
       end do
       e = findloc(clockwise, .true., dim=1)
-      if (e > 0) call deck%error(deck%element_place(e), inversion(mesh, e, everywhere)// &
+      if (e > 0) call deck%error(deck%element_place(e), inversion(deck%mesh, e, everywhere)// &
          others(count(clockwise), '; such elements: '))
    end subroutine check_jacobians
 
@@ -285,28 +281,27 @@ contains
 
    !> Warns of elements that are folded at a node, although their Jacobian is positive at all
    !> integration points: their map is not one to one.
-   subroutine check_folds(deck, mesh)
-      type(deck_type), intent(inout) :: deck   !! places for messages, order; receives a warning
-      type(mesh_type), intent(in) :: mesh                  !! sound at the integration points
+   subroutine check_folds(deck)
+      type(deck_type), intent(inout) :: deck
       integer :: at, e, first, kind, n, node, number_folded
 
       number_folded = 0
-      do e = 1, size(mesh%element_number)
-         kind = mesh%element_kind(e)
+      do e = 1, size(deck%mesh%element_number)
+         kind = deck%mesh%element_kind(e)
          if (deck%order == 1) kind = linear_kind(kind)
          n = element_node_count(kind)
-         at = folded_node(kind, mesh%coordinates(:, mesh%element_nodes(:n, e)))
+         at = folded_node(kind, deck%mesh%coordinates(:, deck%mesh%element_nodes(:n, e)))
          if (at == 0) cycle
          number_folded = number_folded + 1
          if (number_folded > 1) cycle
          first = e
-         node = mesh%node_number(mesh%element_nodes(at, e))
+         node = deck%mesh%node_number(deck%mesh%element_nodes(at, e))
       end do
       if (number_folded == 0) return
-      call deck%warning(deck%element_place(first), 'element '//to_text( &
-         mesh%element_number(first))//' is folded at node '//to_text(node)//': its Jacobian is '// &
-         'negative near it, where fields are wrong; move the midside nodes towards the middle '// &
-         'of their sides and make its corners convex'//others(number_folded, '; folded elements: '))
+      call deck%warning(deck%element_place(first), 'element '//to_text(deck%mesh%element_number( &
+         first))//' is folded at node '//to_text(node)//': its Jacobian is negative near it, '// &
+         'where fields are wrong; move the midside nodes towards the middle of their sides and '// &
+         'make its corners convex'//others(number_folded, '; folded elements: '))
    end subroutine check_folds
 
    !> The node at which an element is folded, as its position in the element; 0 where there is none.
@@ -334,26 +329,25 @@ contains
 
    !> No side of an element is far shorter than the others. Corners in one place are left to the
    !> Jacobian.
-   subroutine check_slenderness(deck, mesh)
-      type(deck_type), intent(inout) :: deck   !! places for messages; receives errors and a warning
-      type(mesh_type), intent(in) :: mesh
+   subroutine check_slenderness(deck)
+      type(deck_type), intent(inout) :: deck
       real(dp) :: least, ratio
       integer :: e, worst, count_doubtful
 
       worst = 0
       count_doubtful = 0
       least = doubtful
-      do e = 1, size(mesh%element_number)
+      do e = 1, size(deck%mesh%element_number)
          if (.not. deck%element_valid(e)) cycle
-         ratio = side_ratio(mesh, e)
-         if (ratio < hopeless) call deck%error(deck%element_place(e), said(mesh, e, ratio)// &
+         ratio = side_ratio(deck%mesh, e)
+         if (ratio < hopeless) call deck%error(deck%element_place(e), said(deck%mesh, e, ratio)// &
             ', and rounding would spoil the result')
          if (ratio < hopeless .or. ratio >= doubtful) cycle
          count_doubtful = count_doubtful + 1
          if (ratio < least) worst = e
          least = min(least, ratio)
       end do
-      if (worst > 0) call deck%warning(deck%element_place(worst), said(mesh, worst, least)// &
+      if (worst > 0) call deck%warning(deck%element_place(worst), said(deck%mesh, worst, least)// &
          ', and pressures there are accurate to '//to_text(epsilon(1.0_dp)/least**2)//' only '// &
          '(number of such elements: '//to_text(count_doubtful)//')')
    end subroutine check_slenderness

@@ -40,19 +40,18 @@ contains
 
    !> Warns of faces that touch and are not related, once for two bodies, for the seams of a body
    !> and for hanging nodes.
-   subroutine check_touches(deck, model)
-      type(deck_type), intent(inout) :: deck              !! places for messages; receives warnings
-      type(model_type), intent(in) :: model               !! not refined, its bodies known
+   subroutine check_touches(deck)
+      type(deck_type), intent(inout) :: deck
       type(element_sides_type) :: sides
       type(touch_type), allocatable :: touches(:)
       integer, allocatable :: order(:), key(:, :)         ! (3, touches) as keys_of
       integer :: first, k, last
 
-      sides = find_sides(model%mesh)
-      call find_touches(model%mesh, sides, touches)
+      sides = find_sides(deck%mesh)
+      call find_touches(deck%mesh, sides, touches)
       if (size(touches) == 0) return
-      call drop_related(model, sides, touches)
-      key = keys_of(model%mesh, sides, touches)
+      call drop_related(deck%model, sides, touches)
+      key = keys_of(deck%mesh, sides, touches)
       order = sort_order(touches%node)
       do k = 1, 3
          order = order(sort_order(key(k, order)))
@@ -64,7 +63,7 @@ contains
             if (any(key(:, order(last + 1)) /= key(:, order(first)))) exit
             last = last + 1
          end do
-         call warn(deck, model, sides, touches(order(first:last)), key(:, order(first)))
+         call warn(deck, sides, touches(order(first:last)), key(:, order(first)))
          first = last + 1
       end do
    end subroutine check_touches
@@ -206,9 +205,8 @@ contains
    end function keys_of
 
    !> Warns of the touches of one key.
-   subroutine warn(deck, model, sides, touches, key)
+   subroutine warn(deck, sides, touches, key)
       type(deck_type), intent(inout) :: deck
-      type(model_type), intent(in) :: model
       type(element_sides_type), intent(in) :: sides
       type(touch_type), intent(in) :: touches(:)          ! by their nodes
       integer, intent(in) :: key(3)
@@ -223,28 +221,27 @@ contains
          before = touches(i)%node
          if (touches(i)%partner == 0 .or. touches(i)%partner > touches(i)%node) places = places + 1
       end do
-      node = to_text(model%mesh%node_number(touches(1)%node))
-      associate (x => model%mesh%coordinates(:, touches(1)%node))
+      node = to_text(deck%mesh%node_number(touches(1)%node))
+      associate (x => deck%mesh%coordinates(:, touches(1)%node))
          place = to_text(x(1))//', '//to_text(x(2))
          if (key(3) == face_hangs) then
-            message = 'node '//node//' at '//place//' hangs: it lies on '// &
-               side_words(model%mesh, sides, touches(1)%side)//' and is no node of it, so that '// &
-               'the fields on both sides differ; let elements meet along whole sides, or give '// &
-               'the two parts nodes of their own and join them by *TIE'// &
-               others(places, '; hanging nodes: ')
+            message = 'node '//node//' at '//place//' hangs: it lies on '//side_words(deck%mesh, &
+               sides, touches(1)%side)//' and is no node of it, so that the fields on both '// &
+               'sides differ; let elements meet along whole sides, or give the two parts nodes '// &
+               'of their own and join them by *TIE'//others(places, '; hanging nodes: ')
          else
             if (touches(1)%partner > 0) then
-               place = 'node '//node//' and node '// &
-                  to_text(model%mesh%node_number(touches(1)%partner))//' at '//place
+               place = 'node '//node//' and node '//to_text(deck%mesh%node_number(touches( &
+                  1)%partner))//' at '//place
             else
-               place = 'node '//node//' at '//place//' on '// &
-                  side_words(model%mesh, sides, touches(1)%side)
+               place = 'node '//node//' at '//place//' on '//side_words(deck%mesh, sides, &
+                  touches(1)%side)
             end if
-            message = body_name(model, key(1))
+            message = body_name(deck%model, key(1))
             if (key(1) == key(2)) then
                message = message//' is cut along a seam: its faces touch at '
             else
-               message = message//' and '//body_name(model, key(2))//' touch at '
+               message = message//' and '//body_name(deck%model, key(2))//' touch at '
             end if
             message = message//counted(places, 'place')//', first '//place//', but no '// &
                '*CONTACT PAIR, *TIE, *EQUATION or *COUPLING relates them, so that they pass '// &

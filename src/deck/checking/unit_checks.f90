@@ -5,7 +5,6 @@ module unit_checks
    use heat_checks, only: temperature_range
    use kinds, only: dp
    use materials, only: property_keywords
-   use model, only: model_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text, to_upper
    implicit none
@@ -55,32 +54,31 @@ contains
 
    !> Warns of constants in another unit than the deck says, and of temperatures below absolute
    !> zero.
-   subroutine check_units(model, deck)
-      type(model_type), intent(in) :: model               !! with its loads and supports
-      type(deck_type), intent(inout) :: deck              !! receives warnings
+   subroutine check_units(deck)
+      type(deck_type), intent(inout) :: deck
       real(dp) :: degree, metre, pascal, watt
       integer :: k, m
 
-      degree = size_of(scale_label(model%units%temperature), temperatures)
-      metre = size_of(to_upper(model%units%length), lengths)
-      watt = size_of(model%units%power, powers)
-      pascal = size_of(to_upper(model%units%stress), stresses)
+      degree = size_of(scale_label(deck%model%units%temperature), temperatures)
+      metre = size_of(to_upper(deck%model%units%length), lengths)
+      watt = size_of(deck%model%units%power, powers)
+      pascal = size_of(to_upper(deck%model%units%stress), stresses)
       m = 0
       do k = 1, size(deck%cards%keywords)
          select case (deck%cards%keywords(k)%name)
          case ('PHYSICAL CONSTANTS')
-            call check_zero(deck%cards%keywords(k), model, deck)
+            call check_zero(deck%cards%keywords(k), deck)
             if (min(degree, metre) > 0.0_dp) call check_boltzmann(deck%cards%keywords(k), &
-               watt/(metre**2*degree**4), model, deck)
+               watt/(metre**2*degree**4), deck)
          case ('MATERIAL')
             m = m + 1
          case ('ELASTIC')
-            if (any(solves_mechanics(model%steps%analysis))) call check_property( &
-               deck%cards%keywords(k), model, m, pascal, deck)
+            if (any(solves_mechanics(deck%model%steps%analysis))) call &
+               check_property(deck%cards%keywords(k), m, pascal, deck)
          case ('CONDUCTIVITY')
             if (min(degree, metre) > 0.0_dp .and. &
-               any(solves_heat(model%steps%analysis))) call check_property(deck%cards%keywords(k), &
-               model, m, watt/(metre*degree), deck)
+               any(solves_heat(deck%model%steps%analysis))) call &
+               check_property(deck%cards%keywords(k), m, watt/(metre*degree), deck)
          case default
             cycle
          end select
@@ -88,9 +86,8 @@ contains
    end subroutine check_units
 
    !> Warns of a property whose first constant is none of a solid.
-   subroutine check_property(card, model, m, unit, deck)
+   subroutine check_property(card, m, unit, deck)
       type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
       integer, intent(in) :: m                            ! index of its material, or 0
       real(dp), intent(in) :: unit                        ! [Pa] or [W/(m K)], 0 where not known
       type(deck_type), intent(inout) :: deck
@@ -101,7 +98,7 @@ contains
       if (m == 0 .or. unit <= 0.0_dp) return
       ends = merge(moduli, conductivities, card%name == 'ELASTIC')
       si_unit = trim(merge('Pa     ', 'W/(m K)', card%name == 'ELASTIC'))
-      associate (material => model%materials(m))
+      associate (material => deck%model%materials(m))
          do i = 1, size(material%given)
             if (property_keywords(material%given(i)%kind) /= card%name) cycle
             associate (values => material%given(i)%values(1, :))
@@ -117,18 +114,17 @@ contains
       end associate
    end subroutine check_property
 
-   subroutine check_zero(card, model, deck)
+   subroutine check_zero(card, deck)
       type(keyword_card_type), intent(in) :: card
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
       type(unit_type) :: scale
       real(dp) :: least(2)
 
       if (.not. card%has('ABSOLUTE ZERO')) return
-      scale = unit_of(scale_label(model%units%temperature), temperatures)
-      least = temperature_range(model)
-      associate (given => model%constants%absolute_zero, label => model%units%temperature)
+      scale = unit_of(scale_label(deck%model%units%temperature), temperatures)
+      least = temperature_range(deck%model)
+      associate (given => deck%model%constants%absolute_zero, label => deck%model%units%temperature)
          message = 'absolute zero is '//to_text(given)
          if (abs(given - scale%zero)*scale%size > other_scale) then
             message = message//', but '//to_text(scale%zero)//' in '//label//', the unit of '// &
@@ -146,16 +142,15 @@ contains
       call deck%warning(card%place_of('ABSOLUTE ZERO'), message)
    end subroutine check_zero
 
-   subroutine check_boltzmann(card, unit, model, deck)
+   subroutine check_boltzmann(card, unit, deck)
       type(keyword_card_type), intent(in) :: card
       real(dp), intent(in) :: unit                        ! [W/(m^2 K^4)], 0 where not known
-      type(model_type), intent(in) :: model
       type(deck_type), intent(inout) :: deck
       real(dp) :: constant
 
       if (.not. card%has('STEFAN BOLTZMANN') .or. unit <= 0.0_dp) return
       constant = stefan_boltzmann/unit
-      associate (given => model%constants%stefan_boltzmann, units => model%units)
+      associate (given => deck%model%constants%stefan_boltzmann, units => deck%model%units)
          if (abs(given - constant) <= other_digits*constant) return
          call deck%warning(card%place_of('STEFAN BOLTZMANN'), 'the constant of Stefan and '// &
             'Boltzmann is '//to_text(given)//', but '//to_text(constant)//' in the units of '// &

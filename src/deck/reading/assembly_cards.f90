@@ -4,7 +4,7 @@
 !> become INSTANCE.NAME. Nodes and elements of the first instance keep their numbers; those of the
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
-   use card_parameters, only: chosen, surface_kinds
+   use card_parameters, only: chosen, need_parameter, surface_kinds
    use card_values, only: read_row
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
       keyword_card_type, replace_cards
@@ -142,6 +142,7 @@ contains
       type(reading_type), intent(inout) :: open
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
+      character(:), allocatable :: name
       integer :: level
 
       associate (card => cards%keywords(k))
@@ -170,7 +171,8 @@ contains
             open%level = level
             open%opened = k
             if (level == at_part) then
-               call append(open%parts, to_upper(name_of(card, report)))
+               call need_parameter(card, 'NAME', report, name)
+               call append(open%parts, name)
                open%first = [open%first, k + 1]
                open%last = [open%last, k]
             else if (level == at_instance) then
@@ -181,16 +183,6 @@ contains
          end if
       end associate
    end subroutine take_card
-
-   function name_of(card, report) result(name)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: name
-
-      name = card%text('NAME')
-      if (len(name) == 0 .and. .not. card%flawed) call report%error(card%place, '*'//card%name// &
-         ' needs NAME=')
-   end function name_of
 
    !> Begins an instance with the cards of its part.
    subroutine open_instance(cards, card, open, all, report)
@@ -203,7 +195,7 @@ contains
       character(:), allocatable :: part
       integer :: i, k
 
-      instance%name = to_upper(name_of(card, report))
+      call need_parameter(card, 'NAME', report, instance%name)
       instance%offset = size(open%instances)*open%step
       do i = 1, size(open%instances)
          if (open%instances(i)%name == instance%name) call report%error(card%place_of('NAME'), &
@@ -214,11 +206,8 @@ contains
       if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name// &
          ': numbers of its nodes and elements are those of the part plus '// &
          to_text(instance%offset))
-      part = to_upper(card%text('PART'))
-      if (len(part) == 0) then
-         if (.not. card%flawed) call report%error(card%place, '*INSTANCE needs PART=')
-         return
-      end if
+      call need_parameter(card, 'PART', report, part)
+      if (len(part) == 0) return
       do i = 1, size(open%parts)
          if (open%parts(i)%value /= part) cycle
          do k = open%first(i), open%last(i)
@@ -292,7 +281,6 @@ contains
       integer :: n
       logical :: sound, valid
 
-      x = 0.0_dp
       valid = .true.
       sound = .true.
       n = size(card%data)
@@ -388,50 +376,45 @@ contains
       type(instance_type), intent(in) :: instance
       type(field_type), intent(inout) :: fields(:)
       type(instance_type) :: motion
-      integer :: i, n
+      integer :: i, last, step
 
-      n = size(fields)
+      ! Fields that are names or numbers of nodes and elements: those up to the last, by this step.
+      last = size(fields)
+      step = 1
+      motion = instance
       select case (card%name)
       case ('NODE')
-         call prefix_fields(1, min(1, n), 1)
-         if (instance%moves) call move_point(data, 2, instance, fields)
+         last = 1
+         call move_point(data, 2, motion, fields)
       case ('ELEMENT')
-         call prefix_fields(1, n, 1)
+         continue
       case ('NSET', 'ELSET')
-         if (card%has('GENERATE')) n = min(2, n)
-         call prefix_fields(1, n, 1)
-      case ('NGEN')
-         call prefix_fields(1, min(2, n), 1)
+         if (card%has('GENERATE')) last = 2
+      case ('NGEN', 'TIE', 'CONTACT PAIR')
+         last = 2
       case ('ELGEN', 'SURFACE')
+         last = 1
          if (chosen(card, 'TYPE', surface_kinds) == 'SEGMENTS') then
-            if (instance%moves) call move_point(data, 2, instance, fields)
-            if (instance%moves .and. n > 3) call move_point(data, 4, instance, fields)
-         else
-            call prefix_fields(1, min(1, n), 1)
+            last = 0
+            call move_point(data, 2, motion, fields)
+            if (size(fields) > 3) call move_point(data, 4, motion, fields)
          end if
       case ('EQUATION')
-         if (n > 1) call prefix_fields(1, n, 3)
-      case ('TIE', 'CONTACT PAIR')
-         call prefix_fields(1, min(2, n), 1)
+         step = 3
+         if (last == 1) last = 0
       case ('ORIENTATION')
-         ! Points from the origin, or on the axis of a cylindrical system.
-         if (.not. instance%moves .or. position > 1) return
-         motion = instance
+         last = 0
+         ! Points from the origin, or on the axis of a cylindrical system; then an angle.
          if (.not. card%has('SYSTEM')) motion%shift = 0.0_dp
+         motion%moves = motion%moves .and. position == 1
          call move_point(data, 1, motion, fields)
          call move_point(data, 4, motion, fields)
       case default
-         continue
+         last = 0
       end select
-
-   contains
-      subroutine prefix_fields(first, last, step)
-         integer, intent(in) :: first, last, step
-
-         do i = first, last, step
-            call prefix(instance, fields(i)%text)
-         end do
-      end subroutine prefix_fields
+      do i = 1, min(last, size(fields)), step
+         call prefix(instance, fields(i)%text)
+      end do
    end subroutine convert
 
    !> Turns and shifts the point whose x is a field; what is no number is reported elsewhere.
@@ -444,6 +427,7 @@ contains
       integer :: i
       logical :: valid
 
+      if (.not. instance%moves) return
       do i = 1, 2
          x(i) = 0.0_dp
          if (len(data%text(at + i - 1)) == 0) cycle

@@ -11,7 +11,7 @@ module card_lines
    use element_types, only: element_type_fields
    use fixed_columns, only: fixed_columns_type, split_columns, take_format
    use keyword_cards, only: is_parameter, make_keyword_card
-   use keywords, only: built, is_output, known_keywords
+   use keywords, only: is_output
    use spelling, only: find_look_alike
    use text, only: read_integer, to_text, to_upper
    implicit none
@@ -206,10 +206,8 @@ contains
       self%keyword = card%name
       if (allocated(self%refusal_of_data)) deallocate(self%refusal_of_data)
       if (allocated(card%refusal_of_data)) self%refusal_of_data = card%refusal_of_data
-      self%skips_data = card%known == 0
-      if (card%known > 0) self%skips_data = known_keywords(card%known)%status /= built
       call take_format(card, report, self%columns, valid)
-      self%skips_data = self%skips_data .or. .not. valid
+      self%skips_data = card%known == 0 .or. .not. valid
       card%data_lost = .not. valid
       call add_keyword(cards, card)
    end subroutine take_keyword
@@ -219,20 +217,15 @@ contains
       type(card_lines_type), intent(inout) :: self
       type(keyword_card_type), intent(in) :: card
       type(deck_report_type), intent(inout) :: report
-      integer :: i, width
+      integer :: width
       logical :: valid
 
-      do i = 1, size(card%parameters)
-         if (card%parameters(i)%name /= 'WIDTH') cycle
-         call read_integer(card%parameters(i)%text, width, valid)
-         if (valid) valid = width >= least_width
-         if (valid) then
-            self%width = max(self%width, width)
-         else
-            call report%error(card%parameters(i)%value_place, &
-               'WIDTH= needs a whole number of at least '//to_text(least_width))
-         end if
-      end do
+      if (.not. card%has('WIDTH')) return
+      call read_integer(card%text('WIDTH'), width, valid)
+      if (valid) valid = width >= least_width
+      if (valid) self%width = max(self%width, width)
+      if (.not. valid) call report%error(card%place_of('WIDTH'), 'WIDTH= needs a whole number '// &
+         'of at least '//to_text(least_width))
    end subroutine take_width
 
    subroutine take_data_line(self, line, image, cards, report)

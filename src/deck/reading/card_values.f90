@@ -30,6 +30,7 @@ module card_values
    type :: field_rule_type
       character(:), allocatable :: name    !! what it holds
       character(:), allocatable :: limit   !! as limit_fault has it
+      real(dp) :: default                  !! where it is not given, or wrong
       logical :: is_needed, is_whole, is_text
    end type field_rule_type
 
@@ -151,13 +152,13 @@ contains
    !> Reads the numbers of a data card by its layout: its fields, separated by slashes, such as
    !> `@node or set/#degree of freedom/force`. Before a field stands `#` where it is a whole number
    !> and `@` where it is none and is read elsewhere; behind it `?` where it may be missing, and its
-   !> limit: >0, >=0, >0 <=1 or >=0 <=1. A value that is not given, or wrong, stays as it is. Of
-   !> fields that are missing the first is reported, as is the first one too many.
+   !> limit, >0, >=0, >0 <=1 or >=0 <=1, and what is taken where it is not given, or wrong: `=1`, or
+   !> 0. Of fields that are missing the first is reported, as is the first one too many.
    subroutine read_row(data, layout, report, values, valid)
       class(data_card_type), intent(in) :: data
       character(*), intent(in) :: layout
       class(deck_report_type), intent(inout) :: report    !! receives errors
-      real(dp), intent(inout) :: values(:)                !! (fields) those that are numbers
+      real(dp), intent(out) :: values(:)                  !! (fields) those that are numbers
       logical, intent(out) :: valid                       !! false after an error
       type(string_type), allocatable :: fields(:)
       type(field_rule_type) :: rule
@@ -168,12 +169,14 @@ contains
       valid = .true.
       lacks = .false.
       names = ''
+      values = 0.0_dp
       fields = split_words(layout)
       do i = 1, size(fields)
          rule = rule_of(fields(i)%value)
          names = names//', '//rule%name
          if (rule%is_text) cycle
          sound = .true.
+         values(i) = rule%default
          if (data%has(i) .or. data%is_undefined(i)) then
             call read_number(data, i, rule, report, values(i), sound)
          else if (rule%is_needed) then
@@ -205,10 +208,13 @@ contains
    !> The rule of one field of a layout.
    pure type(field_rule_type) function rule_of(field) result(rule)
       character(*), intent(in) :: field
-      integer :: last
+      integer :: behind, last
+      logical :: is_given
 
-      last = index(field//' >', ' >') - 1
-      rule%limit = adjustl(field(last + 1:))
+      behind = index(field//' =', ' =')
+      call read_real(field(min(behind + 2, len(field) + 1):), rule%default, is_given)
+      last = index(field(:behind - 1)//' >', ' >') - 1
+      rule%limit = adjustl(field(last + 1:behind - 1))
       rule%is_needed = field(last:last) /= '?'
       if (.not. rule%is_needed) last = last - 1
       rule%is_whole = field(1:1) == '#'

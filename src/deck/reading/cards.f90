@@ -154,7 +154,7 @@ contains
 
    !> Adds a keyword card, whose data cards are still to come.
    subroutine add_keyword(cards, card)
-      type(cards_type), intent(inout) :: cards
+      class(cards_type), intent(inout) :: cards
       class(keyword_line_type), intent(in) :: card   !! what is added
 
       if (.not. allocated(cards%keywords)) allocate(cards%keywords(64))
@@ -168,7 +168,7 @@ contains
 
    !> Adds a data card to the last keyword card.
    subroutine add_data(cards, fields, end)
-      type(cards_type), intent(inout) :: cards
+      class(cards_type), intent(inout) :: cards
       type(field_type), allocatable, intent(inout) :: fields(:)   !! fields, handed over
       type(place_type), intent(in) :: end                         !! where a missing field would be
 
@@ -237,7 +237,7 @@ contains
    !> Puts the cards of another list in place of those read; the notes stay.
    subroutine replace_cards(cards, others)
       type(cards_type), intent(inout) :: cards
-      type(cards_type), intent(inout) :: others       !! its cards move, and are not trimmed yet
+      class(cards_type), intent(inout) :: others      !! its cards move, and are not trimmed yet
 
       call move_alloc(others%keywords, cards%keywords)
       cards%keyword_count = others%keyword_count

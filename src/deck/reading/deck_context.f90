@@ -6,11 +6,11 @@ module deck_context
    use cards, only: add_note, cards_type, data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use deck_structure, only: report_twice
    use keywords, only: known_keywords
    use kinds, only: dp
    use load_requests, only: request_list_type, target_type
-   use mesh, only: set_type
+   use mesh, only: mesh_type, set_type
+   use model, only: model_type
    use name_index, only: name_index_type
    use quantity_types, only: quantity_type
    use sorting, only: number_index_type
@@ -19,7 +19,7 @@ module deck_context
    use time_points, only: time_points_type
    implicit none
    private
-   public :: deck_type, item_index_type, place_list_type, plane_by_element, read_target, take_name
+   public :: deck_type, item_index_type, place_list_type, plane_by_element, read_target
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
 
@@ -30,20 +30,20 @@ module deck_context
       type(place_type), allocatable :: items(:)   !! the places
    end type place_list_type
 
-   !> Names of sets of nodes, or of elements, and of those of the other kind.
-   type, extends(name_index_type) :: set_names_type
-      type(name_index_type) :: others
-   end type set_names_type
+   !> What has a name. One of the first two may be taken for the other.
+   character(*), parameter :: nouns(9) = [character(19) :: 'node set', 'element set', 'surface', &
+      'material', 'orientation', 'amplitude', 'surface interaction', 'contact pair', 'time points']
 
-   !> Index of the numbers of nodes or of elements, and of the names of their sets.
+   !> Index of the numbers of nodes or of elements.
    type, extends(number_index_type) :: item_index_type
       character(:), allocatable :: noun           !! node or element
-      type(set_names_type) :: sets
    end type item_index_type
 
    !> A deck and what is wrong with it.
    type, extends(deck_report_type) :: deck_type
       type(cards_type), pointer :: cards => null()        !! its cards, which nobody changes
+      type(model_type), pointer :: model => null()        !! what its cards make
+      type(mesh_type), pointer :: mesh => null()          !! its mesh
       type(quantity_type), allocatable :: verifiable(:)   !! what *VERIFY may name
       type(item_index_type) :: node_index                 !! numbers of nodes -> indexes
       type(item_index_type) :: element_index              !! numbers of elements -> indexes
@@ -63,9 +63,7 @@ module deck_context
       type(place_type), allocatable :: material_place(:)  !! (materials) where the material is
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step is
       type(time_points_type), allocatable :: time_points(:)   !! *TIME POINTS
-      ! Names -> indexes.
-      type(name_index_type) :: surfaces, materials, orientations, amplitudes, interactions
-      type(name_index_type) :: contacts, time_point_names
+      type(name_index_type), private :: names(size(nouns))   !! of each noun, -> indexes
       type(place_type), allocatable :: analysis_place(:)  !! (steps) where its analysis is
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element
@@ -87,12 +85,14 @@ module deck_context
       type(string_type), allocatable :: notes(:)          !! lines for the listing
    contains
       procedure :: note
+      procedure :: index_of
+      procedure :: add_name
+      procedure :: take_name
       procedure :: need_named
       procedure :: take_named
       procedure :: need_surface
       procedure :: need_element_set
-      procedure :: need_nodes
-      procedure :: need_elements
+      procedure :: need_target
       procedure :: look_up
    end type deck_type
 
@@ -106,22 +106,46 @@ contains
       call add_note(self%notes, line)
    end subroutine note
 
+   !> Index of the item that has a name; 0 where none has.
+   pure integer function index_of(self, noun, name)
+      class(deck_type), intent(in) :: self
+      character(*), intent(in) :: noun                  !! such as material
+      character(*), intent(in) :: name                  !! in any case
+
+      index_of = self%names(findloc(nouns == noun, .true., dim=1))%find(name)
+   end function index_of
+
+   !> Adds the name of the next item.
+   pure subroutine add_name(self, noun, name)
+      class(deck_type), intent(inout) :: self
+      character(*), intent(in) :: noun                  !! such as material
+      character(*), intent(in) :: name                  !! in any case
+
+      call self%names(findloc(nouns == noun, .true., dim=1))%add(name)
+   end subroutine add_name
+
    !> Takes the name of an item, NAME= of its card. That it has none, or that of an earlier one, is
    !> an error; another name may have been meant.
-   subroutine take_name(cards, k, noun, names, report, name)
-      type(cards_type), intent(in) :: cards
+   subroutine take_name(self, k, noun, name)
+      class(deck_type), intent(inout) :: self           !! receives the name, and errors
       integer, intent(in) :: k                          !! index of the card
       character(*), intent(in) :: noun                  !! such as material
-      type(name_index_type), intent(inout) :: names     !! those of the cards before; receives it
-      class(deck_report_type), intent(inout) :: report  !! receives errors
       character(:), allocatable, intent(out) :: name
-      logical :: repeated
+      integer :: first
 
-      call need_parameter(cards%keywords(k), 'NAME', report, name)
-      repeated = len(name) > 0 .and. names%find(name) > 0
-      if (repeated) call report_twice(cards, k, noun//' '//name, report)
-      if (repeated .or. len(name) == 0) call report%lose(noun)
-      call names%add(name)
+      associate (cards => self%cards%keywords)
+         call need_parameter(cards(k), 'NAME', self, name)
+         first = k
+         if (len(name) > 0 .and. self%index_of(noun, name) > 0) then
+            do first = 1, k - 1
+               if (cards(first)%name == cards(k)%name .and. to_upper(cards(first)%text('NAME')) == &
+                  name) exit
+            end do
+            call self%twice(cards(k)%place_of('NAME'), noun//' '//name, cards(first)%place)
+         end if
+      end associate
+      if (first < k .or. len(name) == 0) call self%lose(noun)
+      call self%add_name(noun, name)
    end subroutine take_name
 
    !> Index of the item that a parameter names, which the card must have; 0 after an error.
@@ -173,161 +197,106 @@ contains
       type(place_type), intent(in) :: place             !! where it is
       integer, intent(out) :: index
 
-      index = 0
-      select case (noun)
-      case ('node set')
-         call look_in(self%node_index%sets, self%deck_report_type)
-      case ('element set')
-         call look_in(self%element_index%sets, self%deck_report_type)
-      case ('surface')
-         call look_in(self%surfaces, self%deck_report_type)
-      case ('material')
-         call look_in(self%materials, self%deck_report_type)
-      case ('orientation')
-         call look_in(self%orientations, self%deck_report_type)
-      case ('amplitude')
-         call look_in(self%amplitudes, self%deck_report_type)
-      case ('surface interaction')
-         call look_in(self%interactions, self%deck_report_type)
-      case ('contact pair')
-         call look_in(self%contacts, self%deck_report_type)
-      case default
-         call look_in(self%time_point_names, self%deck_report_type)
-      end select
-   contains
-      subroutine look_in(names, report)
-         class(name_index_type), intent(in) :: names
-         type(deck_report_type), intent(inout) :: report
-
-         index = names%find(name)
-         if (index > 0) return
-         if (is_other_kind(names, name)) then
-            call report_other_kind(noun, name, place, report)
-         else
-            call report%missing(place, 'unknown '//noun//' '//name// &
-               nearest_known(name, names%known()), noun, name)
-         end if
-      end subroutine look_in
+      index = self%index_of(noun, name)
+      if (index == 0) call report_unknown(self, noun, name, place, huge(index))
    end subroutine look_up
 
-   !> Whether a name is that of a set of elements where one of nodes is due, or the reverse.
-   pure logical function is_other_kind(names, name)
-      class(name_index_type), intent(in) :: names
-      character(*), intent(in) :: name
-
-      is_other_kind = .false.
-      select type (names)
-      type is (set_names_type)
-         is_other_kind = names%others%find(name) > 0
-      end select
-   end function is_other_kind
-
-   !> Reports such a name.
-   subroutine report_other_kind(noun, name, place, report)
+   !> Reports a name that no item has.
+   subroutine report_unknown(self, noun, name, place, most)
+      class(deck_type), intent(inout) :: self           !! receives the error
       character(*), intent(in) :: noun, name
       type(place_type), intent(in) :: place
-      class(deck_report_type), intent(inout) :: report
+      integer, intent(in) :: most                       !! names that may be meant, the first ones
+      type(string_type), allocatable :: known(:)
+      character(:), allocatable :: message
 
-      if (noun == 'node set') then
-         call report%missing(place, name//' is an element set, and a node set is due here; '// &
-            '*NSET, NSET='//name//', ELSET='//name//' makes one of its nodes', noun, name)
+      if (noun == 'node set' .and. self%index_of('element set', name) > 0) then
+         message = name//' is an element set, and a node set is due here; *NSET, NSET='//name// &
+            ', ELSET='//name//' makes one of its nodes'
+      else if (noun == 'element set' .and. self%index_of('node set', name) > 0) then
+         message = name//' is a node set, and an element set is due here; give its elements a '// &
+            'name by *ELSET'
       else
-         call report%missing(place, name//' is a node set, and an element set is due here; '// &
-            'give its elements a name by *ELSET', noun, name)
+         known = self%names(findloc(nouns == noun, .true., dim=1))%known()
+         message = 'unknown '//noun//' '//name//nearest_known(name, known(:min(size(known), most)))
       end if
-   end subroutine report_other_kind
+      call self%missing(place, message, noun, name)
+   end subroutine report_unknown
 
    !> Index of the element set that ELSET= of a card names; 0 after an error.
-   subroutine need_element_set(self, card, sets, set)
+   subroutine need_element_set(self, card, set)
       class(deck_type), intent(inout) :: self           !! receives errors
       type(keyword_card_type), intent(in) :: card
-      type(set_type), intent(in) :: sets(:)             !! element sets
       integer, intent(out) :: set
-      logical :: valid
 
       call self%need_named(card, 'ELSET', 'element set', set)
       if (set == 0) return
-      if (.not. sets(set)%of_lines) return
-      call report_lines(sets(set)%name, card%place_of('ELSET'), self, valid)
+      if (.not. self%mesh%element_sets(set)%of_lines) return
+      call report_lines(self%mesh%element_sets(set)%name, card%place_of('ELSET'), self)
       set = 0
    end subroutine need_element_set
 
-   !> Reads the field of a card that names a node or a set of nodes.
-   subroutine need_nodes(self, data, position, sets, target, valid)
+   !> Reads the field of a card that names a node or an element, or a set of them.
+   subroutine need_target(self, noun, data, position, target, valid)
       class(deck_type), intent(inout) :: self           !! receives errors
+      character(*), intent(in) :: noun                  !! node or element
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
-      type(set_type), intent(in) :: sets(:)             !! node sets
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
 
-      call read_target(data, position, self%node_index, sets, self%deck_report_type, target, valid)
-   end subroutine need_nodes
-
-   !> Reads the field of a card that names an element or a set of elements.
-   subroutine need_elements(self, data, position, sets, target, valid)
-      class(deck_type), intent(inout) :: self           !! receives errors
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position                   !! position of the field
-      type(set_type), intent(in) :: sets(:)             !! element sets
-      type(target_type), intent(out) :: target
-      logical, intent(inout) :: valid                   !! becomes false after an error
-
-      call read_target(data, position, self%element_index, sets, self%deck_report_type, target, &
-         valid)
-   end subroutine need_elements
+      if (noun == 'node') call read_target(data, position, self%node_index, self%mesh%node_sets, &
+         self, target, valid)
+      if (noun == 'element') call read_target(data, position, self%element_index, &
+         self%mesh%element_sets, self, target, valid)
+   end subroutine need_target
 
    !> Reports an element set that has lines only where elements or their faces are due.
-   subroutine report_lines(name, place, report, valid)
+   subroutine report_lines(name, place, report)
       character(*), intent(in) :: name                  !! the set
       type(place_type), intent(in) :: place             !! where it is
       class(deck_report_type), intent(inout) :: report  !! receives the error
-      logical, intent(inout) :: valid                   !! becomes false
 
       call report%error(place, 'element set '//name// &
          ' contains only lines, springs or trusses; make a *SURFACE or an *NSET of lines')
-      valid = .false.
    end subroutine report_lines
 
    !> Reads the field of a card that names one node or element by its number, or a set by its name.
-   subroutine read_target(data, position, numbers, sets, report, target, valid)
+   subroutine read_target(data, position, numbers, sets, deck, target, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
       type(item_index_type), intent(in) :: numbers      !! numbers -> indexes
       type(set_type), intent(in) :: sets(:)             !! sets that are known, the first ones
-      class(deck_report_type), intent(inout) :: report  !! receives errors
+      class(deck_type), intent(inout) :: deck           !! receives errors
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
       character(:), allocatable :: name
-      type(string_type), allocatable :: known(:)
       integer :: number
       logical :: is_number
 
-      call need_field(data, position, numbers%noun//' or set', report, name, valid)
+      call need_field(data, position, numbers%noun//' or set', deck, name, valid)
       if (len(name) == 0) return
       call read_integer(name, number, is_number)
       if (is_number) then
          target%item = numbers%find(number)
       else
-         target%set = numbers%sets%find(name)
+         target%set = deck%index_of(numbers%noun//' set', name)
          if (target%set > size(sets)) target%set = 0
       end if
       if (target%set > 0) then
-         if (sets(target%set)%of_lines) call report_lines(sets(target%set)%name, &
-            data%place(position), report, valid)
+         if (sets(target%set)%of_lines) then
+            call report_lines(sets(target%set)%name, data%place(position), deck)
+            valid = .false.
+         end if
       end if
       if (target%item > 0 .or. target%set > 0) return
       valid = .false.
       if (is_number .or. verify(name, '0123456789') == 0) then
-         call report%missing(data%place(position), 'there is no '//numbers%noun//' '//name, &
+         call deck%missing(data%place(position), 'there is no '//numbers%noun//' '//name, &
             numbers%noun, name)
-      else if (is_other_kind(numbers%sets, name)) then
-         call report_other_kind(numbers%noun//' set', to_upper(name), data%place(position), report)
       else
-         known = numbers%sets%known()
-         call report%missing(data%place(position), 'unknown '//numbers%noun//' set '// &
-            to_upper(name)//nearest_known(to_upper(name), known(:size(sets))), &
-            numbers%noun//' set', name)
+         call report_unknown(deck, numbers%noun//' set', to_upper(name), data%place(position), &
+            size(sets))
       end if
    end subroutine read_target
 

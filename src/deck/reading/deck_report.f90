@@ -30,7 +30,7 @@ module deck_report
 
    !> Something whose definition a reported error may hide.
    type :: lost_type
-      character(:), allocatable :: noun   !! its kind, such as node set; empty for any
+      character(:), allocatable :: noun   !! its kind in upper case, such as NODE SET; empty for any
       character(:), allocatable :: name   !! in upper case; empty for any
    end type lost_type
 
@@ -116,8 +116,11 @@ contains
       integer :: i
 
       if (root_cause_of(self, place) > 0) return
-      i = first_error_of(self, place)
-      if (i == 0) then
+      do i = 1, self%count
+         if (self%diagnostics(i)%place%image == place%image .and. &
+            self%diagnostics(i)%severity == severity_error) exit
+      end do
+      if (i > self%count) then
          call add(self, severity_warning, place, message)
          i = self%count
       end if
@@ -163,21 +166,6 @@ contains
       end do
    end function root_cause_of
 
-   !> Index of the first error of a card image; 0 where there is none.
-   pure integer function first_error_of(self, place)
-      class(deck_report_type), intent(in) :: self
-      type(place_type), intent(in) :: place
-      integer :: i
-
-      first_error_of = 0
-      do i = 1, self%count
-         if (self%diagnostics(i)%place%image /= place%image) cycle
-         if (self%diagnostics(i)%severity /= severity_error) cycle
-         first_error_of = i
-         return
-      end do
-   end function first_error_of
-
    !> Reports that something is not there, unless a reported error may hide its definition; one name
    !> is told once.
    subroutine missing(self, place, message, noun, name)
@@ -203,7 +191,7 @@ contains
       integer :: i
 
       lost = lost_type('', '')
-      if (present(noun)) lost%noun = noun
+      if (present(noun)) lost%noun = to_upper(noun)
       if (present(name)) lost%name = to_upper(name)
       if (.not. allocated(self%lost)) allocate (self%lost(0))
       do i = 1, size(self%lost)
@@ -223,7 +211,7 @@ contains
       integer :: i
 
       kind = ''
-      if (present(noun)) kind = noun
+      if (present(noun)) kind = to_upper(noun)
       has_lost = .false.
       if (self%errors == 0 .or. .not. allocated(self%lost)) return
       do i = 1, size(self%lost)

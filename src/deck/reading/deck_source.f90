@@ -41,12 +41,20 @@ contains
       integer, intent(in) :: file                     !! index into paths
       integer, intent(in) :: line                     !! line in that file, from 1
       character(*), intent(in) :: image               !! the line, without its end
+      type(string_type), allocatable :: images(:)
+      integer :: i
 
       if (.not. allocated(self%images)) then
          allocate(self%images(first_capacity))
          allocate(self%file(first_capacity), self%line(first_capacity), source=0)
       else if (self%count == size(self%images)) then
-         call grow(self)
+         allocate(images(2*self%count))
+         do i = 1, self%count
+            call move_alloc(self%images(i)%value, images(i)%value)
+         end do
+         call move_alloc(images, self%images)
+         self%file = [self%file, spread(0, 1, self%count)]
+         self%line = [self%line, spread(0, 1, self%count)]
       end if
       self%count = self%count + 1
       self%images(self%count)%value = image
@@ -73,21 +81,6 @@ contains
 
       address = self%paths(self%file(place%image))%value//':'//to_text(self%line(place%image))
    end function address_of
-
-   !> Doubles the capacity.
-   subroutine grow(self)
-      type(deck_source_type), intent(inout) :: self
-      type(string_type), allocatable :: images(:)
-      integer :: i
-
-      allocate(images(2*self%count))
-      do i = 1, self%count
-         call move_alloc(self%images(i)%value, images(i)%value)
-      end do
-      call move_alloc(images, self%images)
-      self%file = [self%file, spread(0, 1, self%count)]
-      self%line = [self%line, spread(0, 1, self%count)]
-   end subroutine grow
 
    !> The lines of a text file, with ends of line in the manner of Unix or Windows.
    subroutine read_lines(path, lines, fault)

@@ -5,12 +5,11 @@ module deck_structure
    use cards, only: cards_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use keywords, only: built, in_model, in_step, keyword_type, known_keywords, not_needed
-   use text, only: to_text, to_upper
+   use keywords, only: in_model, in_step, keyword_type, known_keywords
+   use text, only: to_text
    implicit none
    private
    public :: check_structure, cards_of, card_count, data_count, has_stand_in, is_keyword
-   public :: report_twice
 
 contains
 
@@ -52,23 +51,6 @@ contains
       if (k >= 1 .and. k <= size(cards%keywords)) is_keyword = cards%keywords(k)%name == name
    end function is_keyword
 
-   !> Reports a card whose name another card of its keyword has before it.
-   subroutine report_twice(cards, k, what, report)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: k                            !! index of the card
-      character(*), intent(in) :: what                    !! such as material STEEL
-      class(deck_report_type), intent(inout) :: report    !! receives the error
-      integer :: first
-
-      associate (card => cards%keywords(k))
-         do first = 1, k - 1
-            if (cards%keywords(first)%name == card%name .and. &
-               to_upper(cards%keywords(first)%text('NAME')) == to_upper(card%text('NAME'))) exit
-         end do
-         call report%twice(card%place_of('NAME'), what, cards%keywords(first)%place)
-      end associate
-   end subroutine report_twice
-
    !> Whether a misspelt or refused keyword stands for another one.
    pure logical function has_stand_in(cards, name)
       type(cards_type), intent(in) :: cards
@@ -103,7 +85,6 @@ contains
             if (card%name == 'STEP') step = k
             after_step = after_step .or. step_open
             if (card%known == 0) cycle
-            if (.not. any(known_keywords(card%known)%status == [built, not_needed])) cycle
             if (is_late(card, after_step)) then
                if (.not. told) call report_late(cards, k, report)
                told = .true.
@@ -137,20 +118,11 @@ contains
       case ('ELEMENT', 'ELSET')
          if (card%data_lost) call report%lose('element')
          call report%lose('element set', card%text('ELSET'))
-      case ('SURFACE')
-         call report%lose('surface', card%text('NAME'))
-      case ('MATERIAL')
-         call report%lose('material', card%text('NAME'))
+      case ('SURFACE', 'MATERIAL', 'ORIENTATION', 'AMPLITUDE', 'SURFACE INTERACTION', &
+         'CONTACT PAIR')
+         call report%lose(card%name, card%text('NAME'))
       case ('ELASTIC', 'CONDUCTIVITY', 'DENSITY')
          call report%lose('*'//card%name)
-      case ('ORIENTATION')
-         call report%lose('orientation', card%text('NAME'))
-      case ('AMPLITUDE')
-         call report%lose('amplitude', card%text('NAME'))
-      case ('SURFACE INTERACTION')
-         call report%lose('surface interaction', card%text('NAME'))
-      case ('CONTACT PAIR')
-         call report%lose('contact pair', card%text('NAME'))
       case ('EQUATION', 'COUPLING', 'KINEMATIC', 'RIGID BODY', 'PRE-TENSION SECTION')
          call report%lose('equation')
       case default
@@ -230,8 +202,7 @@ contains
 
       known = known_keywords(card%known)
       n = size(card%data)
-      if (known%status == built .and. n < known%least_data .and. .not. &
-         (says_all(card) .or. card%data_lost)) then
+      if (n < known%least_data .and. .not. (says_all(card) .or. card%data_lost)) then
          call report%error(card%place, '*'//card%name//' needs a data card')
       else if (n > known%most_data) then
          most = 'none'

@@ -21,6 +21,12 @@ module element_types
    integer, parameter :: element_kinds_named(6) = &
       [quad8, quad8_reduced, quad4, triangle6, triangle3, quad4_enhanced]
 
+   character(7), parameter :: line_names(8) = [character(7) :: 'R2D2', 'RAX2', 'T3D2', 'T3D3', &
+      'T2D2', 'SPRINGA', 'SPRING1', 'SPRING2']
+   integer, parameter :: line_kinds(8) = [rigid_line, rigid_line, drawn_line, drawn_line, truss, &
+      axial_spring, ground_spring, relative_spring]
+   integer, parameter :: line_node_counts(8) = [2, 2, 2, 3, 2, 2, 1, 2]
+
 contains
 
    !> Kind and plane that an element type names, or why it cannot be used. Types of Abaqus for heat
@@ -125,16 +131,11 @@ contains
       if (len(message) == 0) element_type_fields = element_node_count(kind) + 1
    end function element_type_fields
 
-   !> What kind of line an element type names.
+   !> What kind of line an element type names; drawn_line where it names none.
    pure integer function line_kind(name)
-      character(*), intent(in) :: name   !! TYPE= in upper case, of a line
+      character(*), intent(in) :: name   !! TYPE= in upper case
 
-      line_kind = drawn_line
-      if (name == 'R2D2' .or. name == 'RAX2') line_kind = rigid_line
-      if (name == 'T2D2') line_kind = truss
-      if (name == 'SPRINGA') line_kind = axial_spring
-      if (name == 'SPRING1') line_kind = ground_spring
-      if (name == 'SPRING2') line_kind = relative_spring
+      line_kind = sum(line_kinds, mask=line_names == name)
    end function line_kind
 
    !> Nodes of a spring, a truss, a line of a rigid body, or a line element, such as gmsh writes for
@@ -142,16 +143,7 @@ contains
    pure integer function line_node_count(name)
       character(*), intent(in) :: name   !! TYPE= in upper case
 
-      select case (name)
-      case ('SPRING1')
-         line_node_count = 1
-      case ('T3D2', 'T2D2', 'SPRINGA', 'SPRING2', 'R2D2', 'RAX2')
-         line_node_count = 2
-      case ('T3D3')
-         line_node_count = 3
-      case default
-         line_node_count = 0
-      end select
+      line_node_count = sum(line_node_counts, mask=line_names == name)
    end function line_node_count
 
 end module element_types

@@ -7,7 +7,7 @@ module generated_cards
    use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
    use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
-      given_type, keep_last, node_place, position_of, rotation
+      growing_cards_type, keep_last, node_place, position_of, rotation
    use kinds, only: dp
    use text, only: to_text
    implicit none
@@ -35,39 +35,36 @@ contains
    !> it generates. Generated cards have the place of the card that generates them.
    subroutine generate_cards(cards, report)
       type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report   !! receives errors
-      type(cards_type) :: all
-      type(given_type) :: nodes, elements
+      type(deck_report_type), intent(inout), target :: report   !! receives errors
+      type(growing_cards_type) :: all
       integer :: k, j
 
       do k = 1, size(cards%keywords)
          if (generates(cards%keywords(k))) exit
       end do
       if (k > size(cards%keywords)) return
+      all%report => report
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
             if (.not. generates(card)) then
                call add_keyword(all, card)
                do j = 1, size(card%data)
                   call add_data(all, card%data(j)%fields, card%data(j)%end)
-                  if (card%name == 'NODE') call keep_last(all, nodes)
-                  if (card%name == 'ELEMENT') call keep_last(all, elements)
+                  call keep_last(all)
                end do
                cycle
             end if
             select case (card%name)
             case ('NFILL')
-               call fill_nodes(card, nodes, report, all)
+               call fill_nodes(card, all)
             case ('NCOPY')
-               call copy_nodes(card, nodes, report, all)
+               call copy_nodes(card, all)
             case ('ELCOPY')
-               call copy_elements(card, elements, report, all)
+               call copy_elements(card, all)
             case default
                do j = 1, size(card%data)
-                  if (card%name == 'NGEN') call generate_nodes(card, card%data(j), nodes, report, &
-                     all)
-                  if (card%name == 'ELGEN') call generate_elements(card, card%data(j), elements, &
-                     report, all)
+                  if (card%name == 'NGEN') call generate_nodes(card, card%data(j), all)
+                  if (card%name == 'ELGEN') call generate_elements(card, card%data(j), all)
                end do
             end select
          end associate
@@ -85,39 +82,35 @@ contains
 
    !> First and last node, increment: the nodes between the two, at equal distances on a line or,
    !> with LINE=C, on a circle.
-   subroutine generate_nodes(card, data, nodes, report, all)
+   subroutine generate_nodes(card, data, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
-      type(given_type), intent(inout) :: nodes
-      type(deck_report_type), intent(inout) :: report
-      type(cards_type), intent(inout) :: all
+      type(growing_cards_type), intent(inout) :: all
       type(given_point_type) :: ends(2)
       type(given_circle_type) :: circle
       real(dp) :: from(2), given(10)
       integer :: step, i, n
       logical :: valid
 
-      given = 0.0_dp
-      given(3) = 1.0_dp
       if (card%has('LINE')) then
-         call read_row(data, '#first node/#last node/#increment?/#center?/x of the center?/'// &
-            'y of the center?/z of the center?/x of the normal?/y of the normal?/z of the '// &
-            'normal?', report, given, valid)
+         call read_row(data, '#first node/#last node/#increment? =1/#center?/x of the '// &
+            'center?/y of the center?/z of the center?/x of the normal?/y of the normal?/z of '// &
+            'the normal?', all%report, given, valid)
       else
-         call read_row(data, '#first node/#last node/#increment?', report, given, valid)
+         call read_row(data, '#first node/#last node/#increment? =1', all%report, given, valid)
       end if
       step = nint(given(3))
       do i = 1, 2
-         if (valid) call find_given_node(data, i, nint(given(i)), nodes, all, report, ends(i))
+         if (valid) call find_given_node(data, i, nint(given(i)), all, ends(i))
       end do
       valid = valid .and. ends(1)%valid .and. ends(2)%valid
       if (valid .and. card%has('LINE')) then
-         call make_circle(card, data, given, ends, nodes, all, report, circle)
+         call make_circle(card, data, given, ends, all, circle)
          valid = circle%valid
       end if
-      if (valid) call check_range(data, ends%number, step, report, valid)
+      if (valid) call check_range(data, ends%number, step, all%report, valid)
       if (.not. valid) then
-         call report%lose('node')
+         call all%report%lose('node')
          return
       end if
       call add_set(card, 'NSET', data, ends%number, all)
@@ -130,49 +123,46 @@ contains
          else
             from = ends(1)%x + (ends(2)%x - ends(1)%x)*i/n
          end if
-         call add_node_card(data, ends(1)%number + i*step, from, all, nodes)
+         call add_node_card(data, ends(1)%number + i*step, from, all)
       end do
    end subroutine generate_nodes
 
    !> A node of the cards so far, and its place.
-   subroutine find_given_node(data, i, number, nodes, all, report, node)
+   subroutine find_given_node(data, i, number, all, node)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                ! position of the field
       integer, intent(in) :: number
-      type(given_type), intent(in) :: nodes
-      type(cards_type), intent(in) :: all
-      type(deck_report_type), intent(inout) :: report
+      type(growing_cards_type), intent(in) :: all
       type(given_point_type), intent(out) :: node
       integer :: at
 
       node%number = number
-      at = position_of(number, nodes)
+      at = position_of(number, all%nodes)
       node%valid = at > 0
       if (node%valid) then
-         node%x = node_place(all, nodes, at)
+         node%x = node_place(all, at)
       else
-         call report%error(data%place(i), 'no *NODE before this card has node '//to_text(number))
+         call all%report%error(data%place(i), 'no *NODE before this card has node '// &
+            to_text(number))
       end if
    end subroutine find_given_node
 
    !> Center of the circle of *NGEN, LINE=C, a node or a place, and the angle from the first node to
    !> the last: the smaller one, or the one anticlockwise about the normal that the card gives.
-   subroutine make_circle(card, data, given, ends, nodes, all, report, circle)
+   subroutine make_circle(card, data, given, ends, all, circle)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: given(10)       ! (fields)
       type(given_point_type), intent(in) :: ends(2)
-      type(given_type), intent(in) :: nodes
-      type(cards_type), intent(in) :: all
-      type(deck_report_type), intent(inout) :: report
+      type(growing_cards_type), intent(in) :: all
       type(given_circle_type), intent(out) :: circle
       real(dp), parameter :: whole = 2*acos(-1.0_dp)
       real(dp) :: radii(2, 2)
 
-      circle%valid = choice(card, 'LINE', 'C', report, '') == 'C'
+      circle%valid = choice(card, 'LINE', 'C', all%report, '') == 'C'
       circle%x = given(5:6)
-      if (circle%valid .and. data%has(4)) call find_given_node(data, 4, nint(given(4)), nodes, &
-         all, report, circle%given_point_type)
+      if (circle%valid .and. data%has(4)) call find_given_node(data, 4, nint(given(4)), all, &
+         circle%given_point_type)
       if (.not. circle%valid) return
       radii(:, 1) = ends(1)%x - circle%x
       radii(:, 2) = ends(2)%x - circle%x
@@ -183,7 +173,7 @@ contains
          if (given(10) < 0.0_dp) angle = -modulo(-angle, whole)
       end associate
       if (minval(norm2(radii, dim=1)) > 0.0_dp) return
-      call report%error(data%place(4), 'the center of the circle is one of its nodes')
+      call all%report%error(data%place(4), 'the center of the circle is one of its nodes')
       circle%valid = .false.
    end subroutine make_circle
 
@@ -207,12 +197,10 @@ contains
 
    !> Master element; then for the elements of a row, and for the rows, their number and the
    !> increments of their nodes and of their own numbers.
-   subroutine generate_elements(card, data, elements, report, all)
+   subroutine generate_elements(card, data, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
-      type(given_type), intent(inout) :: elements
-      type(deck_report_type), intent(inout) :: report
-      type(cards_type), intent(inout) :: all
+      type(growing_cards_type), intent(inout) :: all
       integer, allocatable :: corners(:)
       real(dp) :: given(7)
       integer :: master, at, i, j
@@ -220,35 +208,34 @@ contains
       integer :: steps(2, 2)    ! increments of nodes and elements, of both
       logical :: valid
 
-      given = 1.0_dp
-      call read_row(data, '#master element/#number of elements? >0/#increment of nodes?/'// &
-         '#increment of elements?/#number of rows? >0/#increment of nodes?/'// &
-         '#increment of elements?', report, given, valid)
+      call read_row(data, '#master element/#number of elements? >0 =1/#increment of nodes? '// &
+         '=1/#increment of elements? =1/#number of rows? >0 =1/#increment of nodes? '// &
+         '=1/#increment of elements? =1', all%report, given, valid)
       master = nint(given(1))
       counts = nint(given([2, 5]))
       steps = nint(reshape(given([3, 4, 6, 7]), [2, 2]))
       if (valid .and. product(given([2, 5])) > most_generated) then
-         call report%error(data%place(2), too_many)
+         call all%report%error(data%place(2), too_many)
          valid = .false.
       end if
       at = 0
-      if (valid) at = position_of(master, elements)
-      if (valid .and. at == 0) call report%error(data%place(1), 'no *ELEMENT before this card '// &
-         'has element '//to_text(master))
+      if (valid) at = position_of(master, all%elements)
+      if (valid .and. at == 0) call all%report%error(data%place(1), 'no *ELEMENT before this '// &
+         'card has element '//to_text(master))
       if (at == 0) then
-         call report%lose('element')
+         call all%report%lose('element')
          return
       end if
-      corners = corners_of(all%keywords(elements%keyword(at))%data(elements%card(at)))
+      corners = corners_of(all%keywords(all%elements%keyword(at))%data(all%elements%card(at)))
       call add_set(card, 'ELSET', data, [master], all)
       if (product(counts) > 1) call add_generated(card, 'ELEMENT', &
-         all%keywords(elements%keyword(at))%text('TYPE'), all)
+         all%keywords(all%elements%keyword(at))%text('TYPE'), all)
       do j = 0, counts(2) - 1
          do i = 0, counts(1) - 1
             if (i + j == 0) cycle
             call add_numbers(data, [master + i*steps(2, 1) + j*steps(2, 2), &
                corners + i*steps(1, 1) + j*steps(1, 2)], all)
-            call keep_last(all, elements)
+            call keep_last(all)
          end do
       end do
    end subroutine generate_elements

@@ -3,6 +3,7 @@
 module given_cards
    use cards, only: add_data, add_keyword, cards_type, data_card_type, field_type, &
       keyword_card_type, parameter_type
+   use deck_report, only: deck_report_type
    use keywords, only: find_keyword
    use kinds, only: dp
    use name_index, only: name_index_type
@@ -11,8 +12,8 @@ module given_cards
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none
    private
-   public :: given_type, add_set, add_generated, add_numbers, add_node_card, node_place
-   public :: keep_last, members_of, position_of, corners_of, exact_text, rotation
+   public :: given_type, growing_cards_type, add_set, add_generated, add_numbers, add_node_card
+   public :: node_place, keep_last, members_of, position_of, corners_of, exact_text, rotation
 
    !> Nodes, or elements, of the cards so far.
    type :: given_type
@@ -22,6 +23,12 @@ module given_cards
       integer, allocatable :: card(:)        !! (capacity) data card
    end type given_type
 
+   !> Cards that take the place of others, so far.
+   type, extends(cards_type) :: growing_cards_type
+      type(given_type) :: nodes, elements                         !! of these cards
+      type(deck_report_type), pointer :: report => null()         !! what is wrong with the deck
+   end type growing_cards_type
+
 contains
 
    !> Puts what the generating card names itself into its set.
@@ -30,7 +37,7 @@ contains
       character(*), intent(in) :: keyword           !! NSET or ELSET, which is also the parameter
       type(data_card_type), intent(in) :: data      !! whose place the cards have
       integer, intent(in) :: numbers(:)             !! of nodes or elements
-      type(cards_type), intent(inout) :: all        !! receives the cards
+      type(growing_cards_type), intent(inout) :: all        !! receives the cards
 
       if (.not. card%has(keyword)) return
       call add_generated(card, keyword, '', all)
@@ -42,7 +49,7 @@ contains
       type(keyword_card_type), intent(in) :: card   !! the generating one
       character(*), intent(in) :: keyword           !! NODE, ELEMENT, NSET or ELSET
       character(*), intent(in) :: element_type      !! TYPE=, or empty
-      type(cards_type), intent(inout) :: all        !! receives the card
+      type(growing_cards_type), intent(inout) :: all        !! receives the card
       type(keyword_card_type) :: generated
       type(parameter_type) :: type_parameter
 
@@ -62,7 +69,7 @@ contains
    subroutine add_numbers(data, numbers, all)
       type(data_card_type), intent(in) :: data      !! whose place it has
       integer, intent(in) :: numbers(:)             !! its fields
-      type(cards_type), intent(inout) :: all        !! receives the card
+      type(growing_cards_type), intent(inout) :: all        !! receives the card
       type(string_type) :: words(size(numbers))
       integer :: i
 
@@ -75,7 +82,7 @@ contains
    subroutine add_fields(data, words, all)
       type(data_card_type), intent(in) :: data
       type(string_type), intent(in) :: words(:)
-      type(cards_type), intent(inout) :: all
+      type(growing_cards_type), intent(inout) :: all
       type(field_type), allocatable :: fields(:)
       integer :: i
 
@@ -88,25 +95,23 @@ contains
    end subroutine add_fields
 
    !> Adds a node.
-   subroutine add_node_card(data, number, x, all, nodes)
+   subroutine add_node_card(data, number, x, all)
       type(data_card_type), intent(in) :: data      !! whose place it has
       integer, intent(in) :: number                 !! of the node
       real(dp), intent(in) :: x(2)                  !! its place [length]
-      type(cards_type), intent(inout) :: all        !! receives the card
-      type(given_type), intent(inout) :: nodes      !! receives the node
+      type(growing_cards_type), intent(inout) :: all        !! receives the card
       type(string_type) :: words(3)
 
       words(1)%value = to_text(number)
       words(2)%value = exact_text(x(1))
       words(3)%value = exact_text(x(2))
       call add_fields(data, words, all)
-      call keep_last(all, nodes)
+      call keep_last(all)
    end subroutine add_node_card
 
    !> Place of a node; a coordinate that is no number is 0 and reported elsewhere.
-   function node_place(all, nodes, at) result(x)
-      type(cards_type), intent(in) :: all
-      type(given_type), intent(in) :: nodes
+   function node_place(all, at) result(x)
+      type(growing_cards_type), intent(in) :: all
       integer, intent(in) :: at                     !! its position in the list
       real(dp) :: x(2)
       integer :: i
@@ -114,23 +119,32 @@ contains
 
       x = 0.0_dp
       do i = 1, 2
-         call read_real(all%keywords(nodes%keyword(at))%data(nodes%card(at))%text(i + 1), x(i), &
-            is_number)
+         call read_real(all%keywords(all%nodes%keyword(at))%data(all%nodes%card(at))%text(i + 1), &
+            x(i), is_number)
       end do
    end function node_place
 
    !> Remembers the node or element of the last data card; fields that are no numbers are reported
    !> elsewhere.
-   subroutine keep_last(all, given)
-      type(cards_type), intent(in) :: all           !! the cards so far
-      type(given_type), intent(inout) :: given      !! receives it
+   subroutine keep_last(all)
+      type(growing_cards_type), intent(inout) :: all
       integer :: number
       logical :: valid
 
       associate (last => all%keywords(all%keyword_count))
+         if (.not. any(last%name == ['NODE   ', 'ELEMENT'])) return
          call read_integer(last%data(last%data_count)%text(1), number, valid)
+         if (.not. valid) return
+         if (last%name == 'NODE') call keep(number, all%keyword_count, last%data_count, all%nodes)
+         if (last%name == 'ELEMENT') call keep(number, all%keyword_count, last%data_count, &
+            all%elements)
       end associate
-      if (.not. valid) return
+   end subroutine keep_last
+
+   pure subroutine keep(number, keyword, card, given)
+      integer, intent(in) :: number, keyword, card
+      type(given_type), intent(inout) :: given
+
       if (.not. allocated(given%number)) allocate(given%number(0), given%keyword(0), given%card(0))
       if (given%count == size(given%number)) then
          given%number = [given%number, spread(0, 1, given%count + 64)]
@@ -139,14 +153,14 @@ contains
       end if
       given%count = given%count + 1
       given%number(given%count) = number
-      given%keyword(given%count) = all%keyword_count
-      given%card(given%count) = all%keywords(all%keyword_count)%data_count
-   end subroutine keep_last
+      given%keyword(given%count) = keyword
+      given%card(given%count) = card
+   end subroutine keep
 
    !> Numbers of a set of the cards so far, each once and ascending. What is no number and no set so
    !> far is reported elsewhere.
    function members_of(all, keyword, name) result(numbers)
-      type(cards_type), intent(in) :: all
+      type(growing_cards_type), intent(in) :: all
       character(*), intent(in) :: keyword           !! NSET or ELSET
       character(*), intent(in) :: name              !! of the set, in any case
       integer, allocatable :: numbers(:)

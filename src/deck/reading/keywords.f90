@@ -38,7 +38,6 @@ module keywords
    !> one that may have one; `~` is before one that is not needed.
    type :: keyword_type
       character(34) :: name          !! without the star
-      integer :: status              !! built or not_needed
       integer :: section             !! in_model, in_step or in_both
       integer :: least_data          !! fewest data cards
       integer :: most_data           !! most data cards
@@ -72,123 +71,116 @@ module keywords
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
    type(keyword_type), parameter :: known_keywords(88) = [ &
-      keyword_type('HEADING', built, in_model, 0, many, ''), &
-      keyword_type('OPTIONS', built, in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
-      keyword_type('PHYSICAL CONSTANTS', built, in_model, 0, 0, &
+      keyword_type('HEADING', in_model, 0, many, ''), &
+      keyword_type('OPTIONS', in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
+      keyword_type('PHYSICAL CONSTANTS', in_model, 0, 0, &
          'ABSOLUTE ZERO=/STEFAN BOLTZMANN=/~NEWTON GRAVITY=/~UNIVERSAL GAS CONSTANT='), &
-      keyword_type('PARAMETER', built, in_model, 0, 0, ''), &
-      keyword_type('NODE', built, in_model, 1, many, 'NSET=/FORMAT='), &
-      keyword_type('ELEMENT', built, in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
-      keyword_type('NGEN', built, in_model, 1, many, 'NSET=/LINE='), &
-      keyword_type('NFILL', built, in_model, 1, many, 'NSET=/BIAS='), &
-      keyword_type('NCOPY', built, in_model, 1, 2, &
+      keyword_type('PARAMETER', in_model, 0, 0, ''), &
+      keyword_type('NODE', in_model, 1, many, 'NSET=/FORMAT='), &
+      keyword_type('ELEMENT', in_model, 1, many, 'TYPE=/ELSET=/FORMAT='), &
+      keyword_type('NGEN', in_model, 1, many, 'NSET=/LINE='), &
+      keyword_type('NFILL', in_model, 1, many, 'NSET=/BIAS='), &
+      keyword_type('NCOPY', in_model, 1, 2, &
          'OLD SET=/CHANGE NUMBER=/NEW SET=/SHIFT/REFLECT=/MULTIPLE='), &
-      keyword_type('ELGEN', built, in_model, 1, many, 'ELSET='), &
-      keyword_type('ELCOPY', built, in_model, 0, 0, &
+      keyword_type('ELGEN', in_model, 1, many, 'ELSET='), &
+      keyword_type('ELCOPY', in_model, 0, 0, &
          'OLD SET=/ELEMENT SHIFT=/SHIFT NODES=/NEW SET=/REFLECT'), &
-      keyword_type('NSET', built, in_both, 1, many, &
+      keyword_type('NSET', in_both, 1, many, &
          'NSET=/GENERATE/ELSET=/SURFACE=/INSTANCE=/~INTERNAL/~UNSORTED'), &
-      keyword_type('ELSET', built, in_both, 1, many, &
-         'ELSET=/GENERATE/INSTANCE=/~INTERNAL/~UNSORTED'), &
-      keyword_type('SURFACE', built, in_model, 1, many, &
-         'NAME=/TYPE=/~INTERNAL/~TRIM=/~MAX RATIO='), &
-      keyword_type('MATERIAL', built, in_model, 0, 0, 'NAME='), &
-      keyword_type('ELASTIC', built, in_model, 1, many, 'TYPE='), &
-      keyword_type('EXPANSION', built, in_model, 1, many, 'TYPE=/ZERO='), &
-      keyword_type('CONDUCTIVITY', built, in_model, 1, many, 'TYPE='), &
-      keyword_type('DENSITY', built, in_model, 1, many, ''), &
-      keyword_type('SPECIFIC HEAT', built, in_model, 1, many, ''), &
-      keyword_type('ORIENTATION', built, in_model, 1, 2, 'NAME=/SYSTEM='), &
-      keyword_type('SOLID SECTION', built, in_model, 0, 1, &
+      keyword_type('ELSET', in_both, 1, many, 'ELSET=/GENERATE/INSTANCE=/~INTERNAL/~UNSORTED'), &
+      keyword_type('SURFACE', in_model, 1, many, 'NAME=/TYPE=/~INTERNAL/~TRIM=/~MAX RATIO='), &
+      keyword_type('MATERIAL', in_model, 0, 0, 'NAME='), &
+      keyword_type('ELASTIC', in_model, 1, many, 'TYPE='), &
+      keyword_type('EXPANSION', in_model, 1, many, 'TYPE=/ZERO='), &
+      keyword_type('CONDUCTIVITY', in_model, 1, many, 'TYPE='), &
+      keyword_type('DENSITY', in_model, 1, many, ''), &
+      keyword_type('SPECIFIC HEAT', in_model, 1, many, ''), &
+      keyword_type('ORIENTATION', in_model, 1, 2, 'NAME=/SYSTEM='), &
+      keyword_type('SOLID SECTION', in_model, 0, 1, &
          'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
-      keyword_type('SPRING', built, in_model, 1, 2, 'ELSET='), &
-      keyword_type('AMPLITUDE', built, in_both, 1, many, &
+      keyword_type('SPRING', in_model, 1, 2, 'ELSET='), &
+      keyword_type('AMPLITUDE', in_both, 1, many, &
          'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH='), &
-      keyword_type('INITIAL CONDITIONS', built, in_model, 1, many, 'TYPE=/~VARIABLE='), &
-      keyword_type('SURFACE INTERACTION', built, in_model, 0, 1, 'NAME='), &
-      keyword_type('FRICTION', built, in_both, 1, 1, &
+      keyword_type('INITIAL CONDITIONS', in_model, 1, many, 'TYPE=/~VARIABLE='), &
+      keyword_type('SURFACE INTERACTION', in_model, 0, 1, 'NAME='), &
+      keyword_type('FRICTION', in_both, 1, 1, &
          'ROUGH/TAUMAX=/~SLIP TOLERANCE=/~ELASTIC SLIP=/~LAGRANGE'), &
-      keyword_type('GAP CONDUCTANCE', built, in_model, 1, many, 'PRESSURE/CLEARANCE'), &
-      keyword_type('GAP LAW', built, in_model, 1, many, 'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
-      keyword_type('GAP HEAT GENERATION', built, in_model, 0, 1, 'ANGULAR VELOCITY='), &
-      keyword_type('GAP RADIATION', built, in_model, 1, many, ''), &
-      keyword_type('SURFACE BEHAVIOR', built, in_model, 0, many, &
+      keyword_type('GAP CONDUCTANCE', in_model, 1, many, 'PRESSURE/CLEARANCE'), &
+      keyword_type('GAP LAW', in_model, 1, many, 'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
+      keyword_type('GAP HEAT GENERATION', in_model, 0, 1, 'ANGULAR VELOCITY='), &
+      keyword_type('GAP RADIATION', in_model, 1, many, ''), &
+      keyword_type('SURFACE BEHAVIOR', in_model, 0, many, &
          'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT'), &
-      keyword_type('CONTACT PAIR', built, in_model, 1, many, &
+      keyword_type('CONTACT PAIR', in_model, 1, many, &
          'INTERACTION=/NAME=/PAIRING=/ADJUST=/~TYPE=/~SMALL SLIDING/~NO THICKNESS/~CPSET=/'// &
          '~GEOMETRIC CORRECTION=/~HCRIT=/~MECHANICAL CONSTRAINT=/~EXTENSION ZONE=/~SMOOTH=/'// &
          '~TRACKING=/~SUPPLEMENTARY CONSTRAINTS='), &
-      keyword_type('TIE', built, in_model, 1, many, &
+      keyword_type('TIE', in_model, 1, many, &
          'NAME=/POSITION TOLERANCE=/ADJUST=/~TYPE=/~NO ROTATION/~NO THICKNESS'), &
-      keyword_type('CLEARANCE', built, in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
-      keyword_type('TRANSFORM', built, in_model, 1, 1, 'NSET=/TYPE='), &
-      keyword_type('PART', built, in_model, 0, 0, 'NAME='), &
-      keyword_type('END PART', built, in_model, 0, 0, ''), &
-      keyword_type('ASSEMBLY', built, in_model, 0, 0, 'NAME='), &
-      keyword_type('END ASSEMBLY', built, in_model, 0, 0, ''), &
-      keyword_type('INSTANCE', built, in_model, 0, 2, 'NAME=/PART='), &
-      keyword_type('END INSTANCE', built, in_model, 0, 0, ''), &
-      keyword_type('FIXED POINT', built, in_both, 0, 0, 'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
-      keyword_type('START', built, in_both, 0, many, 'FROM='), &
-      keyword_type('THERMAL SCHEME', built, in_both, 0, 1, 'TYPE='), &
-      keyword_type('CONTINUATION', built, in_step, 0, 0, &
-         'POINTS=/LOWEST=/HIGHEST=/ARC=/DIRECTION='), &
-      keyword_type('SOLVER', built, in_model, 0, 0, 'TYPE='), &
-      keyword_type('REFINE', built, in_model, 0, 0, 'LEVELS=/SURFACE=/ELSET=/DISTANCE='), &
-      keyword_type('VERIFY', built, in_both, 1, many, 'KIND=/SOURCE='), &
-      keyword_type('ACCURACY', built, in_model, 1, many, 'ROUNDS='), &
-      keyword_type('EQUATION', built, in_model, 1, many, ''), &
-      keyword_type('COUPLING', built, in_model, 0, 0, 'REF NODE=/SURFACE=/CONSTRAINT NAME='), &
-      keyword_type('RIGID BODY', built, in_model, 0, 0, &
+      keyword_type('CLEARANCE', in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
+      keyword_type('TRANSFORM', in_model, 1, 1, 'NSET=/TYPE='), &
+      keyword_type('PART', in_model, 0, 0, 'NAME='), &
+      keyword_type('END PART', in_model, 0, 0, ''), &
+      keyword_type('ASSEMBLY', in_model, 0, 0, 'NAME='), &
+      keyword_type('END ASSEMBLY', in_model, 0, 0, ''), &
+      keyword_type('INSTANCE', in_model, 0, 2, 'NAME=/PART='), &
+      keyword_type('END INSTANCE', in_model, 0, 0, ''), &
+      keyword_type('FIXED POINT', in_both, 0, 0, 'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
+      keyword_type('START', in_both, 0, many, 'FROM='), &
+      keyword_type('THERMAL SCHEME', in_both, 0, 1, 'TYPE='), &
+      keyword_type('CONTINUATION', in_step, 0, 0, 'POINTS=/LOWEST=/HIGHEST=/ARC=/DIRECTION='), &
+      keyword_type('SOLVER', in_model, 0, 0, 'TYPE='), &
+      keyword_type('REFINE', in_model, 0, 0, 'LEVELS=/SURFACE=/ELSET=/DISTANCE='), &
+      keyword_type('VERIFY', in_both, 1, many, 'KIND=/SOURCE='), &
+      keyword_type('ACCURACY', in_model, 1, many, 'ROUNDS='), &
+      keyword_type('EQUATION', in_model, 1, many, ''), &
+      keyword_type('COUPLING', in_model, 0, 0, 'REF NODE=/SURFACE=/CONSTRAINT NAME='), &
+      keyword_type('RIGID BODY', in_model, 0, 0, &
          'REF NODE=/ROT NODE=/ELSET=/NSET=/TIE NSET=/PIN NSET=/'// &
          'ANALYTICAL SURFACE=/ISOTHERMAL=/POSITION='), &
-      keyword_type('KINEMATIC', built, in_model, 0, many, ''), &
-      keyword_type('PRE-TENSION SECTION', built, in_model, 0, 1, 'NODE=/SURFACE='), &
-      keyword_type('STEP', built, in_both, 0, 0, &
+      keyword_type('KINEMATIC', in_model, 0, many, ''), &
+      keyword_type('PRE-TENSION SECTION', in_model, 0, 1, 'NODE=/SURFACE='), &
+      keyword_type('STEP', in_both, 0, 0, &
          'INC=/AMPLITUDE=/NLGEOM?/PERTURBATION/~NAME=/~UNSYMM?/~EXTRAPOLATION=/'// &
          '~CONVERT SDI=/~DSA?'), &
-      keyword_type('STATIC', built, in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
-      keyword_type('NO ANALYSIS', built, in_step, 0, 0, ''), &
-      keyword_type('STABILITY', built, in_step, 0, 0, 'FREQUENCY='), &
-      keyword_type('TIME POINTS', built, in_both, 1, many, 'NAME=/TIME=/GENERATE'), &
-      keyword_type('HEAT TRANSFER', built, in_step, 0, 1, &
+      keyword_type('STATIC', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
+      keyword_type('NO ANALYSIS', in_step, 0, 0, ''), &
+      keyword_type('STABILITY', in_step, 0, 0, 'FREQUENCY='), &
+      keyword_type('TIME POINTS', in_both, 1, many, 'NAME=/TIME=/GENERATE'), &
+      keyword_type('HEAT TRANSFER', in_step, 0, 1, &
          'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/~END='), &
-      keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, 'CREEP=/'// &
+      keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', in_step, 0, 1, 'CREEP=/'// &
          stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/DILATATION='), &
-      keyword_type('UNCOUPLED TEMPERATURE-DISPLACEMENT', built, in_step, 0, 1, &
+      keyword_type('UNCOUPLED TEMPERATURE-DISPLACEMENT', in_step, 0, 1, &
          'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR='), &
-      keyword_type('BOUNDARY', built, in_both, 1, many, 'OP=/AMPLITUDE=/TYPE=/FIXED'), &
-      keyword_type('CLOAD', built, in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?'), &
-      keyword_type('DLOAD', built, in_step, 1, many, &
-         'OP=/AMPLITUDE=/~FOLLOWER?/~CONSTANT RESULTANT='), &
-      keyword_type('DSLOAD', built, in_step, 1, many, &
-         'OP=/AMPLITUDE=/~FOLLOWER?/~CONSTANT RESULTANT='), &
-      keyword_type('CFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      keyword_type('DFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      keyword_type('FILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
-      keyword_type('DSFLUX', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      keyword_type('SFILM', built, in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
-      keyword_type('TEMPERATURE', built, in_step, 1, many, 'OP=/AMPLITUDE='), &
-      keyword_type('CHANGE FRICTION', built, in_step, 0, 0, 'INTERACTION='), &
-      keyword_type('MODEL CHANGE', built, in_step, 1, many, 'TYPE=/ADD/REMOVE'), &
-      keyword_type('CONTACT INTERFERENCE', built, in_step, 1, many, &
-         'TYPE=/AMPLITUDE=/OP=/SHRINK'), &
-      keyword_type('NODE FILE', built, in_step, 0, many, file_parameters), &
-      keyword_type('EL FILE', built, in_step, 0, many, file_parameters), &
-      keyword_type('CONTACT FILE', built, in_step, 0, many, file_parameters), &
-      keyword_type('NODE OUTPUT', built, in_step, 0, many, file_parameters), &
-      keyword_type('ELEMENT OUTPUT', built, in_step, 0, many, file_parameters), &
-      keyword_type('CONTACT OUTPUT', built, in_step, 0, many, file_parameters), &
-      keyword_type('RESTART', built, in_both, 0, 0, &
+      keyword_type('BOUNDARY', in_both, 1, many, 'OP=/AMPLITUDE=/TYPE=/FIXED'), &
+      keyword_type('CLOAD', in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?'), &
+      keyword_type('DLOAD', in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?/~CONSTANT RESULTANT='), &
+      keyword_type('DSLOAD', in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?/~CONSTANT RESULTANT='), &
+      keyword_type('CFLUX', in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('DFLUX', in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('FILM', in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
+      keyword_type('DSFLUX', in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('SFILM', in_step, 1, many, 'OP=/AMPLITUDE=/FILM AMPLITUDE='), &
+      keyword_type('TEMPERATURE', in_step, 1, many, 'OP=/AMPLITUDE='), &
+      keyword_type('CHANGE FRICTION', in_step, 0, 0, 'INTERACTION='), &
+      keyword_type('MODEL CHANGE', in_step, 1, many, 'TYPE=/ADD/REMOVE'), &
+      keyword_type('CONTACT INTERFERENCE', in_step, 1, many, 'TYPE=/AMPLITUDE=/OP=/SHRINK'), &
+      keyword_type('NODE FILE', in_step, 0, many, file_parameters), &
+      keyword_type('EL FILE', in_step, 0, many, file_parameters), &
+      keyword_type('CONTACT FILE', in_step, 0, many, file_parameters), &
+      keyword_type('NODE OUTPUT', in_step, 0, many, file_parameters), &
+      keyword_type('ELEMENT OUTPUT', in_step, 0, many, file_parameters), &
+      keyword_type('CONTACT OUTPUT', in_step, 0, many, file_parameters), &
+      keyword_type('RESTART', in_both, 0, 0, &
          'READ/STEP=/INC=/WRITE/FREQUENCY=/OVERLAY/~NUMBER INTERVAL=/~TIME MARKS?'), &
-      keyword_type('NODE PRINT', built, in_step, 0, many, &
+      keyword_type('NODE PRINT', in_step, 0, many, &
          'NSET=/FREQUENCY=/TIME POINTS=/TOTALS=/GLOBAL=/~FREQUENCYF='), &
-      keyword_type('EL PRINT', built, in_step, 0, many, &
+      keyword_type('EL PRINT', in_step, 0, many, &
          'ELSET=/FREQUENCY=/TIME POINTS=/GLOBAL=/~FREQUENCYF='), &
-      keyword_type('CONTACT PRINT', built, in_step, 0, many, &
-         'FREQUENCY=/TIME POINTS=/~FREQUENCYF='), &
-      keyword_type('END STEP', built, in_step, 0, 0, ''), &
-      keyword_type('INCLUDE', built, in_both, 0, 0, 'INPUT=')]
+      keyword_type('CONTACT PRINT', in_step, 0, many, 'FREQUENCY=/TIME POINTS=/~FREQUENCYF='), &
+      keyword_type('END STEP', in_step, 0, 0, ''), &
+      keyword_type('INCLUDE', in_both, 0, 0, 'INPUT=')]
 
    !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
    type(advice_type), parameter :: advice(96) = [ &
