@@ -289,9 +289,8 @@ contains
                if (rows(2, i) > 0) path%compliance(n + i, [j, n + j]) = &
                   point_compliance%response(rows(2, i), :)
             end do
-            path%compliance(j, j) = path%compliance(j, &
-               j) + sticking%soft%compliance(path%point(j), &
-               -path%lambda(j))
+            path%compliance(j, j) = path%compliance(j, j) + &
+               sticking%soft%compliance(path%point(j), -path%lambda(j))
          end associate
       end do
       path%own = [(path%compliance(i, i), i=1, 2*n)]

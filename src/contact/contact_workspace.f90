@@ -48,7 +48,7 @@ module contact_workspace
       logical :: driven = .false.                 !! whether these are more than rounding
       logical, allocatable :: idle(:)  !! (m) closed contact points that carry nothing (idle_points)
       integer :: factorisations = 0               !! of active sets, so far
-      integer :: compliances_found = 0                      !! found so far
+      integer :: compliances_found = 0            !! of contact points, so far
       type(point_compliance_type), allocatable :: point_compliance(:) !! (m) of the factors
       logical :: several = .false.                !! whether other states under the load are proven
       type(contact_factors_type) :: factors       !! of these rows
