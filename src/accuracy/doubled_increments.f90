@@ -108,8 +108,8 @@ contains
       end if
       call begin_increment(run%bodies, step, before, trial)
       film = trial%data%equation%left_film(run%bodies%capacity)
-      if (run%heat_reductions(1)%serves(run%bodies, film) &
-         .or. .not. solves_heat(step%analysis)) then
+      if (run%heat_reductions(1)%serves(run%bodies, film) .or. &
+         .not. solves_heat(step%analysis)) then
          call solve_with(run%heat_reductions(1))
       else
          call self%heat%share_order(run%heat_reductions(1), run%bodies)

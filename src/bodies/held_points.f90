@@ -49,8 +49,8 @@ contains
             if (holds_normal(points, k, axes, all_held)) cycle
             if (any(all_held)) then
                direction = axes(:, findloc(all_held, .true., dim=1))
-            else if (norm2(held_along_tangent(points, prescribed, k, &
-               points%master(k))) > 0.0_dp) then
+            else if (any(abs(held_along_tangent(points, prescribed, k, points%master(k))) > &
+               0.0_dp)) then
                direction = held_along_tangent(points, prescribed, k, points%slave(k))
             end if
          end associate
@@ -97,9 +97,8 @@ contains
       call find_axes(points, prescribed, points%slave(k), axes, all_held)
       associate (nodes => points%nodes_of(k))
          do c = 1, 2
-            if (all_held(c)) all_held(c) = all([(free_part(points, prescribed, nodes(i), axes(:, &
-               c)) <= &
-               least_slant, i=1, size(nodes))])
+            if (all_held(c)) all_held(c) = all([(free_part(points, prescribed, nodes(i), &
+               axes(:, c)) <= least_slant, i=1, size(nodes))])
          end do
       end associate
       if (.not. points%turns()) return
@@ -200,8 +199,8 @@ contains
    !> A contact point of one interface whose normal force, or friction force, supports leave
    !> undetermined beside those of the others; 0 where there is none. Contact points whose normal
    !> motion is prescribed do not count.
-   pure integer function first_redundant(points, first, last, prescribed, &
-      has_friction) result(found)
+   pure integer function first_redundant(points, first, last, prescribed, has_friction) &
+      result(found)
       type(connections_type), intent(in) :: points !! all contact points
       integer, intent(in) :: first, last                  !! those of the interface
       logical, intent(in) :: prescribed(:) !! (2 nodes) prescribed displacements
@@ -249,8 +248,8 @@ contains
       do k = 1, size(order)
          associate (nodes => points%nodes_of(order(k)))
             call rows%add(nodes, points%difference%coefficients_of(order(k))* &
-               [(free_part(points, prescribed, nodes(i), direction(:, order(k))), i=1, &
-               size(nodes))])
+               [(free_part(points, prescribed, nodes(i), direction(:, order(k))), &
+               i=1, size(nodes))])
          end associate
       end do
       associate (dependent => dependent_rows(rows, least_left), before => points%hanging%count)

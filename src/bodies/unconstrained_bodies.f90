@@ -169,8 +169,7 @@ contains
       type(string_type), allocatable :: messages(:)
 
       call find_undetermined(model, points, with_source(model, prescribed, step), prescribed, &
-         conducts, &
-         ': all its contact points have conductance 0', messages)
+         conducts, ': all its contact points have conductance 0', messages)
       words = joined(messages)
    end function undetermined_now
 

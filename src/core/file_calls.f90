@@ -14,7 +14,7 @@ module file_calls
    private
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file, &
       sync_file, try_file, try_growth, create_working_file, remove_working_files, &
-      survive_file_limits, cannot_write, check_written, reason_of, print_text, check_printed, &
+      survive_file_limits, cannot_write, check_written, print_text, check_printed, &
       identity_of, check_in_place, seal_file, check_seal
 
    integer(c_int), parameter :: too_long = -3_c_int   !! as in file_calls.c
@@ -135,7 +135,8 @@ contains
       character(*), intent(in) :: path                     !! the file
       type(error_type), allocatable, intent(out) :: error  !! with the system's reason
 
-      if (number /= 0) call set_error(error, status_internal, cannot_write(path, reason_of(number)))
+      if (number /= 0) call set_error(error, status_internal, cannot_write(path, &
+         system_reason(number)))
    end subroutine check_written
 
    !> Gives a file another name; a file that had that name is replaced in one instant.
@@ -173,7 +174,7 @@ contains
       if (number == 0) return
       if (made /= 0) number = made
       call set_error(error, status_internal, 'cannot write to the folder "'//path//'": '// &
-         reason_of(number)//'; name another one with --out')
+         system_reason(number)//'; name another one with --out')
    end subroutine make_folder
 
    !> Copies a file; a file that is at the target is overwritten.
@@ -187,7 +188,7 @@ contains
       number = c_copy(from//c_null_char, to//c_null_char, is_source)
       if (number == 0) return
       call check_written(number, to, error)
-      if (is_source /= 0) error%message = 'cannot read "'//from//'": '//reason_of(number)
+      if (is_source /= 0) error%message = 'cannot read "'//from//'": '//system_reason(number)
    end subroutine copy_file
 
    !> Removes a file; that it is not there is no error.
@@ -220,7 +221,7 @@ contains
 
       number = c_print_error()
       if (number /= 0) call set_error(error, status_internal, &
-         'cannot write to standard output: '//reason_of(number))
+         'cannot write to standard output: '//system_reason(number))
    end subroutine check_printed
 
    !> Whether a file can be read once only, as a pipe.
@@ -249,7 +250,7 @@ contains
 
       reason = ''
       number = c_try_growth(path//c_null_char, int(bytes, c_long))
-      if (number /= 0) reason = reason_of(number)
+      if (number /= 0) reason = system_reason(number)
    end subroutine try_growth
 
    !> Makes a new, empty file beside another one, `<path>.<number>.tmp`. No other run has it.
@@ -291,7 +292,7 @@ contains
       if (number == too_long) then
          reason = 'it has more than '//to_text(most/1000000)//' MB'
       else if (number /= 0) then
-         reason = reason_of(number)
+         reason = system_reason(number)
       end if
       if (number /= 0) return
       call c_f_pointer(address, bytes, [count])
@@ -304,7 +305,7 @@ contains
    end subroutine read_file
 
    !> The system's words on an error number.
-   function reason_of(number) result(reason)
+   function system_reason(number) result(reason)
       integer(c_int), intent(in) :: number      !! as from errno of C
       character(:), allocatable :: reason
       character(reason_length, kind=c_char) :: buffer
@@ -312,7 +313,7 @@ contains
       buffer = ''
       call c_reason(number, buffer, int(reason_length, c_int))
       reason = without_end(buffer)
-   end function reason_of
+   end function system_reason
 
    !> A string of C as one of Fortran.
    pure function without_end(buffer) result(string)

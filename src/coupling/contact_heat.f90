@@ -198,8 +198,7 @@ contains
             end do
          end if
          if (allocated(workspace%friction%heat)) faces%mean = faces%mean + &
-            matmul(heat%friction_mean, workspace%friction%parts(2, &
-            :)*workspace%friction%heat)
+            matmul(heat%friction_mean, workspace%friction%parts(2, :)*workspace%friction%heat)
          workspace%pass%graph%law = bodies%laws%conductance_at(faces%mean, faces%jump)
       end associate
    end subroutine take_temperatures
@@ -310,8 +309,7 @@ contains
    !> dW with the unknowns of the thermal tail, with the heat of friction, and with the means of the
    !> faces without jumps.
    function changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, friction_heat, &
-      mean) &
-      result(change)
+      mean) result(change)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! graphs, temperatures of the faces

@@ -128,8 +128,7 @@ contains
          associate (friction_heat => workspace%friction%heat)
             rest = workspace%friction%found(bodies, state) - friction_heat
             residual = maxval(abs(rest))/max(maxval(abs(friction_heat)), &
-               maxval(abs(friction_heat + rest)), &
-               tiny(1.0_dp))
+               maxval(abs(friction_heat + rest)), tiny(1.0_dp))
             if (residual <= rounding .or. maxval(abs(rest)) <= rounding* &
                workspace%friction%of_positions(bodies, state, data%displacement_scale)) return
             if (residual <= converged .and. norm2(rest) >= 0.5_dp*last) return

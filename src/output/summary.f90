@@ -34,6 +34,7 @@ module summary
       'peak_pressure']
    character(*), parameter :: step_head = '  step           time   normal force      heat rate'// &
       '  peak pressure  closed'
+   character(field_width), parameter :: displacement_name = 'displacement up to'
    character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
       'highest temperature', 'heat in', 'heat out']
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
@@ -178,9 +179,9 @@ contains
       if (all(ieee_is_nan(errors%value)) .and. size(errors%corners) == 0) return
       call append(lines, 'largest in body '//to_text(body))
       do q = 1, size(maxima)
-         if (.not. ieee_is_nan(errors%value(q))) call append(lines, entry(trim(maxima(q)%label), &
-            errors%value(q), bound_words(errors, q), unit_label(maxima(q)%unit, model%units), &
-            place_words(model%mesh, errors%node(q))))
+         if (.not. ieee_is_nan(errors%value(q))) call append(lines, &
+            summary_line(trim(maxima(q)%label), errors%value(q), bound_words(errors, q), &
+            unit_label(maxima(q)%unit, model%units), place_words(model%mesh, errors%node(q))))
       end do
       if (size(errors%corners) > 0) call append(lines, '  '//corner_words(model%mesh, errors))
    end subroutine add_maxima
@@ -215,7 +216,7 @@ contains
    end function corner_words
 
    !> A line of the summary: a quantity, its value, its bound, its unit, and where or how that is.
-   pure function entry(name, number, bound, unit, words) result(line)
+   pure function summary_line(name, number, bound, unit, words) result(line)
       character(*), intent(in) :: name, bound, unit, words
       real(dp), intent(in) :: number
       character(:), allocatable :: line
@@ -226,7 +227,7 @@ contains
       value = to_text(number)
       line = trim('  '//label//adjustr(value)//bound//' '//unit)
       if (words /= '') line = line//', '//words
-   end function entry
+   end function summary_line
 
    !> The first numbers of a list, in words.
    pure function listed(values) result(words)
@@ -252,11 +253,11 @@ contains
 
       if (allocated(self%heat)) then
          do i = 1, size(heat_names)
-            call append(lines, entry(heat_names(i), self%heat(i), '', &
+            call append(lines, summary_line(heat_names(i), self%heat(i), '', &
                unit_label(heat_units(i), model%units), ''))
          end do
       end if
-      if (allocated(self%displacement)) call append(lines, entry('displacement up to  ', &
+      if (allocated(self%displacement)) call append(lines, summary_line(displacement_name, &
          self%displacement, '', unit_label('length', model%units), ''))
    end subroutine add_fields
 
@@ -299,7 +300,8 @@ contains
          else
             bound = mark_of(reason_inside_step(model))
          end if
-         line = entry(name, values(1), bound, unit_label(estimated(q)%unit, model%units), zone)
+         line = summary_line(name, values(1), bound, unit_label(estimated(q)%unit, model%units), &
+            zone)
          if (allocated(self%errors) .and. estimated(q)%name == 'peak_pressure') then
             if (self%errors(i)%no_estimate(q) == no_reason .and. rises_to_end(points, &
                self%contacts(i))) line = line//', at an end, where it may have no limit'
