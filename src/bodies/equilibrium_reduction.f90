@@ -68,6 +68,7 @@ contains
          contact%own = contact%schur%diagonal()
          call set_motions(points, map, rigid, contact)
          call set_cycles(mechanical, points, contact)
+         if (contact%schur%is_sparse()) call contact%set_fronts()
       end associate
       self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
    end subroutine reduce

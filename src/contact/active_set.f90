@@ -285,8 +285,7 @@ contains
       type(rounding_type) :: rounding
       integer :: k
 
-      rounding%gap = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(work%initial_gap)), &
-         maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
+      rounding%gap = work%gap_rounding(system, state)
       rounding%force = force_rounding(system, work, state)
       next(1, :) = state%contact_state
       next(2, :) = state%direction

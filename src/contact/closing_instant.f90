@@ -52,8 +52,6 @@ module closing_instant
    integer, parameter :: plain_passes = 15 !! of these, going all the way to the new laws
    integer, parameter :: few_halves = 8    !! halves of changes after which it shows if they end
    real(dp), parameter :: lasting = 0.1_dp !! part of the changes that is left then if they do not
-   real(dp), parameter :: settled = 1.0e-13_dp !! relative change of a law that counts as none
-   real(dp), parameter :: rounding = 1.0e-10_dp   !! the same where it does not come down to that
    real(dp), parameter :: nothing = 1.0e-12_dp !! part of a compliance or of a motion that is none
    real(dp), parameter :: undriven = 1.0e-10_dp !! part of the forces that drives no motion
    real(dp), parameter :: together = 1.0e-12_dp !! part of the largest gap that is none at an event
@@ -143,7 +141,8 @@ contains
          laws = work%closing
          call find_laws(system, previous, state, holds, sticking, laws, error)
          if (allocated(error)) return
-         change = maxval([0.0_dp, law_change(work%closing, laws, system%alone)])
+         change = maxval([0.0_dp, (law_change(work%closing(k), laws(k), state, k), k=1, &
+            size(laws))])
          if (pass > plain_passes) then
             do k = 1, size(laws)
                if (.not. (work%closing(k)%acts .and. laws(k)%acts)) cycle
@@ -151,7 +150,7 @@ contains
                laws(k)%compliance = 0.5_dp*(laws(k)%compliance + work%closing(k)%compliance)
             end do
          end if
-         if (change <= merge(settled, rounding, pass <= free_passes)) exit
+         if (change <= work%gap_rounding(system, state)) exit
          if (pass == plain_passes) swing = change
          work%keeps_laws = pass == plain_passes + few_halves .and. change > lasting*swing .or. &
             pass == most_passes
@@ -273,9 +272,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: holding
       integer, allocatable :: free(:), held(:)
-      real(dp), allocatable :: columns(:, :), response(:, :)
+      integer, allocatable :: near(:)
+      real(dp), allocatable :: columns(:, :), forces(:, :), response(:, :)
       logical :: is_held(0:system%schur%order)
-      integer :: i
+      integer :: i, place(system%schur%order)
 
       holding = state
       holding%direction = 0
@@ -293,19 +293,23 @@ contains
          held = rows(path%held)
          free = rows(path%free)
       end associate
-      columns = system%schur%columns(held)
-      allocate (response(size(columns, 1), size(held) + size(free)), source=0.0_dp)
-      response(:, :size(held)) = -columns
+      near = system%schur%neighbours([held, free])
+      place = 0
+      place(near) = [(i, i=1, size(near))]
+      held = place(held)
+      free = place(free)
+      columns = system%schur%block(near, near(held))
+      allocate (forces(size(near), size(held) + size(free)), source=0.0_dp)
+      forces(:, :size(held)) = -columns
       do i = 1, size(free)
-         response(free(i), size(held) + i) = 1.0_dp
+         forces(free(i), size(held) + i) = 1.0_dp
       end do
-      call sticking%solve_free(response)
-      do i = 1, size(response, 1)
-         if (is_held(i)) response(i, :) = 0.0_dp
-      end do
+      response = sticking%factors%solve_part(near, forces)
       path%stiffness = columns(held, :) + matmul(transpose(columns), response(:, :size(held)))
       path%lever = response(free, :size(held))
       path%flexibility = response(free, size(held) + 1:)
+      free = near(free)
+      held = near(held)
       path%spring = sticking%rows%spring(free)
       path%is_loose = .false.
       if (size(held) > 0) path%is_loose = any(abs(system%motion(held, :)) > 0.0_dp)
@@ -484,17 +488,18 @@ contains
       path%compliance(row, :) = 0.0_dp
    end subroutine hold
 
-   !> Change from one law to another; of compliances beside that of the contact point alone.
-   elemental function law_change(old, new, alone) result(change)
+   !> What the change from one law to another makes of a slip.
+   pure real(dp) function law_change(old, new, state, k) result(change)
       type(closing_law_type), intent(in) :: old, new
-      real(dp), intent(in) :: alone      !! stiffness of the contact point [force/length]
-      real(dp) :: change
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: k           !! the contact point
 
       change = 0.0_dp
-      if (old%acts .neqv. new%acts) change = 1.0_dp
+      if (old%acts .neqv. new%acts) change = huge(1.0_dp)
       if (.not. (old%acts .and. new%acts)) return
-      change = max(abs(new%fraction - old%fraction), &
-         alone*maxval(abs(new%compliance - old%compliance)))
+      change = abs(new%fraction - old%fraction)*abs(state%tangential(k) - new%start) + &
+         (1.0_dp - new%fraction)*abs(new%start - old%start) + &
+         abs(new%lag(state) - old%lag(state))
    end function law_change
 
    !> Changes of the contact with the condensed load, one column a change of load.

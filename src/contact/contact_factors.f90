@@ -7,23 +7,17 @@
 !> and by Woodbury's formula its solutions are y - M^-1 E (1 + D M^-1 E)^-1 D y, M y the forces. So
 !> the first set of many is factored; the next ones cost a few solutions with it.
 !>
-!> Rows of a sparse tail are factored in their band. Where motions Z border them, A is singular, and
-!> a band cannot hold the border. Then A is pinned at as many rows, A' = A + E W E^T; with the
-!> border's unknowns mu and the pins' displacements xi
-!>
-!>    A' x = f - border Z mu + E W xi,   Z^T x = 0,   E^T x = xi.
+!> Rows of a sparse tail are factored by contact_fronts.
 module contact_factors
-   use band_lu, only: band_lu_type
-   use contact_system, only: contact_rows_type, contact_system_type
+   use contact_fronts, only: contact_fronts_type
+   use contact_system, only: contact_rows_type, contact_system_type, differ
    use dense, only: lu_type, product_of, transposed_product
    use kinds, only: dp
-   use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
    public :: contact_factors_type
 
    integer, parameter :: rows_per_change = 16   !! free rows for each one that may change
-   integer, parameter :: most_changes = 48      !! of rows of a sparse tail
    !> Entry of 1 + D M^-1 E from which the first set is too near to a singular one.
    real(dp), parameter :: most_growth = 1.0e6_dp
 
@@ -33,11 +27,8 @@ module contact_factors
       real(dp), private :: border = 1.0_dp         !! scale of the border [force/length]
       logical, private :: may_change = .false.     !! whether other sets may use the factors
       type(lu_type), private :: lu                 !! on the free rows, bordered
-      logical, private :: is_banded = .false.      !! whether they are these instead:
-      type(band_lu_type), private :: band          !! on the free rows, pinned where bordered
-      !> (free, l) Z and E; (free, 2l) A'^-1 [border Z, -E W]
-      real(dp), allocatable, private :: pins(:, :), of_border(:, :)
-      type(lu_type), private :: of_unknowns        !! of mu and xi
+      !> Those of a sparse tail, for which all of the rest is unallocated
+      type(contact_fronts_type), allocatable, private :: fronts
       type(contact_rows_type), private :: rows     !! that were factored
       real(dp), allocatable, private :: scale(:)   !! (free) factor of the rows, 1 beside a border
       real(dp), allocatable, private :: unconstrained(:, :)   !! (free, l) motions that border them
@@ -51,6 +42,7 @@ module contact_factors
    contains
       procedure :: factor
       procedure :: solve
+      procedure :: solve_part
       procedure :: is_negative
    end type contact_factors_type
 
@@ -66,6 +58,12 @@ contains
       logical, intent(out) :: singular                     !! the rows depend on each other
       logical :: is_plain
 
+      if (system%schur%is_sparse()) then
+         if (.not. allocated(self%fronts)) allocate (self%fronts)
+         call self%fronts%factor(system, rows, hold, unconstrained, singular)
+         self%full = self%fronts%full
+         return
+      end if
       is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0
       if (self%may_change .and. is_plain) then
          call change_rows(self, system, rows, singular)
@@ -90,12 +88,7 @@ contains
       self%unconstrained = unconstrained
       self%entering = [integer ::]
       if (allocated(self%difference)) deallocate (self%difference)
-      self%is_banded = system%schur%is_sparse()
-      if (self%is_banded) then
-         call factor_band(self, system, hold, singular)
-      else
-         call factor_dense(self, system, hold, singular)
-      end if
+      call factor_dense(self, system, hold, singular)
    end subroutine factor_in_full
 
    !> Factors the free rows of a full tail with their border.
@@ -138,138 +131,6 @@ contains
       call self%lu%factor(matrix, singular)
    end subroutine factor_dense
 
-   !> Factors the free rows of a sparse tail in their band.
-   pure subroutine factor_band(self, system, hold, singular)
-      type(contact_factors_type), intent(inout) :: self
-      type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: hold
-      logical, intent(out) :: singular
-      real(dp), allocatable :: unknowns(:, :)
-      integer :: j, l
-      integer, allocatable :: pin(:)
-
-      l = size(self%unconstrained, 2)
-      call form_rows(self, system, hold)
-      self%scale = [(1.0_dp, j=1, size(self%free))]
-      if (l == 0) then
-         call self%band%factor(self%scale, singular)
-         return
-      end if
-      pin = pinned_rows(self%unconstrained)
-      self%border = max(maxval(abs(system%own)), tiny(1.0_dp))
-      do j = 1, l
-         call self%band%add(pin(j), pin(j), self%border)
-      end do
-      call self%band%factor(singular=singular)
-      if (singular) return
-      if (allocated(self%pins)) deallocate (self%pins)
-      allocate (self%pins(size(self%free), l), source=0.0_dp)
-      do j = 1, l
-         self%pins(pin(j), j) = 1.0_dp
-      end do
-      self%of_border = reshape([self%border*self%unconstrained, -self%border*self%pins], &
-         [size(self%free), 2*l])
-      call self%band%solve(self%of_border)
-      unknowns = reshape([transposed_product(self%of_border, self%unconstrained), &
-         transposed_product(self%of_border, self%pins)], [2*l, 2*l])
-      do j = 1, l
-         unknowns(l + j, l + j) = unknowns(l + j, l + j) + 1.0_dp
-      end do
-      call self%of_unknowns%factor(transpose(unknowns), singular)
-   end subroutine factor_band
-
-   !> The free rows of a set.
-   pure subroutine form_rows(self, system, hold)
-      type(contact_factors_type), intent(inout) :: self  !! receives them in its band
-      type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: hold
-      integer :: i, pass, q, place(system%schur%order)
-      integer, allocatable :: moved(:)
-
-      place = 0
-      place(self%free) = [(i, i=1, size(self%free))]
-      call self%band%begin(system%schur%rank(self%free))
-      do pass = 1, 2
-         associate (rows => self%rows, free => self%free)
-            do i = 1, size(free)
-               call visit_row(system%schur%sparse, place, i, free(i), rows%own(free(i)), pass, &
-                  self%band)
-               if (rows%partner(free(i)) > 0) call visit_row(system%schur%sparse, place, i, &
-                  rows%partner(free(i)), rows%share(free(i)), pass, self%band)
-               if (pass == 2) call self%band%add(i, i, rows%spring(free(i)))
-            end do
-            do i = 1, size(rows%closing)
-               do q = rows%arm%start(i), rows%arm%start(i + 1) - 1
-                  call visit_row(system%schur%sparse, place, place(rows%closing(i)), &
-                     rows%arm%value(q), rows%arm%coefficient(q), pass, self%band)
-               end do
-            end do
-            if (hold <= 0.0_dp) cycle
-            do q = 1, size(system%motion, 2)
-               moved = pack(free, abs(system%motion(free, q)) > 0.0_dp)
-               call visit_motion(place(moved), system%motion(moved, q), hold, pass, self%band)
-            end do
-         end associate
-      end do
-   end subroutine form_rows
-
-   !> Widens the band for a row of S, or adds it, times a factor.
-   pure subroutine visit_row(schur, place, to, from, factor, pass, band)
-      type(sparse_matrix_type), intent(in) :: schur
-      integer, intent(in) :: place(:)
-      integer, intent(in) :: to, from, pass
-      real(dp), intent(in) :: factor
-      type(band_lu_type), intent(inout) :: band
-      integer :: k
-
-      do k = schur%row_start(from), schur%row_start(from + 1) - 1
-         associate (column => place(schur%column(k)))
-            if (column == 0) cycle
-            if (pass == 1) then
-               call band%reach(to, column)
-            else
-               call band%add(to, column, factor*schur%value(k))
-            end if
-         end associate
-      end do
-   end subroutine visit_row
-
-   !> Widens the band for the soft hold of a motion, or adds it.
-   pure subroutine visit_motion(rows, motion, hold, pass, band)
-      integer, intent(in) :: rows(:)
-      real(dp), intent(in) :: motion(:), hold
-      integer, intent(in) :: pass
-      type(band_lu_type), intent(inout) :: band
-      integer :: i, j
-
-      do j = 1, size(rows)
-         do i = 1, size(rows)
-            if (pass == 1) then
-               call band%reach(rows(i), rows(j))
-            else
-               call band%add(rows(i), rows(j), hold*motion(i)*motion(j))
-            end if
-         end do
-      end do
-   end subroutine visit_motion
-
-   !> Rows that tell motions apart, as many as there are motions.
-   pure function pinned_rows(motions) result(pin)
-      real(dp), intent(in) :: motions(:, :)     ! (n, l) that do not depend on each other
-      integer :: pin(size(motions, 2))
-      real(dp) :: left(size(motions, 1), size(motions, 2))
-      integer :: j, k
-
-      left = motions
-      do j = 1, size(pin)
-         pin(j) = maxloc(abs(left(:, j)), dim=1)
-         do k = j + 1, size(pin)
-            if (abs(left(pin(j), k)) > 0.0_dp) left(:, k) = left(:, k) - left(:, j)* &
-               (left(pin(j), k)/left(pin(j), j))
-         end do
-      end do
-   end function pinned_rows
-
    !> Makes the factors those of another set.
    pure subroutine change_rows(self, system, rows, failed)
       type(contact_factors_type), intent(inout) :: self
@@ -287,15 +148,13 @@ contains
       is_free(rows%free) = .true.
       was_free = .false.
       was_free(self%rows%free) = .true.
-      changed = pack([(i, i=1, size(is_free))], (is_free .neqv. was_free) .or. (is_free .and. &
-         differ(rows, self%rows)))
+      changed = pack([(i, i=1, size(is_free))], differ(rows, self%rows))
       ! Rows in cycles are 1e8 times as large as others.
       in_cycle = .false.
       in_cycle(pack(system%tangent, system%compliance > 0.0_dp)) = .true.
       failed = any(in_cycle(changed))
       if (failed) return
-      failed = rows_per_change*size(changed) > size(self%rows%free) .or. &
-         (self%is_banded .and. size(changed) > most_changes)
+      failed = rows_per_change*size(changed) > size(self%rows%free)
       if (failed) return
       self%free = rows%free
       self%entering = pack(changed, .not. was_free(changed))
@@ -323,27 +182,6 @@ contains
       failed = any(abs(matrix) > most_growth)
       if (.not. failed) call self%correction%factor(matrix, failed)
    end subroutine change_rows
-
-   !> Whether rows have other factors.
-   pure function differ(a, b)
-      type(contact_rows_type), intent(in) :: a, b
-      logical :: differ(size(a%own))
-      integer :: i, j
-
-      differ = a%partner /= b%partner .or. abs(a%share - b%share) > 0.0_dp .or. &
-         abs(a%own - b%own) > 0.0_dp .or. abs(a%spring - b%spring) > 0.0_dp
-      do i = 1, size(a%closing)
-         j = findloc(b%closing, a%closing(i), dim=1)
-         if (j == 0) then
-            differ(a%closing(i)) = .true.
-         else
-            differ(a%closing(i)) = differ(a%closing(i)) .or. .not. a%arm%is_sum_of(i, b%arm, j)
-         end if
-      end do
-      do j = 1, size(b%closing)
-         if (all(a%closing /= b%closing(j))) differ(b%closing(j)) = .true.
-      end do
-   end function differ
 
    !> A row of M, in a column.
    pure function row_of(system, rows, i, is_free) result(row)
@@ -389,37 +227,11 @@ contains
          do j = 1, size(x, 2)
             rows(:f, j) = self%scale*rows(:f, j)
          end do
-         if (self%is_banded) then
-            call solve_band(self, rows)
-         else if (size(rows, 1) > 0) then
-            call self%lu%solve(rows)
-         end if
+         if (size(rows, 1) > 0) call self%lu%solve(rows)
          x(base, :) = rows(:f, :)
          if (present(unbalanced)) unbalanced = self%border*rows(f + 1:, :)
       end associate
    end subroutine solve_base
-
-   !> Solves in the band, with the border's unknowns behind.
-   pure subroutine solve_band(self, rows)
-      type(contact_factors_type), intent(in) :: self
-      real(dp), intent(inout) :: rows(:, :)        ! (free + l, columns)
-      real(dp), allocatable :: x(:, :), unknowns(:, :)
-      integer :: f, l
-
-      f = size(self%scale)
-      l = size(self%unconstrained, 2)
-      x = rows(:f, :)
-      call self%band%solve(x)
-      if (l > 0) then
-         allocate (unknowns(2*l, size(x, 2)))
-         unknowns(:l, :) = transposed_product(self%unconstrained, x)
-         unknowns(l + 1:, :) = transposed_product(self%pins, x)
-         call self%of_unknowns%solve(unknowns)
-         x = x - product_of(self%of_border, unknowns)
-         rows(f + 1:, :) = unknowns(:l, :)
-      end if
-      rows(:f, :) = x
-   end subroutine solve_band
 
    !> Free displacements that take up forces.
    pure subroutine solve(self, x, unbalanced)
@@ -431,6 +243,10 @@ contains
       real(dp) :: taken(size(x, 1), size(x, 2))
       real(dp), allocatable :: heads(:, :)
 
+      if (allocated(self%fronts)) then
+         call self%fronts%solve(x, unbalanced)
+         return
+      end if
       taken = 0.0_dp
       taken(self%free, :) = x(self%free, :)
       call solve_base(self, taken, unbalanced)
@@ -442,17 +258,39 @@ contains
       x(self%free, :) = taken(self%free, :)
    end subroutine solve
 
+   !> Displacements of some rows for forces on them alone.
+   pure function solve_part(self, rows, forces) result(part)
+      class(contact_factors_type), intent(in) :: self
+      integer, intent(in) :: rows(:)                !! (m)
+      real(dp), intent(in) :: forces(:, :)          !! (m, n) as they enter the rows
+      real(dp) :: part(size(rows), size(forces, 2)) !! (m, n) 0 in rows that are not free
+      real(dp), allocatable :: x(:, :)
+      logical, allocatable :: is_free(:)
+      integer :: i
+
+      if (allocated(self%fronts)) then
+         part = self%fronts%solve_part(rows, forces)
+         return
+      end if
+      allocate (x(size(self%rows%own), size(forces, 2)), source=0.0_dp)
+      x(rows, :) = forces
+      call self%solve(x)
+      allocate (is_free(size(x, 1)), source=.false.)
+      is_free(self%free) = .true.
+      do i = 1, size(rows)
+         part(i, :) = merge(x(rows(i), :), 0.0_dp, is_free(rows(i)))
+      end do
+   end function solve_part
+
    !> Whether the determinant of the free rows, with their border, is negative.
    pure logical function is_negative(self)
       class(contact_factors_type), intent(in) :: self
 
-      if (self%is_banded) then
-         is_negative = self%band%negative_determinant()
-         if (size(self%unconstrained, 2) > 0) is_negative = (is_negative .neqv. &
-            self%of_unknowns%negative_determinant()) .neqv. mod(size(self%unconstrained, 2), 2) == 1
-      else
-         is_negative = self%lu%negative_determinant()
+      if (allocated(self%fronts)) then
+         is_negative = self%fronts%is_negative()
+         return
       end if
+      is_negative = self%lu%negative_determinant()
       if (allocated(self%difference)) is_negative = is_negative .neqv. &
          self%correction%negative_determinant()
    end function is_negative

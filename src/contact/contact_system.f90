@@ -44,15 +44,17 @@
 !> The answer of a single contact point is here too: contact states, Coulomb's law, eq. (1.6), with
 !> a largest friction, in increments, and the law of one that closes within an increment.
 module contact_system
+   use dissection, only: dissected, front_tree_type
    use dense, only: column_space, least_squares, lu_type, null_space, null_space_by_rows
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    use pressure_overclosure, only: pressure_overclosure_type
+   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use sum_lists, only: sum_list_type
    use tail_matrix, only: tail_matrix_type
    implicit none
    private
-   public :: contact_system_type, contact_rows_type, rows_of, least_drive, &
+   public :: contact_system_type, contact_rows_type, rows_of, differ, least_drive, &
       contact_state_type, closing_law_type, is_capped, slip_force, &
       state_code, with_cap, contact_open, contact_slip, contact_stick, next_contact_state, &
       response_type, rounding_type
@@ -72,6 +74,10 @@ module contact_system
       integer, allocatable :: tangent(:) !! (m) row of d_t, 0 without friction or held
       type(tail_matrix_type) :: schur             !! (tail, tail) S [force/length]
       real(dp), allocatable :: own(:)             !! (tail) its diagonal [force/length]
+      !> Of a sparse tail: its fronts, the largest entry of each row, and that of each column as a
+      !> part of its row
+      type(front_tree_type) :: tree
+      real(dp), allocatable :: row_size(:), column_size(:)
       !> (m) of stuck contact points, not zero in cycles [length/force]
       real(dp), allocatable :: compliance(:)
       !> (m) normal stiffness of a contact point alone [force/length]
@@ -85,6 +91,7 @@ module contact_system
       type(lu_type) :: products             !! of motion^T motion, on a sparse tail
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
    contains
+      procedure :: set_fronts
       procedure :: on_tail
       procedure :: add_arm
       procedure :: least_force
@@ -104,6 +111,7 @@ module contact_system
       type(sum_list_type) :: arm             !! (c, tail) factors of forces in them
    contains
       procedure :: combine
+      procedure :: forces
    end type contact_rows_type
 
    integer, parameter :: contact_open = 0   !! gap, zone I
@@ -209,6 +217,65 @@ contains
          size(state%contact_state))], shape(sought)), sought), system%link]
    end function rows_of
 
+   !> Sets the fronts of a sparse tail.
+   pure subroutine set_fronts(self)
+      class(contact_system_type), intent(inout) :: self
+      integer :: i, k
+
+      allocate (self%row_size(self%schur%order), self%column_size(self%schur%order), source=0.0_dp)
+      associate (s => self%schur%sparse)
+         do i = 1, s%row_count
+            associate (entries => abs(s%value(s%row_start(i):s%row_start(i + 1) - 1)))
+               self%row_size(i) = maxval([tiny(1.0_dp), entries])
+            end associate
+            do k = s%row_start(i), s%row_start(i + 1) - 1
+               self%column_size(s%column(k)) = max(self%column_size(s%column(k)), &
+                  abs(s%value(k))/self%row_size(i))
+            end do
+         end do
+      end associate
+      self%tree = dissected(joined_unknowns(self))
+   end subroutine set_fronts
+
+   !> Which unknowns of a sparse tail may be joined: by S, and in the row of a contact point that
+   !> closes, to which forces on its interface belong, by what these depend on.
+   pure function joined_unknowns(system) result(graph)
+      type(contact_system_type), intent(in) :: system
+      type(sparse_matrix_type) :: graph
+      type(triplet_list_type) :: list
+      integer, allocatable :: around(:)
+      integer :: i, j, k, pass, total
+
+      associate (s => system%schur%sparse, start => system%interface_start)
+         do pass = 1, 2
+            total = 0
+            do i = 1, size(start) - 1
+               associate (tangents => pack(system%tangent(start(i):start(i + 1) - 1), &
+                  system%tangent(start(i):start(i + 1) - 1) > 0))
+                  if (size(tangents) == 0) cycle
+                  around = system%schur%neighbours([system%normal(start(i):start(i + 1) - 1), &
+                     tangents])
+                  total = total + 2*size(tangents)*size(around)
+                  if (pass == 1) cycle
+                  do k = 1, size(tangents)
+                     do j = 1, size(around)
+                        call list%add(tangents(k), around(j), 1.0_dp)
+                        call list%add(around(j), tangents(k), 1.0_dp)
+                     end do
+                  end do
+               end associate
+            end do
+            if (pass == 1) call list%reserve(total + size(s%value))
+         end do
+         do i = 1, s%row_count
+            do k = s%row_start(i), s%row_start(i + 1) - 1
+               call list%add(i, s%column(k), 1.0_dp)
+            end do
+         end do
+         graph = list%compress(s%row_count, s%row_count)
+      end associate
+   end function joined_unknowns
+
    !> Values for normal and tangent of the contact points, on the tail; 0 elsewhere.
    pure function on_tail(self, values)
       class(contact_system_type), intent(in) :: self
@@ -277,6 +344,56 @@ contains
          rows(self%closing, j) = rows(self%closing, j) + of_arms
       end do
    end function combine
+
+   !> Factors of forces in each free row.
+   pure function forces(self) result(list)
+      class(contact_rows_type), intent(in) :: self
+      type(sum_list_type) :: list                !! (tail, tail), empty where not free
+      integer :: closing(size(self%own)), i
+      logical :: is_free(size(self%own))
+
+      closing = 0
+      closing(self%closing) = [(i, i=1, size(self%closing))]
+      is_free = .false.
+      is_free(self%free) = .true.
+      call list%reserve(size(closing), 2*size(closing) + size(self%arm%value))
+      do i = 1, size(closing)
+         if (.not. is_free(i)) then
+            call list%add([integer ::], [real(dp) ::])
+         else if (closing(i) > 0) then
+            call list%add([i, self%arm%values_of(closing(i))], [self%own(i), &
+               self%arm%coefficients_of(closing(i))])
+         else
+            call list%add([i, self%partner(i)], [self%own(i), self%share(i)])
+         end if
+      end do
+   end function forces
+
+   !> Whether rows have other factors, or only one of both is free.
+   pure function differ(a, b)
+      type(contact_rows_type), intent(in) :: a, b
+      logical :: differ(size(a%own))
+      integer, dimension(size(a%own)) :: in_a, in_b
+      logical, dimension(size(a%own)) :: is_free_a, is_free_b
+      integer :: i
+
+      is_free_a = .false.
+      is_free_a(a%free) = .true.
+      is_free_b = .false.
+      is_free_b(b%free) = .true.
+      in_a = 0
+      in_a(a%closing) = [(i, i=1, size(a%closing))]
+      in_b = 0
+      in_b(b%closing) = [(i, i=1, size(b%closing))]
+      differ = a%partner /= b%partner .or. abs(a%share - b%share) > 0.0_dp .or. &
+         abs(a%own - b%own) > 0.0_dp .or. abs(a%spring - b%spring) > 0.0_dp .or. &
+         ((in_a > 0) .neqv. (in_b > 0))
+      do i = 1, size(differ)
+         if (in_a(i) > 0 .and. in_b(i) > 0) differ(i) = differ(i) .or. &
+            .not. a%arm%is_sum_of(in_a(i), b%arm, in_b(i))
+      end do
+      differ = (is_free_a .neqv. is_free_b) .or. (is_free_a .and. differ)
+   end function differ
 
    !> The unsupported motions that no row of the active set holds, orthonormal on the free rows.
    pure function free_motions(self, rows) result(unheld)

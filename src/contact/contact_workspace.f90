@@ -69,6 +69,7 @@ module contact_workspace
       procedure :: stiffness
       procedure :: turns_back
       procedure :: slip
+      procedure :: gap_rounding
       procedure :: factor_set
       procedure :: factor_rows
       procedure :: keep_holding
@@ -133,6 +134,16 @@ contains
          slip = slip + system%compliance(k)*state%shear_force(k)
       end associate
    end function slip
+
+   !> Gap and slip that are rounding.
+   pure real(dp) function gap_rounding(self, system, state)
+      class(contact_workspace_type), intent(in) :: self
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: state      !! [length]
+
+      gap_rounding = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(self%initial_gap)), &
+         maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
+   end function gap_rounding
 
    !> Solution for one active set. Where the load drives a body that the set leaves unconstrained,
    !> driven is set, and the values stay as they are.

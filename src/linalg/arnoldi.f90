@@ -7,7 +7,8 @@
 !>    end do
 !>
 !> The start is a vector without any order: one that is near an eigenvector would hide the others.
-!> Products are wanted until the eigenvalue of largest modulus and the largest real one are sharp.
+!> Products are wanted until the eigenvalue of largest modulus and the largest real one are sharp,
+!> after many only until they are known beside 1.
 !> A caller that seeks others says how many products it can have, and stops when it likes.
 module arnoldi
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
@@ -21,6 +22,10 @@ module arnoldi
    real(dp), parameter :: golden = 0.5_dp*(sqrt(5.0_dp) - 1.0_dp)   !! spreads the start evenly
    real(dp), parameter :: nearly_real = 1.0e-8_dp !! imaginary part of a real eigenvalue, relative
    real(dp), parameter :: sharp = 1.0e-12_dp      !! residual of an eigenvalue, relative
+   !> Products after which a residual that is small beside 1 will do: where many parts are alike so
+   !> are their eigenvalues, and of hundreds of products rounding alone would be left.
+   integer, parameter :: patience = 40
+   real(dp), parameter :: blurred = 1.0e-4_dp     !! such a residual
    real(dp), parameter :: rounding = 1.0e-15_dp   !! of a product, relative
 
    !> The space of the products so far.
@@ -111,6 +116,7 @@ contains
       type(arnoldi_type), intent(inout) :: self
       real(dp), intent(in) :: length   !! what the last product is outside of the space
       real(dp), allocatable :: real_part(:), imaginary_part(:), residual(:)
+      real(dp) :: least
       integer :: i, largest, largest_real
 
       associate (k => self%products)
@@ -132,12 +138,14 @@ contains
          maxval(abs(real_part)), dim=1)
       self%largest = cmplx(real_part(largest), imaginary_part(largest), dp)
       self%largest_real = -huge(1.0_dp)
-      self%wants_product = residual(largest) > sharp*abs(self%largest)
+      least = 0.0_dp
+      if (self%products >= patience) least = blurred
+      self%wants_product = residual(largest) > max(sharp*abs(self%largest), least)
       if (largest_real == 0) return
       self%largest_real = real_part(largest_real)
       self%wants_product = self%wants_product .or. (residual(largest_real) > &
-         sharp*abs(self%largest_real) .and. abs(self%largest_real) + residual(largest_real) > &
-         self%nothing)
+         max(sharp*abs(self%largest_real), least) .and. abs(self%largest_real) + &
+         residual(largest_real) > self%nothing)
    end subroutine seek
 
    !> The eigenvector of an eigenvalue, its real and imaginary part.

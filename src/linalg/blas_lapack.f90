@@ -6,7 +6,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgemm, dgemv, dtrsm, dgbtrf, dgbtrs, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, &
+   public :: ddot, daxpy, dgemm, dgemv, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, &
       dpstrf, dtrtri, ilaver, reserve_blas_memory
 
    interface
@@ -52,25 +52,6 @@ module blas_lapack
          real(dp), intent(in) :: alpha, a(lda, *)
          real(dp), intent(inout) :: b(ldb, *)
       end subroutine dtrsm
-
-      !> LU factors of a general matrix in its band, with row exchanges.
-      pure subroutine dgbtrf(m, n, kl, ku, ab, ldab, ipiv, info)
-         import :: dp
-         integer, intent(in) :: m, n, kl, ku, ldab
-         real(dp), intent(inout) :: ab(ldab, *)
-         integer, intent(out) :: ipiv(*), info
-      end subroutine dgbtrf
-
-      !> Solves with factors of dgbtrf.
-      pure subroutine dgbtrs(trans, n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
-         import :: dp
-         character, intent(in) :: trans
-         integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb
-         real(dp), intent(in) :: ab(ldab, *)
-         integer, intent(in) :: ipiv(*)
-         real(dp), intent(inout) :: b(ldb, *)
-         integer, intent(out) :: info
-      end subroutine dgbtrs
 
       !> LU factors of a general matrix, with row exchanges.
       pure subroutine dgetrf(m, n, a, lda, ipiv, info)

@@ -16,6 +16,7 @@ module sum_lists
       procedure :: add
       procedure :: add_sums
       procedure :: renumbered
+      procedure :: transposed
       procedure :: add_totals
       procedure :: add_shares
       procedure :: is_sum_of
@@ -117,6 +118,34 @@ contains
          sums%start(i + 1) = term
       end do
    end function renumbered
+
+   !> For each value the sums that it is in, with its coefficients.
+   pure function transposed(self, values) result(sums)
+      class(sum_list_type), intent(in) :: self
+      integer, intent(in) :: values                      !! number of values
+      type(sum_list_type) :: sums
+      integer :: filled(values), i, k
+
+      associate (terms => self%start(self%count + 1) - 1)
+         call sums%reserve(values, terms)
+         sums%count = values
+         filled = 0
+         do k = 1, terms
+            filled(self%value(k)) = filled(self%value(k)) + 1
+         end do
+      end associate
+      do i = 1, values
+         sums%start(i + 1) = sums%start(i) + filled(i)
+      end do
+      filled = sums%start(:values)
+      do i = 1, self%count
+         do k = self%start(i), self%start(i + 1) - 1
+            sums%value(filled(self%value(k))) = i
+            sums%coefficient(filled(self%value(k))) = self%coefficient(k)
+            filled(self%value(k)) = filled(self%value(k)) + 1
+         end do
+      end do
+   end function transposed
 
    !> Adds the sums, term by term.
    pure subroutine add_totals(self, x, totals)

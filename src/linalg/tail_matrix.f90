@@ -23,6 +23,7 @@ module tail_matrix
       procedure :: diagonal
       procedure :: columns
       procedure :: block => block_of
+      procedure :: neighbours
       procedure :: times
       procedure :: add_row
       procedure :: add_product
@@ -153,20 +154,40 @@ contains
       end do
    end subroutine add_row
 
-   !> Rows and columns of some unknowns.
-   pure function block_of(self, which) result(block)
+   !> Some rows of some columns.
+   pure function block_of(self, rows, columns) result(block)
       class(tail_matrix_type), intent(in) :: self
-      integer, intent(in) :: which(:)               !! (n)
-      real(dp) :: block(size(which), size(which))   !! (n, n)
-      real(dp) :: row(self%order)
+      integer, intent(in) :: rows(:), columns(:)    !! (m), (n)
+      real(dp) :: block(size(rows), size(columns))  !! (m, n)
+      real(dp) :: column(self%order)
       integer :: j
 
-      do j = 1, size(which)
-         row = 0.0_dp
-         call self%add_row(which(j), 1.0_dp, row)
-         block(:, j) = row(which)
+      do j = 1, size(columns)
+         column = 0.0_dp
+         call self%add_row(columns(j), 1.0_dp, column)
+         block(:, j) = column(rows)
       end do
    end function block_of
+
+   !> Unknowns to which some are joined, these among them.
+   pure function neighbours(self, which) result(around)
+      class(tail_matrix_type), intent(in) :: self
+      integer, intent(in) :: which(:)
+      integer, allocatable :: around(:)
+      logical :: is_around(self%order)
+      integer :: i, k
+
+      is_around = .not. self%is_sparse()
+      is_around(which) = .true.
+      if (self%is_sparse()) then
+         do i = 1, size(which)
+            do k = self%sparse%row_start(which(i)), self%sparse%row_start(which(i) + 1) - 1
+               is_around(self%sparse%column(k)) = .true.
+            end do
+         end do
+      end if
+      around = pack([(i, i=1, self%order)], is_around)
+   end function neighbours
 
    !> Its product with some columns.
    pure function times(self, x) result(product)

@@ -1,0 +1,212 @@
+!> Factors of the rows of an active set on a sparse tail, front by front (front_factors). From set to
+!> set the fronts of the rows that change are factored again, and those above them.
+!>
+!> With S of the tail, C the factors of forces in the rows and K their springs, the matrix is
+!> C S + K on the free rows. Motions Z that nothing holds border it,
+!>
+!>    (C S + K) x + Z mu = f,   Z^T x = mu/hold,
+!>
+!> without a hold Z^T x = 0.
+module contact_fronts
+   use contact_system, only: contact_rows_type, contact_system_type, differ
+   use front_factors, only: front_factors_type
+   use kinds, only: dp
+   use sparse_matrix, only: triplet_list_type
+   use sum_lists, only: sum_list_type
+   implicit none
+   private
+   public :: contact_fronts_type
+
+   !> Factors of one set.
+   type :: contact_fronts_type
+      integer :: full = 0                          !! sets that were factored, so far
+      real(dp), private :: border = 1.0_dp         !! scale of the border [force/length]
+      integer, private :: borders = 0              !! motions that border the rows
+      logical, private :: may_change = .false.     !! whether other sets may use the factors
+      type(front_factors_type), private :: fronts
+      type(contact_rows_type), private :: rows     !! that were factored
+      real(dp), allocatable, private :: scale(:)   !! (tail) factors of the rows, 0 where not free
+   contains
+      procedure :: factor
+      procedure :: solve
+      procedure :: solve_part
+      procedure :: is_negative
+   end type contact_fronts_type
+
+contains
+
+   !> Factors the rows of a set.
+   pure subroutine factor(self, system, rows, hold, unconstrained, singular)
+      class(contact_fronts_type), intent(inout) :: self   !! of another set, or none
+      type(contact_system_type), intent(in) :: system     !! the reduced system
+      type(contact_rows_type), intent(in) :: rows
+      real(dp), intent(in) :: hold                        !! soft one of all motions [force/length]
+      real(dp), intent(in) :: unconstrained(:, :)         !! (free, l) motions that border the rows
+      logical, intent(out) :: singular                    !! the rows depend on each other
+      logical :: is_plain, changed(size(system%tree%parent))
+      integer :: i
+
+      is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0
+      if (self%may_change .and. is_plain) then
+         changed = .false.
+         associate (differing => differ(rows, self%rows), tree => system%tree)
+            do i = 1, size(differing)
+               if (differing(i)) changed(tree%touched(tree%start(i):tree%start(i + 1) - 1)) = .true.
+            end do
+         end associate
+         changed = self%fronts%above_changed(changed)
+      else
+         self%borders = merge(size(system%motion, 2), size(unconstrained, 2), hold > 0.0_dp)
+         call self%fronts%begin(system%tree, self%borders)
+         self%border = max(maxval(abs(system%own)), tiny(1.0_dp))
+         changed = .true.
+      end if
+      self%rows = rows
+      call set_scale(self, system)
+      self%full = self%full + 1
+      if (hold > 0.0_dp) then
+         call factor_fronts(self, system, hold, system%motion(rows%free, :), changed, singular)
+      else
+         call factor_fronts(self, system, hold, unconstrained, changed, singular)
+      end if
+      self%may_change = is_plain .and. .not. singular
+   end subroutine factor
+
+   !> Factors of the rows that make their entries 1 at most.
+   pure subroutine set_scale(self, system)
+      type(contact_fronts_type), intent(inout) :: self
+      type(contact_system_type), intent(in) :: system
+      real(dp) :: size_of_row(system%schur%order)
+      integer :: i, k
+
+      associate (rows => self%rows)
+         size_of_row = abs(rows%own)*system%row_size + abs(rows%spring)
+         do i = 1, size(size_of_row)
+            if (rows%partner(i) > 0) size_of_row(i) = size_of_row(i) + &
+               abs(rows%share(i))*system%row_size(rows%partner(i))
+         end do
+         do i = 1, size(rows%closing)
+            associate (to => size_of_row(rows%closing(i)))
+               do k = rows%arm%start(i), rows%arm%start(i + 1) - 1
+                  to = to + abs(rows%arm%coefficient(k))*system%row_size(rows%arm%value(k))
+               end do
+            end associate
+         end do
+         self%scale = 0.0_dp*size_of_row
+         self%scale(rows%free) = 1.0_dp/max(size_of_row(rows%free), tiny(1.0_dp))
+      end associate
+   end subroutine set_scale
+
+   !> Factors some fronts, with motions that border the free rows.
+   pure subroutine factor_fronts(self, system, hold, motions, changed, singular)
+      type(contact_fronts_type), intent(inout) :: self
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: hold, motions(:, :)  ! (free, borders)
+      logical, intent(in) :: changed(:)
+      logical, intent(out) :: singular
+      type(triplet_list_type) :: entries
+      logical :: is_sought(system%schur%order + self%borders)
+      real(dp) :: column_size(system%schur%order + self%borders)
+      integer :: i, q
+
+      associate (tail => system%schur%order, free => self%rows%free)
+         is_sought = .false.
+         is_sought(free) = .true.
+         is_sought(tail + 1:) = .true.
+         column_size(:tail) = system%column_size
+         column_size(tail + 1:) = 1.0_dp
+         call form_entries(self, system, changed, count(abs(motions) > 0.0_dp), entries)
+         do q = 1, self%borders
+            do i = 1, size(free)
+               if (abs(motions(i, q)) <= 0.0_dp) cycle
+               call entries%add(free(i), tail + q, self%scale(free(i))*self%border*motions(i, q))
+               call entries%add(tail + q, free(i), motions(i, q))
+            end do
+            if (hold > 0.0_dp) call entries%add(tail + q, tail + q, -self%border/hold)
+         end do
+         call self%fronts%factor(entries, is_sought, column_size, changed, singular)
+      end associate
+   end subroutine factor_fronts
+
+   !> Entries of the rows, scaled, in some fronts, and room for those of motions.
+   pure subroutine form_entries(self, system, changed, of_motions, entries)
+      type(contact_fronts_type), intent(in) :: self
+      type(contact_system_type), intent(in) :: system
+      logical, intent(in) :: changed(:)
+      integer, intent(in) :: of_motions
+      type(triplet_list_type), intent(out) :: entries
+      type(sum_list_type) :: forces, rows   ! in each row, C; in which rows each one is, C^T
+      integer :: e, i, j, k, n, pass
+
+      forces = self%rows%forces()
+      rows = forces%transposed(system%schur%order)
+      associate (s => system%schur%sparse, home => system%tree%front)
+         do pass = 1, 2
+            n = 0
+            do i = 1, size(home)
+               if (.not. self%scale(i) > 0.0_dp) cycle
+               if (.not. changed(home(i))) cycle
+               do e = forces%start(i), forces%start(i + 1) - 1
+                  do k = s%row_start(forces%value(e)), s%row_start(forces%value(e) + 1) - 1
+                     j = s%column(k)
+                     if (.not. self%scale(j) > 0.0_dp .or. home(j) < home(i)) cycle
+                     n = n + 1
+                     if (pass == 2) call entries%add(i, j, &
+                        self%scale(i)*forces%coefficient(e)*s%value(k))
+                  end do
+               end do
+               if (abs(self%rows%spring(i)) > 0.0_dp) then
+                  n = n + 1
+                  if (pass == 2) call entries%add(i, i, self%scale(i)*self%rows%spring(i))
+               end if
+               do k = s%row_start(i), s%row_start(i + 1) - 1
+                  do e = rows%start(s%column(k)), rows%start(s%column(k) + 1) - 1
+                     j = rows%value(e)
+                     if (home(j) <= home(i)) cycle
+                     n = n + 1
+                     if (pass == 2) call entries%add(j, i, &
+                        self%scale(j)*rows%coefficient(e)*s%value(k))
+                  end do
+               end do
+            end do
+            if (pass == 1) call entries%reserve(n + 2*of_motions + self%borders)
+         end do
+      end associate
+   end subroutine form_entries
+
+   !> Free displacements that take up forces.
+   pure subroutine solve(self, x, unbalanced)
+      class(contact_fronts_type), intent(in) :: self
+      !> (tail, columns) forces as they enter the rows in; displacements in the free rows out
+      real(dp), intent(inout) :: x(:, :)
+      !> (l, columns) forces along the motions that border the rows, which nothing takes up
+      real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
+      real(dp), allocatable :: bordered(:, :)
+
+      allocate (bordered(size(x, 1) + self%borders, size(x, 2)), source=0.0_dp)
+      associate (free => self%rows%free)
+         bordered(free, :) = spread(self%scale(free), 2, size(x, 2))*x(free, :)
+         call self%fronts%solve(bordered)
+         x(free, :) = bordered(free, :)
+      end associate
+      if (present(unbalanced)) unbalanced = self%border*bordered(size(x, 1) + 1:, :)
+   end subroutine solve
+
+   !> Displacements of some rows for forces on them alone.
+   pure function solve_part(self, rows, forces) result(part)
+      class(contact_fronts_type), intent(in) :: self
+      integer, intent(in) :: rows(:)                !! (m)
+      real(dp), intent(in) :: forces(:, :)          !! (m, n) as they enter the rows
+      real(dp) :: part(size(rows), size(forces, 2)) !! (m, n) 0 in rows that are not free
+
+      part = self%fronts%solve_part(rows, spread(self%scale(rows), 2, size(forces, 2))*forces)
+   end function solve_part
+
+   !> Whether the determinant of the free rows, with their border, is negative.
+   pure logical function is_negative(self)
+      class(contact_fronts_type), intent(in) :: self
+
+      is_negative = self%fronts%negative_determinant()
+   end function is_negative
+
+end module contact_fronts

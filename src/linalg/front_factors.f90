@@ -1,0 +1,420 @@
+!> LU factors of a sparse matrix without symmetry, front by front (I. S. Duff and J. K. Reid, ACM
+!> Trans. Math. Softw. 9 (1983) 302). A front is a small full matrix: the rows and columns that are
+!> eliminated in it and those of fronts above to which these are joined. Pivots are chosen among
+!> the rows of their own front; a column without a good one is left to the front above.
+!>
+!> What a front leaves for the one above stays with it, so that entries that change cost only their
+!> own fronts and those above: what partial refactorisation is for a skyline, below eq. (3.4).
+module front_factors
+   use blas_lapack, only: dgemm, dtrsm
+   use dissection, only: front_tree_type
+   use kinds, only: dp
+   use sparse_matrix, only: triplet_list_type
+   implicit none
+   private
+   public :: front_factors_type
+
+   real(dp), parameter :: good = 1.0_dp        !! pivot, as part of what else its column has
+   real(dp), parameter :: lost = 1.0e-14_dp    !! pivot, as part of the size of its column
+
+   !> One front, eliminated. Rows and columns, those of pivots first, then those left to fronts
+   !> above; in the matrix L without its diagonal of 1, U, and what is left.
+   type :: front_type
+      integer, allocatable :: row(:), column(:)
+      integer :: pivots = 0
+      integer :: shared = 0                        !! rows and columns that may have pivots
+      real(dp), allocatable :: matrix(:, :)        !! (rows, columns)
+   end type front_type
+
+   !> All fronts.
+   type :: front_factors_type
+      type(front_type), allocatable, private :: front(:)
+      integer, allocatable, private :: above(:)    !! (fronts) the next one above, 0 for the last
+      integer, allocatable, private :: home(:)     !! (unknowns) front, the last for those of borders
+   contains
+      procedure :: begin
+      procedure :: is_begun
+      procedure :: above_changed
+      procedure :: home_of
+      procedure :: factor
+      procedure :: solve
+      procedure :: solve_part
+      procedure :: negative_determinant
+   end type front_factors_type
+
+contains
+
+   !> Begins with a tree, and further unknowns that border the matrix.
+   pure subroutine begin(self, tree, borders)
+      class(front_factors_type), intent(inout) :: self
+      type(front_tree_type), intent(in) :: tree
+      integer, intent(in) :: borders
+      integer :: i
+
+      if (allocated(self%front)) deallocate (self%front)
+      allocate (self%front(size(tree%parent)))
+      self%above = tree%parent
+      self%home = [tree%front, (size(tree%parent), i=1, borders)]
+   end subroutine begin
+
+   !> Whether it has begun.
+   pure logical function is_begun(self)
+      class(front_factors_type), intent(in) :: self
+
+      is_begun = allocated(self%front)
+   end function is_begun
+
+   !> Front that holds an entry.
+   elemental integer function home_of(self, row, column)
+      class(front_factors_type), intent(in) :: self
+      integer, intent(in) :: row, column
+
+      home_of = min(self%home(row), self%home(column))
+   end function home_of
+
+   !> Fronts with entries that change, and all above them.
+   pure function above_changed(self, changed) result(all_changed)
+      class(front_factors_type), intent(in) :: self
+      logical, intent(in) :: changed(:)              !! (fronts)
+      logical :: all_changed(size(changed))
+      integer :: f
+
+      all_changed = changed
+      do f = 1, size(changed) - 1
+         if (all_changed(f)) all_changed(self%above(f)) = .true.
+      end do
+   end function above_changed
+
+   !> Factors the fronts that changed, from all of their entries.
+   pure subroutine factor(self, entries, is_sought, column_size, changed, singular)
+      class(front_factors_type), intent(inout) :: self
+      type(triplet_list_type), intent(in) :: entries  !! of these fronts
+      logical, intent(in) :: is_sought(:)             !! (unknowns) others have neither row nor column
+      real(dp), intent(in) :: column_size(:)          !! (unknowns) beside which entries may be lost
+      logical, intent(in) :: changed(:)               !! (fronts) as from above_changed
+      logical, intent(out) :: singular
+      integer :: below(size(changed)), f, i, next(size(changed)), start(size(changed) + 1), &
+         order(entries%length), own(count(is_sought)), own_start(size(changed) + 1), &
+         row_place(size(is_sought)), column_place(size(is_sought))
+
+      call sort(self%home_of(entries%row(:entries%length), entries%column(:entries%length)), &
+         order, start)
+      associate (sought => pack([(i, i=1, size(is_sought))], is_sought))
+         call sort(self%home(sought), own, own_start)
+         own = sought(own)
+      end associate
+      below = 0
+      do f = size(changed) - 1, 1, -1
+         next(f) = below(self%above(f))
+         below(self%above(f)) = f
+      end do
+      row_place = 0
+      column_place = 0
+      do f = 1, size(changed)
+         if (.not. changed(f)) cycle
+         associate (own_entries => order(start(f):start(f + 1) - 1))
+            call assemble(self%front, f, own(own_start(f):own_start(f + 1) - 1), below(f), next, &
+               entries, own_entries, row_place, column_place)
+         end associate
+         call eliminate(self%front(f), column_size)
+      end do
+      associate (last => self%front(size(changed)))
+         singular = last%pivots < last%shared
+      end associate
+      if (singular) deallocate (self%front)
+   end subroutine factor
+
+   !> Numbers of things by their kinds.
+   pure subroutine sort(kind, order, start)
+      integer, intent(in) :: kind(:)
+      integer, intent(out) :: order(:), start(:)      ! those of kind k: order(start(k):start(k+1)-1)
+      integer :: filled(size(start) - 1), i
+
+      start = 0
+      do i = 1, size(kind)
+         start(kind(i) + 1) = start(kind(i) + 1) + 1
+      end do
+      start(1) = 1
+      do i = 2, size(start)
+         start(i) = start(i) + start(i - 1)
+      end do
+      filled = start(:size(filled))
+      do i = 1, size(kind)
+         order(filled(kind(i))) = i
+         filled(kind(i)) = filled(kind(i)) + 1
+      end do
+   end subroutine sort
+
+   !> The matrix of a front: its own entries and what the fronts below have left.
+   pure subroutine assemble(front, f, own, below, next, entries, own_entries, row_place, column_place)
+      type(front_type), intent(inout) :: front(:)
+      integer, intent(in) :: f, own(:)
+      integer, intent(in) :: below, next(:)           ! first front below; the next one beside each
+      type(triplet_list_type), intent(in) :: entries
+      integer, intent(in) :: own_entries(:)
+      integer, intent(inout) :: row_place(:), column_place(:)   ! (unknowns) room, 0
+      integer :: c, i, j
+      integer :: row_count, column_count
+      integer, allocatable :: rows(:), columns(:)
+
+      allocate (rows(size(row_place)), columns(size(row_place)))
+      row_count = 0
+      column_count = 0
+      call place_all(own, row_place, rows, row_count)
+      call place_all(own, column_place, columns, column_count)
+      c = below
+      do while (c > 0)
+         associate (child => front(c))
+            call place_all(child%row(child%pivots + 1:child%shared), row_place, rows, row_count)
+            call place_all(child%column(child%pivots + 1:child%shared), column_place, columns, &
+               column_count)
+         end associate
+         c = next(c)
+      end do
+      front(f)%shared = row_count
+      c = below
+      do while (c > 0)
+         associate (child => front(c))
+            call place_all(child%row(child%shared + 1:), row_place, rows, row_count)
+            call place_all(child%column(child%shared + 1:), column_place, columns, column_count)
+         end associate
+         c = next(c)
+      end do
+      call place_all(entries%row(own_entries), row_place, rows, row_count)
+      call place_all(entries%column(own_entries), column_place, columns, column_count)
+      front(f)%row = rows(:row_count)
+      front(f)%column = columns(:column_count)
+      if (allocated(front(f)%matrix)) deallocate (front(f)%matrix)
+      allocate (front(f)%matrix(row_count, column_count), source=0.0_dp)
+      do i = 1, size(own_entries)
+         associate (e => own_entries(i))
+            associate (to => front(f)%matrix(row_place(entries%row(e)), &
+               column_place(entries%column(e))))
+               to = to + entries%value(e)
+            end associate
+         end associate
+      end do
+      c = below
+      do while (c > 0)
+         associate (child => front(c), p => front(c)%pivots)
+            do j = p + 1, size(child%column)
+               associate (to => front(f)%matrix(:, column_place(child%column(j))))
+                  to(row_place(child%row(p + 1:))) = to(row_place(child%row(p + 1:))) + &
+                     child%matrix(p + 1:, j)
+               end associate
+            end do
+         end associate
+         c = next(c)
+      end do
+      row_place(front(f)%row) = 0
+      column_place(front(f)%column) = 0
+   end subroutine assemble
+
+   !> Gives places to those that have none.
+   pure subroutine place_all(unknowns, place, list, n)
+      integer, intent(in) :: unknowns(:)
+      integer, intent(inout) :: place(:), list(:), n
+      integer :: i
+
+      do i = 1, size(unknowns)
+         if (place(unknowns(i)) > 0) cycle
+         n = n + 1
+         place(unknowns(i)) = n
+         list(n) = unknowns(i)
+      end do
+   end subroutine place_all
+
+   !> Eliminates a front as far as good pivots are found.
+   pure subroutine eliminate(front, column_size)
+      type(front_type), intent(inout) :: front
+      real(dp), intent(in) :: column_size(:)
+      integer :: before, c, i, k, last, rows
+
+      rows = size(front%row)
+      associate (a => front%matrix, shared => front%shared)
+         k = 0
+         do
+            before = k
+            last = shared
+            do while (k < last)
+               i = k + maxloc(abs(a(k + 1:shared, k + 1)), dim=1)
+               if (abs(a(i, k + 1)) < good*maxval(abs(a(k + 1:, k + 1))) .or. &
+                  abs(a(i, k + 1)) <= lost*column_size(front%column(k + 1))) then
+                  call exchange_columns(front, k + 1, last)
+                  last = last - 1
+                  cycle
+               end if
+               k = k + 1
+               call exchange_rows(front, i, k)
+               a(k + 1:, k) = a(k + 1:, k)/a(k, k)
+               do c = k + 1, shared
+                  if (abs(a(k, c)) > 0.0_dp) a(k + 1:, c) = a(k + 1:, c) - a(k, c)*a(k + 1:, k)
+               end do
+            end do
+            if (k == before .or. k == shared) exit
+         end do
+         front%pivots = k
+         associate (rest => size(front%column) - shared)
+            if (k == 0 .or. rest == 0) return
+            call dtrsm('L', 'L', 'N', 'U', k, rest, 1.0_dp, a, rows, a(1, shared + 1), rows)
+            if (rows > k) call dgemm('N', 'N', rows - k, rest, k, -1.0_dp, a(k + 1, 1), rows, &
+               a(1, shared + 1), rows, 1.0_dp, a(k + 1, shared + 1), rows)
+         end associate
+      end associate
+   end subroutine eliminate
+
+   !> Exchanges two columns.
+   pure subroutine exchange_columns(front, i, j)
+      type(front_type), intent(inout) :: front
+      integer, intent(in) :: i, j
+
+      if (i == j) return
+      front%column([i, j]) = front%column([j, i])
+      front%matrix(:, [i, j]) = front%matrix(:, [j, i])
+   end subroutine exchange_columns
+
+   !> Exchanges two rows.
+   pure subroutine exchange_rows(front, i, j)
+      type(front_type), intent(inout) :: front
+      integer, intent(in) :: i, j
+
+      if (i == j) return
+      front%row([i, j]) = front%row([j, i])
+      front%matrix([i, j], :) = front%matrix([j, i], :)
+   end subroutine exchange_rows
+
+   !> Solves with the factors; unknowns that are not sought have 0.
+   pure subroutine solve(self, x)
+      class(front_factors_type), intent(in) :: self
+      real(dp), intent(inout) :: x(:, :)          !! (unknowns, n) right-hand sides in, solutions out
+      integer :: f, i
+      real(dp) :: solution(size(x, 1), size(x, 2))
+
+      solution = 0.0_dp
+      associate (place => [(i, i=1, size(x, 1))])
+         do f = 1, size(self%front)
+            call eliminate_forward(self%front(f), place, x, solution)
+         end do
+         do f = size(self%front), 1, -1
+            call substitute_back(self%front(f), place, solution)
+         end do
+      end associate
+      x = solution
+   end subroutine solve
+
+   !> Some rows of solutions for right-hand sides that are zero in all other rows: only fronts of
+   !> these rows, and those above them, are visited.
+   pure function solve_part(self, rows, rhs) result(part)
+      class(front_factors_type), intent(in) :: self
+      integer, intent(in) :: rows(:)               !! (m)
+      real(dp), intent(in) :: rhs(:, :)            !! (m, n) 0 in rows that are not sought
+      real(dp) :: part(size(rows), size(rhs, 2))   !! (m, n) 0 likewise
+      integer :: f, place(size(self%home)), places
+      logical :: visited(size(self%front))
+      real(dp), allocatable :: x(:, :), solution(:, :)
+
+      visited = .false.
+      visited(self%home(rows)) = .true.
+      visited = self%above_changed(visited)
+      place = 0
+      places = 0
+      call number_all(rows, place, places)
+      do f = 1, size(visited)
+         if (.not. visited(f)) cycle
+         call number_all(self%front(f)%row, place, places)
+         call number_all(self%front(f)%column, place, places)
+      end do
+      allocate (x(places, size(rhs, 2)), solution(places, size(rhs, 2)), source=0.0_dp)
+      x(place(rows), :) = rhs
+      do f = 1, size(visited)
+         if (visited(f)) call eliminate_forward(self%front(f), place, x, solution)
+      end do
+      do f = size(visited), 1, -1
+         if (visited(f)) call substitute_back(self%front(f), place, solution)
+      end do
+      part = solution(place(rows), :)
+   end function solve_part
+
+   !> Numbers unknowns that have no number.
+   pure subroutine number_all(unknowns, number, last)
+      integer, intent(in) :: unknowns(:)
+      integer, intent(inout) :: number(:), last
+      integer :: i
+
+      do i = 1, size(unknowns)
+         if (number(unknowns(i)) > 0) cycle
+         last = last + 1
+         number(unknowns(i)) = last
+      end do
+   end subroutine number_all
+
+   !> L^-1 of a front.
+   pure subroutine eliminate_forward(front, place, x, solution)
+      type(front_type), intent(in) :: front
+      integer, intent(in) :: place(:)              ! (unknowns) in x and in the solution
+      real(dp), intent(inout) :: x(:, :)
+      real(dp), intent(inout) :: solution(:, :)    ! receives the pivots' rows
+      real(dp) :: own(size(front%row))
+      integer :: j, k
+
+      associate (p => front%pivots, row => place(front%row), column => place(front%column))
+         do j = 1, size(x, 2)
+            own = x(row, j)
+            do k = 1, p
+               if (abs(own(k)) > 0.0_dp) own(k + 1:) = own(k + 1:) - own(k)*front%matrix(k + 1:, k)
+            end do
+            x(row(p + 1:), j) = own(p + 1:)
+            solution(column(:p), j) = own(:p)
+         end do
+      end associate
+   end subroutine eliminate_forward
+
+   !> U^-1 of a front.
+   pure subroutine substitute_back(front, place, solution)
+      type(front_type), intent(in) :: front
+      integer, intent(in) :: place(:)
+      real(dp), intent(inout) :: solution(:, :)
+      real(dp) :: own(size(front%column))
+      integer :: j, k
+
+      associate (p => front%pivots, column => place(front%column))
+         do j = 1, size(solution, 2)
+            own = solution(column, j)
+            do k = size(own), p + 1, -1
+               if (abs(own(k)) > 0.0_dp) own(:p) = own(:p) - own(k)*front%matrix(:p, k)
+            end do
+            do k = p, 1, -1
+               own(k) = own(k)/front%matrix(k, k)
+               own(:k - 1) = own(:k - 1) - own(k)*front%matrix(:k - 1, k)
+            end do
+            solution(column(:p), j) = own(:p)
+         end do
+      end associate
+   end subroutine substitute_back
+
+   !> Whether the determinant of the matrix is negative.
+   pure logical function negative_determinant(self) result(negative)
+      class(front_factors_type), intent(in) :: self
+      integer :: at(size(self%home)), f, i, k, next
+      ! Pivots at (row, column) are a permutation, of which each cycle of even length is odd.
+      at = 0
+      negative = .false.
+      do f = 1, size(self%front)
+         associate (front => self%front(f))
+            do k = 1, front%pivots
+               at(front%row(k)) = front%column(k)
+               negative = negative .neqv. front%matrix(k, k) < 0.0_dp
+            end do
+         end associate
+      end do
+      do i = 1, size(at)
+         do while (at(i) > 0 .and. at(i) /= i)
+            next = at(i)
+            at(i) = at(next)
+            at(next) = next
+            negative = .not. negative
+         end do
+      end do
+   end function negative_determinant
+
+end module front_factors
