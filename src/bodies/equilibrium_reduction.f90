@@ -114,7 +114,6 @@ contains
       real(dp), intent(in) :: rigid(:, :)
       type(contact_system_type), intent(inout) :: contact
       logical :: is_face(contact%schur%order), singular
-      real(dp) :: length
       integer :: dof, i
 
       is_face = .true.
@@ -130,9 +129,9 @@ contains
          end do
       end associate
       contact%motion = contact%rigid
+      contact%length = norm2(contact%rigid, dim=1)
       do i = 1, size(contact%motion, 2)
-         length = norm2(contact%rigid(:, i))
-         if (length > 0.0_dp) contact%motion(:, i) = contact%motion(:, i)/length
+         if (contact%length(i) > 0.0_dp) contact%motion(:, i) = contact%rigid(:, i)/contact%length(i)
       end do
       call contact%products%factor(matmul(transpose(contact%motion), contact%motion), singular)
    end subroutine move_faces

@@ -45,7 +45,7 @@
 !> a largest friction, in increments, and the law of one that closes within an increment.
 module contact_system
    use dissection, only: dissected, front_tree_type
-   use dense, only: column_space, least_squares, lu_type, null_space, null_space_by_rows
+   use dense, only: least_squares, lu_type, null_space, null_space_by_rows
    use friction_laws, only: friction_bound, friction_law_type
    use kinds, only: dp
    use pressure_overclosure, only: pressure_overclosure_type
@@ -88,7 +88,8 @@ module contact_system
       real(dp), allocatable :: rigid(:, :)  !! (tail, q) unsupported rigid motions
       !> (tail, q) the same, orthonormal; on a sparse tail each of one body and of length 1
       real(dp), allocatable :: motion(:, :)
-      type(lu_type) :: products             !! of motion^T motion, on a sparse tail
+      real(dp), allocatable :: length(:)    !! (q) of these, on a sparse tail
+      type(lu_type) :: products             !! of motion^T motion, likewise
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
    contains
       procedure :: set_fronts
@@ -395,7 +396,8 @@ contains
       differ = (is_free_a .neqv. is_free_b) .or. (is_free_a .and. differ)
    end function differ
 
-   !> The unsupported motions that no row of the active set holds, orthonormal on the free rows.
+   !> The unsupported motions that no row of the active set holds, each of length 1 on the free
+   !> rows; those of a full tail are orthonormal.
    pure function free_motions(self, rows) result(unheld)
       class(contact_system_type), intent(in) :: self
       type(contact_rows_type), intent(in) :: rows
@@ -413,21 +415,49 @@ contains
             supported(free(i)) = rows%spring(free(i)) > slack*abs(self%own(free(i)))
          end do
          associate (tail_rows => pack([(i, i=1, size(supported))], supported))
-            if (.not. self%schur%is_sparse()) then
-               unheld = matmul(self%motion(free, :), null_space(self%motion(tail_rows, :)))
+            if (self%schur%is_sparse()) then
+               unheld = combined_motions(self%motion, free, null_space_by_rows( &
+                  self%motion(tail_rows, :)))
             else
-               unheld = column_space(matmul(self%motion(free, :), null_space_by_rows( &
-                  self%motion(tail_rows, :))))
+               unheld = matmul(self%motion(free, :), null_space(self%motion(tail_rows, :)))
             end if
          end associate
       end associate
    end function free_motions
 
+   !> Sums of motions in the free rows, each of length 1; those that move none are left out.
+   pure function combined_motions(motion, free, factors) result(sums)
+      real(dp), intent(in) :: motion(:, :)   ! (tail, q)
+      integer, intent(in) :: free(:)
+      real(dp), intent(in) :: factors(:, :)  ! (q, l), most of them 0
+      real(dp), allocatable :: sums(:, :)
+      real(dp) :: length
+      integer :: j, n, q
+
+      allocate (sums(size(free), size(factors, 2)))
+      n = 0
+      do j = 1, size(factors, 2)
+         n = n + 1
+         sums(:, n) = 0.0_dp
+         do q = 1, size(factors, 1)
+            if (abs(factors(q, j)) > 0.0_dp) sums(:, n) = sums(:, n) + &
+               factors(q, j)*motion(free, q)
+         end do
+         length = norm2(sums(:, n))
+         if (length <= 0.0_dp) then
+            n = n - 1
+         else
+            sums(:, n) = sums(:, n)/length
+         end if
+      end do
+      sums = sums(:, :n)
+   end function combined_motions
+
    !> Whether forces drive the motions, by more than rounding. Each row is judged by the terms
    !> that its own motion collects: those of another body may be far larger.
    pure logical function is_driven(self, unheld, unbalanced, terms, least)
       class(contact_system_type), intent(in) :: self
-      real(dp), intent(in) :: unheld(:, :)   !! (n, l) orthonormal motions of the free rows
+      real(dp), intent(in) :: unheld(:, :)   !! (n, l) motions of the free rows, each of length 1
       real(dp), intent(in) :: unbalanced(:)  !! (l) forces along the motions [force]
       real(dp), intent(in) :: terms(:) !! (n) sums without signs of the forces' terms [force]
       real(dp), intent(in) :: least(:)       !! (n) drive that counts as none [force]
@@ -459,7 +489,7 @@ contains
          balanced = load - matmul(self%motion, matmul(load, self%motion)) + &
             least_squares(transpose(self%rigid), wanted)
       else
-         lacking(:, 1) = wanted/norm2(self%rigid, dim=1) - matmul(load, self%motion)
+         lacking(:, 1) = wanted/max(self%length, tiny(1.0_dp)) - matmul(load, self%motion)
          call self%products%solve(lacking)
          balanced = load + matmul(self%motion, lacking(:, 1))
       end if

@@ -84,17 +84,19 @@ contains
       real(dp), allocatable :: basis(:, :)      !! (n, n - rank)
       real(dp) :: kept(size(rows, 2), size(rows, 2)), row(size(rows, 2))
       integer :: pivot(size(rows, 2)), free(size(rows, 2)), i, j, rank
+      real(dp) :: least
       logical :: is_pivot(size(rows, 2))
 
       rank = 0
       is_pivot = .false.
+      least = rank_tolerance*maxval(abs(rows))
       do i = 1, size(rows, 1)
          if (rank == size(rows, 2)) exit
          row = rows(i, :)
          do j = 1, rank
             if (abs(row(pivot(j))) > 0.0_dp) row = row - row(pivot(j))*kept(:, j)
          end do
-         if (maxval(abs(row)) <= rank_tolerance*maxval(abs(rows))) cycle
+         if (maxval(abs(row)) <= least) cycle
          rank = rank + 1
          pivot(rank) = maxloc(abs(row), dim=1)
          is_pivot(pivot(rank)) = .true.

@@ -1,8 +1,8 @@
 !> Nested dissection of a graph by levels (A. George and J. W. H. Liu, Computer Solution of Large
 !> Sparse Positive Definite Systems, 1981, ch. 8): the vertices at one distance from an outer vertex
 !> that are joined to the next distance separate what is nearer from what is farther. Assemblies are
-!> long and narrow, and so are their graphs. Halving the levels again and again makes a tree of
-!> fronts: each is joined only to fronts above it or below it.
+!> long and narrow, and so are their graphs. Halving the levels again and again, where few vertices
+!> separate them, makes a tree of fronts: each is joined only to fronts above it or below it.
 module dissection
    use ordering, only: find_levels
    use sparse_matrix, only: sparse_matrix_type
@@ -27,7 +27,7 @@ contains
       type(sparse_matrix_type), intent(in) :: graph   !! pattern, both triangles
       type(front_tree_type) :: tree
       integer, dimension(graph%row_count) :: level
-      integer, allocatable :: before(:), first(:), part(:), rest(:), separator(:), top(:)
+      integer, allocatable :: before(:), cut(:), first(:), part(:), rest(:), separator(:), top(:)
       integer :: i, k, n
 
       call find_levels(graph, level, first)
@@ -45,11 +45,15 @@ contains
       do i = 2, size(before)
          before(i) = before(i) + before(i - 1)
       end do
+      allocate (cut(size(rest)), source=0)
+      do i = 1, size(level)
+         cut(level(i)) = cut(level(i)) + part(i)
+      end do
       allocate (tree%parent(2*size(rest) + 1), source=0)
       n = 0
       allocate (top(size(first) - 1))
       do i = 1, size(top)
-         call halve(before, first(i), first(i + 1) - 1, n, rest, separator, tree%parent)
+         call halve(before, cut, first(i), first(i + 1) - 1, n, rest, separator, tree%parent)
          top(i) = n
       end do
       n = n + 1
@@ -60,14 +64,15 @@ contains
    end function dissected
 
    !> Numbers the fronts of some levels, those below before those above.
-   pure recursive subroutine halve(before, first, last, n, rest, separator, parent)
+   pure recursive subroutine halve(before, cut, first, last, n, rest, separator, parent)
       integer, intent(in) :: before(:)             ! (levels + 1) vertices up to each
+      integer, intent(in) :: cut(:)                ! (levels) vertices that separate it from the next
       integer, intent(in) :: first, last           ! levels
       integer, intent(inout) :: n                  ! last number given
       !> (levels) Numbers of what separates a level from the next, and of the rest of it
       integer, intent(inout) :: rest(:), separator(:)
       integer, intent(inout) :: parent(:)
-      integer :: left, middle
+      integer :: left, middle, quarter
 
       if (first == last .or. before(last + 1) - before(first) <= smallest) then
          n = n + 1
@@ -75,10 +80,11 @@ contains
          separator(first:last - 1) = n
          return
       end if
-      middle = (first + last)/2
-      call halve(before, first, middle, n, rest, separator, parent)
+      quarter = (last - first)/4
+      middle = first + quarter - 1 + minloc(cut(first + quarter:last - 1 - quarter), dim=1)
+      call halve(before, cut, first, middle, n, rest, separator, parent)
       left = n
-      call halve(before, middle + 1, last, n, rest, separator, parent)
+      call halve(before, cut, middle + 1, last, n, rest, separator, parent)
       parent(n) = n + 1
       parent(left) = n + 1
       n = n + 1

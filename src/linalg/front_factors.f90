@@ -6,7 +6,7 @@
 !> What a front leaves for the one above stays with it, so that entries that change cost only their
 !> own fronts and those above: what partial refactorisation is for a skyline, below eq. (3.4).
 module front_factors
-   use blas_lapack, only: dgemm, dtrsm
+   use blas_lapack, only: dgemm, dgemv, dtrsm
    use dissection, only: front_tree_type
    use kinds, only: dp
    use sparse_matrix, only: triplet_list_type
@@ -14,6 +14,7 @@ module front_factors
    private
    public :: front_factors_type
 
+   integer, parameter :: width = 16            !! columns that are eliminated at a time
    real(dp), parameter :: good = 1.0_dp        !! pivot, as part of what else its column has
    real(dp), parameter :: lost = 1.0e-14_dp    !! pivot, as part of the size of its column
 
@@ -224,63 +225,92 @@ contains
       end do
    end subroutine place_all
 
-   !> Eliminates a front as far as good pivots are found.
+   !> Eliminates a front as far as good pivots are found, some columns at a time.
    pure subroutine eliminate(front, column_size)
       type(front_type), intent(inout) :: front
       real(dp), intent(in) :: column_size(:)
-      integer :: before, c, i, k, last, rows
+      integer :: before, end, first, k, last, rows
 
       rows = size(front%row)
+      k = 0
       associate (a => front%matrix, shared => front%shared)
-         k = 0
          do
             before = k
             last = shared
             do while (k < last)
-               i = k + maxloc(abs(a(k + 1:shared, k + 1)), dim=1)
-               if (abs(a(i, k + 1)) < good*maxval(abs(a(k + 1:, k + 1))) .or. &
-                  abs(a(i, k + 1)) <= lost*column_size(front%column(k + 1))) then
+               first = k + 1
+               end = min(k + width, last)
+               call eliminate_columns(front, column_size, end, k)
+               associate (pivots => k - first + 1, rest => size(front%column) - end)
+                  if (pivots > 0 .and. rest > 0) then
+                     call dtrsm('L', 'L', 'N', 'U', pivots, rest, 1.0_dp, a(first, first), rows, &
+                        a(first, end + 1), rows)
+                     if (rows > k) call dgemm('N', 'N', rows - k, rest, pivots, -1.0_dp, &
+                        a(k + 1, first), rows, a(first, end + 1), rows, 1.0_dp, a(k + 1, end + 1), &
+                        rows)
+                  end if
+               end associate
+               if (k < end) then
                   call exchange_columns(front, k + 1, last)
                   last = last - 1
-                  cycle
                end if
-               k = k + 1
-               call exchange_rows(front, i, k)
-               a(k + 1:, k) = a(k + 1:, k)/a(k, k)
-               do c = k + 1, shared
-                  if (abs(a(k, c)) > 0.0_dp) a(k + 1:, c) = a(k + 1:, c) - a(k, c)*a(k + 1:, k)
-               end do
             end do
             if (k == before .or. k == shared) exit
          end do
-         front%pivots = k
-         associate (rest => size(front%column) - shared)
-            if (k == 0 .or. rest == 0) return
-            call dtrsm('L', 'L', 'N', 'U', k, rest, 1.0_dp, a, rows, a(1, shared + 1), rows)
-            if (rows > k) call dgemm('N', 'N', rows - k, rest, k, -1.0_dp, a(k + 1, 1), rows, &
-               a(1, shared + 1), rows, 1.0_dp, a(k + 1, shared + 1), rows)
-         end associate
       end associate
+      front%pivots = k
    end subroutine eliminate
+
+   !> Eliminates columns up to an end, or to one without a good pivot.
+   pure subroutine eliminate_columns(front, column_size, end, k)
+      type(front_type), intent(inout) :: front
+      real(dp), intent(in) :: column_size(:)
+      integer, intent(in) :: end
+      integer, intent(inout) :: k            ! columns eliminated so far
+      integer :: c, i
+
+      associate (a => front%matrix)
+         do while (k < end)
+            i = k + maxloc(abs(a(k + 1:front%shared, k + 1)), dim=1)
+            if (abs(a(i, k + 1)) < good*maxval(abs(a(k + 1:, k + 1))) .or. &
+               abs(a(i, k + 1)) <= lost*column_size(front%column(k + 1))) return
+            k = k + 1
+            call exchange_rows(front, i, k)
+            a(k + 1:, k) = a(k + 1:, k)/a(k, k)
+            do c = k + 1, end
+               if (abs(a(k, c)) > 0.0_dp) a(k + 1:, c) = a(k + 1:, c) - a(k, c)*a(k + 1:, k)
+            end do
+         end do
+      end associate
+   end subroutine eliminate_columns
 
    !> Exchanges two columns.
    pure subroutine exchange_columns(front, i, j)
       type(front_type), intent(inout) :: front
       integer, intent(in) :: i, j
+      real(dp) :: column(size(front%row))
 
       if (i == j) return
       front%column([i, j]) = front%column([j, i])
-      front%matrix(:, [i, j]) = front%matrix(:, [j, i])
+      column = front%matrix(:, i)
+      front%matrix(:, i) = front%matrix(:, j)
+      front%matrix(:, j) = column
    end subroutine exchange_columns
 
    !> Exchanges two rows.
    pure subroutine exchange_rows(front, i, j)
       type(front_type), intent(inout) :: front
       integer, intent(in) :: i, j
+      real(dp) :: entry
+      integer :: c
 
       if (i == j) return
       front%row([i, j]) = front%row([j, i])
-      front%matrix([i, j], :) = front%matrix([j, i], :)
+      do c = 1, size(front%column)
+         entry = front%matrix(i, c)
+         front%matrix(i, c) = front%matrix(j, c)
+         front%matrix(j, c) = entry
+      end do
    end subroutine exchange_rows
 
    !> Solves with the factors; unknowns that are not sought have 0.
@@ -358,11 +388,18 @@ contains
       integer :: j, k
 
       associate (p => front%pivots, row => place(front%row), column => place(front%column))
+         if (p == 0) return
          do j = 1, size(x, 2)
             own = x(row, j)
+            if (.not. any(abs(own(:p)) > 0.0_dp)) then
+               solution(column(:p), j) = 0.0_dp
+               cycle
+            end if
             do k = 1, p
-               if (abs(own(k)) > 0.0_dp) own(k + 1:) = own(k + 1:) - own(k)*front%matrix(k + 1:, k)
+               own(k + 1:p) = own(k + 1:p) - own(k)*front%matrix(k + 1:p, k)
             end do
+            if (size(own) > p) call dgemv('N', size(own) - p, p, -1.0_dp, front%matrix(p + 1, 1), &
+               size(own), own, 1, 1.0_dp, own(p + 1), 1)
             x(row(p + 1:), j) = own(p + 1:)
             solution(column(:p), j) = own(:p)
          end do
@@ -378,11 +415,11 @@ contains
       integer :: j, k
 
       associate (p => front%pivots, column => place(front%column))
+         if (p == 0) return
          do j = 1, size(solution, 2)
             own = solution(column, j)
-            do k = size(own), p + 1, -1
-               if (abs(own(k)) > 0.0_dp) own(:p) = own(:p) - own(k)*front%matrix(:p, k)
-            end do
+            if (size(own) > p) call dgemv('N', p, size(own) - p, -1.0_dp, front%matrix(1, p + 1), &
+               size(front%row), own(p + 1), 1, 1.0_dp, own, 1)
             do k = p, 1, -1
                own(k) = own(k)/front%matrix(k, k)
                own(:k - 1) = own(:k - 1) - own(k)*front%matrix(:k - 1, k)
