@@ -7,7 +7,6 @@ module reduced_bodies
    use connections, only: connections_type, contact_laws_type, join_points, laws_of_step, &
       match_surfaces, match_tie
    use conductance_laws, only: is_constant
-   use controls, only: start_both
    use contact_points, only: contact_points_type, on_axis
    use dilatation, only: dilatation_type
    use element_kinds, only: element_node_count
@@ -26,13 +25,13 @@ module reduced_bodies
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
+   use tail_choice, only: has_sparse_tail
    use thermal_matrix, only: assemble_capacity, assemble_conduction
    implicit none
    private
    public :: reduced_bodies_type
 
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
-   integer, parameter :: most_at_once = 200     !! contact points whose matrices are full
 
    !> The reduced bodies.
    type :: reduced_bodies_type
@@ -106,31 +105,13 @@ contains
       call join_points(self%interfaces, self%ties, model, self%points)
       deallocate (self%ties)
       self%laws = laws_of_step(model, self%points, 1)
-      if (has_many_interfaces(model, self%points)) then
+      if (has_sparse_tail(model, real(size(self%points%slave), dp))) then
          self%mechanical%division%graph = joined_nodes(model)
          self%thermal%division%graph = self%mechanical%division%graph
       end if
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
-
-   !> Whether the bodies are reduced by pieces: there are many contact points between several bodies,
-   !> and no step forms derivatives of all of them.
-   logical function has_many_interfaces(model, points) result(many)
-      type(model_type), intent(in) :: model
-      type(connections_type), intent(in) :: points
-      character(8) :: word
-
-      call get_environment_variable('THERCON_TAIL', word)
-      associate (steps => model%steps)
-         many = model%mesh%body_count > 2 .and. size(points%slave) > most_at_once .and. .not. &
-            (allocated(points%heated) .or. any(points%resolves_edge) .or. &
-            any(steps%continuation%is_on) .or. any(steps%stability_frequency > 0) .or. &
-            any(steps%dilates) .or. any(steps%start%kind == start_both))
-      end associate
-      if (word == 'DENSE') many = .false.
-      if (word == 'SPARSE') many = model%mesh%body_count > 2
-   end function has_many_interfaces
 
    !> Which nodes elements, springs and trusses join.
    pure function joined_nodes(model) result(graph)

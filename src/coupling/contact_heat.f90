@@ -73,8 +73,8 @@ contains
             x(tail_index(k)) = x(tail_index(k)) + history(k)
          end do
          if (allocated(workspace%edge%point)) then
-            associate (j => tail_index(workspace%edge%point))
-               diagonal(j) = [(heat%schur%full(j(k), j(k)), k=1, size(j))]
+            associate (j => tail_index(workspace%edge%point), own => heat%schur%diagonal())
+               diagonal(j) = own(j)
             end associate
          end if
          call tail%refactor(heat%schur, diagonal)

@@ -27,6 +27,13 @@ module front_factors
       real(dp), allocatable :: matrix(:, :)        !! (rows, columns)
    end type front_type
 
+   !> Room for the lists of one front: its rows and columns, and places of unknowns in them, 0 for
+   !> none.
+   type :: room_type
+      integer, allocatable :: row(:), column(:), row_place(:), column_place(:)   !! (unknowns)
+      integer :: rows = 0, columns = 0
+   end type room_type
+
    !> All fronts.
    type :: front_factors_type
       type(front_type), allocatable, private :: front(:)
@@ -95,8 +102,8 @@ contains
       logical, intent(in) :: changed(:)               !! (fronts) as from above_changed
       logical, intent(out) :: singular
       integer :: below(size(changed)), f, i, next(size(changed)), start(size(changed) + 1), &
-         order(entries%length), own(count(is_sought)), own_start(size(changed) + 1), &
-         row_place(size(is_sought)), column_place(size(is_sought))
+         order(entries%length), own(count(is_sought)), own_start(size(changed) + 1)
+      type(room_type) :: room
 
       call sort(self%home_of(entries%row(:entries%length), entries%column(:entries%length)), &
          order, start)
@@ -109,13 +116,17 @@ contains
          next(f) = below(self%above(f))
          below(self%above(f)) = f
       end do
-      row_place = 0
-      column_place = 0
+      allocate (room%row_place(size(is_sought)), room%column_place(size(is_sought)), source=0)
+      allocate (room%row(size(is_sought)), room%column(size(is_sought)))
       do f = 1, size(changed)
          if (.not. changed(f)) cycle
          associate (own_entries => order(start(f):start(f + 1) - 1))
-            call assemble(self%front, f, own(own_start(f):own_start(f + 1) - 1), below(f), next, &
-               entries, own_entries, row_place, column_place)
+            call place_all(self%front, below(f), next, own(own_start(f):own_start(f + 1) - 1), &
+               room, self%front(f)%shared)
+            call list_all(entries%row(own_entries), room%row_place, room%row, room%rows)
+            call list_all(entries%column(own_entries), room%column_place, room%column, &
+               room%columns)
+            call assemble(self%front, f, below(f), next, entries, own_entries, room)
          end associate
          call eliminate(self%front(f), column_size)
       end do
@@ -146,73 +157,78 @@ contains
       end do
    end subroutine sort
 
+   !> Rows and columns of a front: its own ones and those that the fronts below could not eliminate,
+   !> which it shares, then those that it leaves to others.
+   pure subroutine place_all(front, below, next, own, room, shared)
+      type(front_type), intent(in) :: front(:)
+      integer, intent(in) :: below, next(:)           ! first front below; the next one beside each
+      integer, intent(in) :: own(:)
+      type(room_type), intent(inout) :: room
+      integer, intent(out) :: shared
+      integer :: c
+
+      room%rows = 0
+      room%columns = 0
+      call list_all(own, room%row_place, room%row, room%rows)
+      call list_all(own, room%column_place, room%column, room%columns)
+      c = below
+      do while (c > 0)
+         associate (p => front(c)%pivots, s => front(c)%shared)
+            call list_all(front(c)%row(p + 1:s), room%row_place, room%row, room%rows)
+            call list_all(front(c)%column(p + 1:s), room%column_place, room%column, room%columns)
+         end associate
+         c = next(c)
+      end do
+      shared = room%rows
+      c = below
+      do while (c > 0)
+         associate (s => front(c)%shared)
+            call list_all(front(c)%row(s + 1:), room%row_place, room%row, room%rows)
+            call list_all(front(c)%column(s + 1:), room%column_place, room%column, room%columns)
+         end associate
+         c = next(c)
+      end do
+   end subroutine place_all
+
    !> The matrix of a front: its own entries and what the fronts below have left.
-   pure subroutine assemble(front, f, own, below, next, entries, own_entries, row_place, column_place)
+   pure subroutine assemble(front, f, below, next, entries, own_entries, room)
       type(front_type), intent(inout) :: front(:)
-      integer, intent(in) :: f, own(:)
+      integer, intent(in) :: f
       integer, intent(in) :: below, next(:)           ! first front below; the next one beside each
       type(triplet_list_type), intent(in) :: entries
       integer, intent(in) :: own_entries(:)
-      integer, intent(inout) :: row_place(:), column_place(:)   ! (unknowns) room, 0
-      integer :: c, i, j
-      integer :: row_count, column_count
-      integer, allocatable :: rows(:), columns(:)
+      type(room_type), intent(inout) :: room          ! its rows and columns in; no places out
+      integer :: c, i, j, k
 
-      allocate (rows(size(row_place)), columns(size(row_place)))
-      row_count = 0
-      column_count = 0
-      call place_all(own, row_place, rows, row_count)
-      call place_all(own, column_place, columns, column_count)
-      c = below
-      do while (c > 0)
-         associate (child => front(c))
-            call place_all(child%row(child%pivots + 1:child%shared), row_place, rows, row_count)
-            call place_all(child%column(child%pivots + 1:child%shared), column_place, columns, &
-               column_count)
-         end associate
-         c = next(c)
-      end do
-      front(f)%shared = row_count
-      c = below
-      do while (c > 0)
-         associate (child => front(c))
-            call place_all(child%row(child%shared + 1:), row_place, rows, row_count)
-            call place_all(child%column(child%shared + 1:), column_place, columns, column_count)
-         end associate
-         c = next(c)
-      end do
-      call place_all(entries%row(own_entries), row_place, rows, row_count)
-      call place_all(entries%column(own_entries), column_place, columns, column_count)
-      front(f)%row = rows(:row_count)
-      front(f)%column = columns(:column_count)
+      front(f)%row = room%row(:room%rows)
+      front(f)%column = room%column(:room%columns)
       if (allocated(front(f)%matrix)) deallocate (front(f)%matrix)
-      allocate (front(f)%matrix(row_count, column_count), source=0.0_dp)
-      do i = 1, size(own_entries)
-         associate (e => own_entries(i))
-            associate (to => front(f)%matrix(row_place(entries%row(e)), &
-               column_place(entries%column(e))))
-               to = to + entries%value(e)
+      allocate (front(f)%matrix(room%rows, room%columns), source=0.0_dp)
+      associate (a => front(f)%matrix)
+         do k = 1, size(own_entries)
+            i = room%row_place(entries%row(own_entries(k)))
+            j = room%column_place(entries%column(own_entries(k)))
+            a(i, j) = a(i, j) + entries%value(own_entries(k))
+         end do
+         c = below
+         do while (c > 0)
+            associate (child => front(c), to => room%row_place(front(c)%row))
+               do k = child%pivots + 1, size(child%column)
+                  j = room%column_place(child%column(k))
+                  do i = child%pivots + 1, size(to)
+                     a(to(i), j) = a(to(i), j) + child%matrix(i, k)
+                  end do
+               end do
             end associate
-         end associate
-      end do
-      c = below
-      do while (c > 0)
-         associate (child => front(c), p => front(c)%pivots)
-            do j = p + 1, size(child%column)
-               associate (to => front(f)%matrix(:, column_place(child%column(j))))
-                  to(row_place(child%row(p + 1:))) = to(row_place(child%row(p + 1:))) + &
-                     child%matrix(p + 1:, j)
-               end associate
-            end do
-         end associate
-         c = next(c)
-      end do
-      row_place(front(f)%row) = 0
-      column_place(front(f)%column) = 0
+            c = next(c)
+         end do
+      end associate
+      room%row_place(front(f)%row) = 0
+      room%column_place(front(f)%column) = 0
    end subroutine assemble
 
-   !> Gives places to those that have none.
-   pure subroutine place_all(unknowns, place, list, n)
+   !> Lists unknowns that have no place yet.
+   pure subroutine list_all(unknowns, place, list, n)
       integer, intent(in) :: unknowns(:)
       integer, intent(inout) :: place(:), list(:), n
       integer :: i
@@ -223,7 +239,7 @@ contains
          place(unknowns(i)) = n
          list(n) = unknowns(i)
       end do
-   end subroutine place_all
+   end subroutine list_all
 
    !> Eliminates a front as far as good pivots are found, some columns at a time.
    pure subroutine eliminate(front, column_size)

@@ -9,6 +9,7 @@ module controls
    public :: l_stable_scheme, stage_part
    public :: method_picard, method_zaitsev, method_anderson, method_newton, method_names
    public :: solver_by_size, solver_skyline, solver_mumps, mumps_from, default_solver
+   public :: tail_by_size, tail_full, tail_sparse
 
    integer, parameter :: method_picard = 1    !! eq. (4.1)
    integer, parameter :: method_zaitsev = 2   !! eq. (4.2)
@@ -19,6 +20,9 @@ module controls
    integer, parameter :: solver_by_size = 0   !! the faster of both, until the mesh is known
    integer, parameter :: solver_skyline = 1   !! Crout LDL^T on a skyline
    integer, parameter :: solver_mumps = 2     !! MUMPS with METIS ordering
+   integer, parameter :: tail_by_size = 0     !! contact unknowns by their number
+   integer, parameter :: tail_full = 1        !! in one full matrix
+   integer, parameter :: tail_sparse = 2      !! sparse, beside the faces of the bodies
 
    !> Unknowns of a model from which MUMPS is the faster solver. Measured, docs/performance.md.
    integer, parameter :: mumps_from = 5000

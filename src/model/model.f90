@@ -6,7 +6,7 @@ module model
    use bars, only: bar_type
    use card_places, only: place_type
    use contact_definitions, only: contact_definition_type, interaction_type, tie_definition_type
-   use controls, only: solver_skyline
+   use controls, only: solver_skyline, tail_by_size
    use equations, only: coupling_type, equation_type
    use kinds, only: dp
    use load_requests, only: nodal_field_type, requests_type
@@ -83,6 +83,7 @@ module model
       type(unit_labels_type) :: units                            !! labels of units
       type(physical_constants_type) :: constants                 !! *PHYSICAL CONSTANTS
       integer :: solver = solver_skyline                         !! one of the solver_* constants
+      integer :: tail = tail_by_size                             !! one of the tail_* constants
       logical :: estimates_errors = .true.                       !! ERRORS= of *OPTIONS
       type(accuracy_request_type) :: accuracy                    !! *ACCURACY
       real(dp) :: memory_needed = 0.0_dp                         !! estimate for a run [byte]

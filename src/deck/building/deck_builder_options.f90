@@ -2,7 +2,7 @@
 module deck_builder_options
    use card_parameters, only: choice, needed_choice, take_parameter, take_within
    use cards, only: keyword_card_type
-   use controls, only: solver_by_size, solver_mumps, solver_skyline
+   use controls, only: solver_by_size, solver_mumps, solver_skyline, tail_full, tail_sparse
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
@@ -21,7 +21,6 @@ contains
    !> Reads *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
    subroutine build_options(deck)
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: solver
       integer :: k
 
       deck%model%heading = ''
@@ -46,9 +45,7 @@ contains
                deck%model%constants%has_radiation = deck%model%constants%has_absolute_zero .and. &
                   card%has('STEFAN BOLTZMANN')
             case ('SOLVER')
-               solver = needed_choice(card, 'TYPE', 'SKYLINE/MUMPS', deck)
-               if (solver == 'SKYLINE') deck%model%solver = solver_skyline
-               if (solver == 'MUMPS') deck%model%solver = solver_mumps
+               call build_solver(card, deck)
             case ('REFINE')
                call build_levels(card, deck)
             case ('CONTROLS')
@@ -59,6 +56,20 @@ contains
          end associate
       end do
    end subroutine build_options
+
+   subroutine build_solver(card, deck)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      character(:), allocatable :: solver, tail
+
+      tail = choice(card, 'TAIL', 'FULL/SPARSE', deck, '')
+      if (tail == 'FULL') deck%model%tail = tail_full
+      if (tail == 'SPARSE') deck%model%tail = tail_sparse
+      if (card%has('TAIL') .and. .not. card%has('TYPE')) return
+      solver = needed_choice(card, 'TYPE', 'SKYLINE/MUMPS', deck)
+      if (solver == 'SKYLINE') deck%model%solver = solver_skyline
+      if (solver == 'MUMPS') deck%model%solver = solver_mumps
+   end subroutine build_solver
 
    subroutine build_option_card(card, deck)
       type(keyword_card_type), intent(in) :: card

@@ -129,7 +129,7 @@ module keywords
       keyword_type('START', in_both, 0, many, 'FROM='), &
       keyword_type('THERMAL SCHEME', in_both, 0, 1, 'TYPE='), &
       keyword_type('CONTINUATION', in_step, 0, 0, 'POINTS=/LOWEST=/HIGHEST=/ARC=/DIRECTION='), &
-      keyword_type('SOLVER', in_model, 0, 0, 'TYPE='), &
+      keyword_type('SOLVER', in_model, 0, 0, 'TYPE=/TAIL='), &
       keyword_type('REFINE', in_model, 0, 0, 'LEVELS=/SURFACE=/ELSET=/DISTANCE='), &
       keyword_type('VERIFY', in_both, 1, many, 'KIND=/SOURCE='), &
       keyword_type('ACCURACY', in_model, 1, many, 'ROUNDS='), &

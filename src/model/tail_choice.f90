@@ -1,0 +1,40 @@
+!> How the contact unknowns are held: all of them in one full matrix, to which bodies are reduced as
+!> a whole, or sparsely, beside the faces of bodies that are reduced in pieces. The full matrix
+!> costs less where it is small.
+module tail_choice
+   use contact_definitions, only: makes_friction_heat
+   use controls, only: start_both, tail_by_size, tail_sparse
+   use kinds, only: dp
+   use model, only: model_type
+   implicit none
+   private
+   public :: has_sparse_tail, needs_full_tail
+
+   integer, parameter :: most_at_once = 200   !! contact points that a full matrix is for
+
+contains
+
+   !> Whether the contact unknowns are held sparsely.
+   pure logical function has_sparse_tail(model, points)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: points     !! number of contact points
+
+      has_sparse_tail = len(needs_full_tail(model)) == 0 .and. (model%tail == tail_sparse .or. &
+         (model%tail == tail_by_size .and. model%mesh%body_count > 2 .and. points > most_at_once))
+   end function has_sparse_tail
+
+   !> What of a deck needs derivatives between all contact points, and with them the full matrix;
+   !> empty for nothing.
+   pure function needs_full_tail(model) result(what)
+      type(model_type), intent(in) :: model
+      character(:), allocatable :: what
+
+      what = ''
+      if (any(model%steps%start%kind == start_both)) what = '*START, FROM=BOTH'
+      if (any(model%steps%dilates)) what = 'DILATATION=YES'
+      if (any(model%steps%stability_frequency > 0)) what = '*STABILITY'
+      if (any(model%steps%continuation%is_on)) what = '*CONTINUATION'
+      if (makes_friction_heat(model%interactions, model%contacts)) what = 'heat of friction'
+   end function needs_full_tail
+
+end module tail_choice
