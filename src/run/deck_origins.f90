@@ -2,7 +2,7 @@
 !> `--resume`, at the increment that *RESTART, READ or the command line says, or the last one kept.
 module deck_origins
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use card_parameters, only: take_from
+   use card_parameters, only: take_parameter
    use cards, only: cards_type
    use command_line, only: command_type, settings_in_words
    use deck_files, only: results_of
@@ -177,8 +177,8 @@ contains
       step = 0
       increment = 0
       associate (card => cards%keywords(first_card(cards)))
-         call take_from(1, card, 'STEP', ignored, step)
-         call take_from(1, card, 'INC', ignored, increment)
+         call take_parameter(card, 'STEP', ignored, step, '>=1')
+         call take_parameter(card, 'INC', ignored, increment, '>=1')
       end associate
       restart = 0
       if (step > 0 .and. allocated(command%restart_time)) then

@@ -1,8 +1,8 @@
 !> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied;
 !> *CHANGE FRICTION, *MODEL CHANGE and *CONTACT INTERFERENCE -> what a step changes of contact.
 module deck_builder_contact
-   use card_parameters, only: choice, need_parameter, take_parameter, take_within
-   use card_values, only: check_extra, need_field
+   use card_parameters, only: choice, need_parameter, take_parameter
+   use card_values, only: check_extra, read_field
    use cards, only: data_card_type, keyword_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
       friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces, &
@@ -186,7 +186,7 @@ contains
                   tie%faces%name = card%text('NAME')
                   tie%has_tolerance = card%has('POSITION TOLERANCE')
                   tie%faces%either_side = tie%has_tolerance
-                  call take_within('>=0', card, 'POSITION TOLERANCE', deck, tie%tolerance)
+                  call take_parameter(card, 'POSITION TOLERANCE', deck, tie%tolerance, '>=0')
                   call read_faces(card, card%data(i), deck, tie%faces)
                end associate
             end do
@@ -303,7 +303,7 @@ contains
          else
             call read_contact(card%data(j), 3, 'slave surface, master surface, interference', &
                deck, given%contact)
-            call need_field(card%data(j), 3, 'interference', deck, given%value, valid)
+            call read_field(card%data(j), 3, 'interference', deck, given%value, valid)
          end if
          if (given%contact == 0 .or. .not. valid) cycle
          changes%interferences = [changes%interferences, given]

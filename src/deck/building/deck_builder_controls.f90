@@ -1,8 +1,8 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choice, needed_choice, take_from, take_parameter, take_within
-   use card_values, only: need_field, read_row
+   use card_parameters, only: choice, needed_choice, take_parameter
+   use card_values, only: read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use controls, only: continuation_type, crank_nicolson_scheme, explicit_scheme, &
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
@@ -58,10 +58,10 @@ contains
 
       method = choice(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', deck, '')
       if (method /= '') fixed_point%method = findloc(method_names == method, .true., dim=1)
-      call take_within('>0', card, 'TOL', deck, fixed_point%tolerance)
-      call take_from(1, card, 'MAXITER', deck, fixed_point%max_iterations)
-      call take_within('>0 <=1', card, 'G', deck, fixed_point%g)
-      call take_from(0, card, 'CONSTANT', deck, fixed_point%constant)
+      call take_parameter(card, 'TOL', deck, fixed_point%tolerance, '>0')
+      call take_parameter(card, 'MAXITER', deck, fixed_point%max_iterations, '>=1')
+      call take_parameter(card, 'G', deck, fixed_point%g, '>0 <=1')
+      call take_parameter(card, 'CONSTANT', deck, fixed_point%constant, '>=0')
    end subroutine build_fixed_point
 
    !> Reads what one *RESTART says of writing; where to go on from is read before the steps are.
@@ -73,8 +73,8 @@ contains
 
       place = 1
       if (card%has('READ')) then
-         call take_from(1, card, 'STEP', deck, place)
-         call take_from(1, card, 'INC', deck, place)
+         call take_parameter(card, 'STEP', deck, place, '>=1')
+         call take_parameter(card, 'INC', deck, place, '>=1')
          if (card%has('INC') .and. .not. card%has('STEP')) call deck%error(card%place_of('INC'), &
             'INC= needs STEP=')
       else
@@ -89,7 +89,7 @@ contains
          return
       end if
       controls%restart_frequency = 1
-      call take_from(0, card, 'FREQUENCY', deck, controls%restart_frequency)
+      call take_parameter(card, 'FREQUENCY', deck, controls%restart_frequency, '>=0')
       controls%overlays_restarts = card%has('OVERLAY')
    contains
       subroutine report_alone(parameter, other)
@@ -157,10 +157,10 @@ contains
       type(continuation_type), intent(out) :: continuation
 
       continuation%is_on = .true.
-      call take_from(2, card, 'POINTS', deck, continuation%most_points)
+      call take_parameter(card, 'POINTS', deck, continuation%most_points, '>=2')
       call take_parameter(card, 'LOWEST', deck, continuation%range(1))
       call take_parameter(card, 'HIGHEST', deck, continuation%range(2))
-      call take_within('>0', card, 'ARC', deck, continuation%longest_step)
+      call take_parameter(card, 'ARC', deck, continuation%longest_step, '>0')
       continuation%rises = choice(card, 'DIRECTION', 'UP/DOWN', deck, 'UP') == 'UP'
       if (continuation%range(1) < continuation%range(2)) return
       call deck%error(card%place_of('HIGHEST'), 'LOWEST='//to_text(continuation%range(1))// &
@@ -202,7 +202,7 @@ contains
       do k = 1, size(card%data)
          associate (data => card%data(k))
             call read_row(data, '@contact pair/conductance >0', deck, value, valid)
-            call need_field(data, 1, 'contact pair', deck, name, valid)
+            call read_field(data, 1, 'contact pair', deck, name, valid)
             i = 0
             if (len(name) > 0) call deck%look_up('contact pair', name, data%place(1), i)
             valid = valid .and. i > 0
@@ -341,7 +341,7 @@ contains
          points = deck%time_points(i)
          frequency = huge(frequency)   ! the last increment is written besides
       end if
-      call take_from(0, card, 'FREQUENCY', deck, frequency)
+      call take_parameter(card, 'FREQUENCY', deck, frequency, '>=0')
    end subroutine read_frequency
 
 end module deck_builder_controls

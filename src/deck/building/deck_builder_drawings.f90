@@ -1,7 +1,7 @@
 !> Lines of rigid bodies: the lines and arcs of *SURFACE, TYPE=SEGMENTS, and surfaces of R2D2 and
 !> RAX2 elements; what all of them are checked for.
 module deck_builder_drawings
-   use card_values, only: check_extra, need_field, read_row
+   use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
@@ -194,7 +194,7 @@ contains
       allocate (lines(0), ends(2, 0))
       do j = 1, size(card%data)
          valid = .true.
-         call need_field(card%data(j), 2, 'side SPOS or SNEG', deck, side, valid)
+         call read_field(card%data(j), 2, 'side SPOS or SNEG', deck, side, valid)
          call check_extra(card%data(j), 2, 'element or set, side', deck)
          if (.not. valid) return
          side = to_upper(side)

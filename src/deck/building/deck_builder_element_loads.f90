@@ -1,7 +1,7 @@
 !> Data cards of loads with a label: *DLOAD, *DFLUX and *FILM with an element, a set or a surface,
 !> *DSLOAD, *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
 module deck_builder_element_loads
-   use card_values, only: need_field, plane_vector, read_row
+   use card_values, only: read_field, plane_vector, read_row
    use cards, only: data_card_type
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
@@ -78,7 +78,7 @@ contains
       names = names_of(keyword, of_surfaces)
       what = 'label of the load'
       if (of_surfaces) what = names
-      call need_field(data, 2, what, deck, label, known)
+      call read_field(data, 2, what, deck, label, known)
       if (len(label) == 0) return
       label = to_upper(label)
       if (surface > 0 .and. .not. of_surfaces) then

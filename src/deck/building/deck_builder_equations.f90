@@ -2,7 +2,7 @@
 !> *TRANSFORM -> nodes with axes of their own, and what cards say of them.
 module deck_builder_equations
    use card_parameters, only: choice, need_parameter
-   use card_values, only: need_field, read_row
+   use card_values, only: read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use equations, only: coupling_type, equation_type
@@ -106,8 +106,8 @@ contains
 
       term%place = card%place(position)
       call deck%need_target('node', card, position, term%target_type, valid)
-      call need_field(card, position + 1, 'degree of freedom', deck, dof, valid)
-      call need_field(card, position + 2, 'coefficient', deck, term%coefficient, valid)
+      call read_field(card, position + 1, 'degree of freedom', deck, dof, valid)
+      call read_field(card, position + 2, 'coefficient', deck, term%coefficient, valid)
       if (.not. valid) return
       term%dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
          term%members(deck%mesh%node_sets), dof)

@@ -1,7 +1,7 @@
 !> *GAP HEAT GENERATION -> the heat of friction of a surface interaction; *GAP RADIATION ->
 !> radiation in its gap.
 module deck_builder_gap_heat
-   use card_parameters, only: take_within
+   use card_parameters, only: take_parameter
    use card_values, only: read_row, read_rows
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_gas, law_none
@@ -39,7 +39,7 @@ contains
       end if
       if (.not. card%has('ANGULAR VELOCITY')) return
       if (any(deck%mesh%element_plane == axisymmetric)) then
-         call take_within('>0', card, 'ANGULAR VELOCITY', deck, heat%angular_velocity)
+         call take_parameter(card, 'ANGULAR VELOCITY', deck, heat%angular_velocity, '>0')
       else
          call deck%error(card%place_of('ANGULAR VELOCITY'), 'ANGULAR VELOCITY= needs '// &
             'axisymmetric elements, which turn about their axis; give a sliding speed')

@@ -1,6 +1,6 @@
 !> *GAP LAW -> one side of the conductance of a surface interaction.
 module deck_builder_gap_laws
-   use card_parameters, only: needed_choice, take_within
+   use card_parameters, only: needed_choice, take_parameter
    use card_values, only: read_row
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
@@ -143,8 +143,8 @@ contains
       logical :: valid
 
       added = 0.0_dp
-      call take_within('>=0', card, 'JUMP', deck, added(1))
-      call take_within('>=0', card, 'ROUGHNESS', deck, added(2))
+      call take_parameter(card, 'JUMP', deck, added(1), '>=0')
+      call take_parameter(card, 'ROUGHNESS', deck, added(2), '>=0')
       law%added_length = sum(added)
       call take_emissivity(card, deck, law)
       layout = 'A >0/B >=0'
@@ -186,7 +186,7 @@ contains
 
       if (.not. card%has('EMISSIVITY')) return
       emissivity = 1.0_dp
-      call take_within('>0 <=1', card, 'EMISSIVITY', deck, emissivity)
+      call take_parameter(card, 'EMISSIVITY', deck, emissivity, '>0 <=1')
       if (.not. deck%model%constants%has_radiation) call deck%error(card%place_of('EMISSIVITY'), &
          'EMISSIVITY= needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
       if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)

@@ -3,8 +3,8 @@
 !> points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choice, chosen, take_parameter, take_within
-   use card_values, only: decimal_comma, need_field, read_row, report_decimal_comma
+   use card_parameters, only: choice, chosen, take_parameter
+   use card_values, only: decimal_comma, read_field, read_row, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
@@ -73,7 +73,7 @@ contains
                   cycle
                end if
                do i = 1, size(card%data(j)%fields)
-                  call need_field(card%data(j), i, 'time', deck, values(1), valid)
+                  call read_field(card%data(j), i, 'time', deck, values(1), valid)
                   if (valid) points%times = [points%times, values(1)]
                end do
             end do
@@ -129,7 +129,7 @@ contains
       begin = 0.0_dp
       interval = 1.0_dp
       call take_parameter(card, 'BEGIN', deck, begin)
-      call take_within('>0', card, 'FIXED INTERVAL', deck, interval)
+      call take_parameter(card, 'FIXED INTERVAL', deck, interval, '>0')
       if (card%lacks('FIXED INTERVAL')) call deck%error(card%place, 'DEFINITION=EQUALLY SPACED '// &
          'needs FIXED INTERVAL=')
       n = sum([(size(card%data(j)%fields), j=1, size(card%data))])
@@ -140,7 +140,7 @@ contains
             n = n + 1
             amplitude%times(n) = begin + (n - 1)*interval
             valid = .true.
-            call need_field(card%data(j), i, 'value', deck, amplitude%values(n), valid)
+            call read_field(card%data(j), i, 'value', deck, amplitude%values(n), valid)
          end do
       end do
    end subroutine read_values
@@ -168,8 +168,8 @@ contains
          do i = 1, size(card%data(j)%fields), 2
             n = n + 1
             valid = .true.
-            call need_field(card%data(j), i, 'time', deck, amplitude%times(n), valid)
-            call need_field(card%data(j), i + 1, 'value', deck, amplitude%values(n), valid)
+            call read_field(card%data(j), i, 'time', deck, amplitude%times(n), valid)
+            call read_field(card%data(j), i + 1, 'value', deck, amplitude%values(n), valid)
             if (n < 2 .or. .not. valid) cycle
             if (amplitude%times(n) <= amplitude%times(n - 1)) then
                call deck%error(card%data(j)%place(i), 'times must ascend')

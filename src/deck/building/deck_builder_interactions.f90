@@ -163,9 +163,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(friction_law_type), intent(out) :: friction
 
-      call take_parameter(card, 'TAUMAX', deck, friction%largest_shear)
-      if (friction%largest_shear <= 0.0_dp) call deck%error(card%place_of('TAUMAX'), 'TAUMAX= '// &
-         'must be positive; without friction leave out the card')
+      call take_parameter(card, 'TAUMAX', deck, friction%largest_shear, '>0')
       if (card%has('ROUGH')) then
          friction%coefficient = rough_coefficient
          if (card%has('TAUMAX')) call deck%error(card%place_of('ROUGH'), 'TAUMAX= and ROUGH '// &

@@ -1,7 +1,7 @@
 !> *ELEMENT of lines, which mesh generators write for the curves of a drawing: they are no elements
 !> of the mesh, but their sets name nodes, and the faces under them.
 module deck_builder_lines
-   use card_values, only: check_extra, need_field
+   use card_values, only: check_extra, read_field
    use cards, only: cards_type, data_card_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of, data_count
@@ -78,7 +78,7 @@ contains
       logical :: valid
 
       valid = .true.
-      call need_field(data, 1, 'element number', deck, number, valid)
+      call read_field(data, 1, 'element number', deck, number, valid)
       do q = 1, size(nodes)
          if (valid) call read_node(data, q, deck, nodes(q), valid)
       end do
@@ -95,7 +95,7 @@ contains
       logical, intent(inout) :: valid                      !! false where it has no number
       integer :: number
 
-      call need_field(data, q + 1, 'node '//to_text(q), deck, number, valid)
+      call read_field(data, q + 1, 'node '//to_text(q), deck, number, valid)
       if (.not. valid) return
       node = deck%node_index%find(number)
       if (node == 0) call deck%missing(data%place(q + 1), 'there is no node '//to_text(number), &

@@ -1,7 +1,7 @@
 !> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
    use card_parameters, only: choice
-   use card_values, only: check_extra, need_field, read_row, take_field
+   use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_element_loads, only: build_element_load
    use deck_context, only: deck_type
@@ -273,12 +273,12 @@ contains
       valid = valid .and. i == 0
       if (.not. valid) return
       first = 0
-      call need_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
+      call read_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
          deck, first, valid)
       last = first
       if (.not. valid) return
-      call take_field(data, 3, 'last degree of freedom'//value_advice(data), deck, last, valid)
-      call take_field(data, 4, 'value', deck, value, valid)
+      call read_field(data, 3, 'last degree of freedom'//value_advice(data)//'?', deck, last, valid)
+      call read_field(data, 4, 'value?', deck, value, valid)
       call check_extra(data, 4, 'node or set, first and last degree of freedom, value', deck)
       dofs = [(dof, dof=first, last)]
       if (last >= first .or. .not. valid) return

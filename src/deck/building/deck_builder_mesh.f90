@@ -1,7 +1,7 @@
 !> *NODE and *ELEMENT -> nodes and elements of the mesh.
 module deck_builder_mesh
    use card_parameters, only: need_parameter
-   use card_values, only: check_extra, check_unneeded, may_be_decimals, need_field, take_field
+   use card_values, only: check_extra, check_unneeded, may_be_decimals, read_field
    use cards, only: data_card_type
    use deck_builder_lines, only: element_cards, read_node
    use deck_context, only: deck_type, plane_by_element
@@ -125,12 +125,12 @@ contains
       z = 0.0_dp
       call read_number(data, 'node', deck, number)
       do i = 1, 2
-         call take_field(data, i + 1, names(i:i), deck, coordinates(i), valid)
+         call read_field(data, i + 1, names(i:i)//'?', deck, coordinates(i), valid)
          if (data%has(i + 1) .or. data%is_undefined(i + 1) .or. number == 0) cycle
          call deck%warning(data%place(i + 1), 'node '//to_text(number)//' has no '//names(i:i)// &
             ': 0 is used')
       end do
-      call take_field(data, 4, 'z', deck, z, valid)
+      call read_field(data, 4, 'z?', deck, z, valid)
       if (data%has(4)) then
          call deck%note('*NODE: third coordinates are ignored')
       end if
@@ -183,7 +183,7 @@ contains
 
       number = 0
       valid = .true.
-      call need_field(data, 1, noun//' number', deck, number, valid)
+      call read_field(data, 1, noun//' number', deck, number, valid)
       if (valid .and. number < 1) then
          call deck%error(data%place(1), 'numbers begin with 1')
          number = 0

@@ -1,6 +1,6 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choice, needed_choice, take_parameter, take_within
+   use card_parameters, only: choice, needed_choice, take_parameter
    use cards, only: keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_builder_rigid, only: need_faces
@@ -40,8 +40,8 @@ contains
                call build_option_card(card, deck)
             case ('PHYSICAL CONSTANTS')
                call take_parameter(card, 'ABSOLUTE ZERO', deck, deck%model%constants%absolute_zero)
-               if (card%has('STEFAN BOLTZMANN')) call take_within('>0', card, 'STEFAN BOLTZMANN', &
-                  deck, deck%model%constants%stefan_boltzmann)
+               call take_parameter(card, 'STEFAN BOLTZMANN', deck, &
+                  deck%model%constants%stefan_boltzmann, '>0')
                deck%model%constants%has_absolute_zero = card%has('ABSOLUTE ZERO')
                deck%model%constants%has_radiation = deck%model%constants%has_absolute_zero .and. &
                   card%has('STEFAN BOLTZMANN')
@@ -264,7 +264,7 @@ contains
       else
          call deck%need_element_set(card, region%set)
       end if
-      if (card%has('DISTANCE')) call take_within('>0', card, 'DISTANCE', deck, region%distance)
+      call take_parameter(card, 'DISTANCE', deck, region%distance, '>0')
    end subroutine build_region
 
 end module deck_builder_options

@@ -1,7 +1,7 @@
 !> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets; *SURFACE -> sets of faces.
 module deck_builder_sets
    use card_parameters, only: choice, need_parameter, surface_kinds
-   use card_values, only: check_extra, need_field, read_row
+   use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side
    use deck_builder_lines, only: is_line_card
@@ -389,7 +389,7 @@ contains
       character(:), allocatable :: label
 
       face = 0
-      call need_field(data, 2, 'face S1 to S4', deck, label, valid)
+      call read_field(data, 2, 'face S1 to S4', deck, label, valid)
       if (len(label) == 0) return
       label = to_upper(label)
       if (len(label) == 2) then

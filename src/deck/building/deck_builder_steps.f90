@@ -1,6 +1,6 @@
 !> *STEP to *END STEP -> steps with their increments; loads become requests.
 module deck_builder_steps
-   use card_parameters, only: choice, is_on, take_from, take_parameter
+   use card_parameters, only: choice, is_on, take_parameter
    use card_values, only: decimal_comma, read_row, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
@@ -163,7 +163,7 @@ contains
             return
          end if
          step%stability_frequency = huge(1)
-         call take_from(1, card, 'FREQUENCY', deck, step%stability_frequency)
+         call take_parameter(card, 'FREQUENCY', deck, step%stability_frequency, '>=1')
       case ('CONTACT PRINT')
          call read_frequency(card, deck, step%contact_print_frequency, step%contact_print_points)
       case default   ! of the model, or not known
@@ -178,10 +178,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
 
-      call take_parameter(card, 'INC', deck, step%max_increments)
-      if (step%max_increments < 1) then
-         call deck%error(card%place_of('INC'), 'INC= must be at least 1')
-      end if
+      call take_parameter(card, 'INC', deck, step%max_increments, '>=1')
       if (.not. card%has('INC')) then
          call deck%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
       end if
@@ -276,12 +273,8 @@ contains
             'LOCAL ERROR= and DILATATION= are ignored, no heat is stored')
          return
       end if
-      call take_parameter(card, 'DELTMX', deck, step%largest_change)
-      if (step%largest_change <= 0.0_dp) call deck%error(card%place_of('DELTMX'), 'DELTMX= '// &
-         'must be positive: the largest change of a temperature in an increment')
-      call take_parameter(card, 'LOCAL ERROR', deck, step%local_error)
-      if (step%local_error <= 0.0_dp) call deck%error(card%place_of('LOCAL ERROR'), 'LOCAL '// &
-         'ERROR= must be positive: 1E-3 is 0.1 % of the range of temperatures')
+      call take_parameter(card, 'DELTMX', deck, step%largest_change, '>0')
+      call take_parameter(card, 'LOCAL ERROR', deck, step%local_error, '>0')
       step%dilates = is_on(card, 'DILATATION', deck)
       if (step%direct .and. (card%has('DELTMX') .or. card%has('LOCAL ERROR'))) call deck%note( &
          '*'//card%name//', DIRECT: DELTMX= and LOCAL ERROR= are ignored, increments are fixed')
@@ -299,7 +292,6 @@ contains
       type(step_type), intent(inout) :: step
       character(:), allocatable :: number
 
-      if (step%max_increments < 1) return
       if (too_many(step)) then
          number = to_text(ceiling(min(planned_increments(step) - increment_rounding, most_counted)))
          step%grows = .not. step%direct

@@ -1,8 +1,8 @@
 !> *VERIFY -> checks of the results, *ACCURACY -> targets of the errors.
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
-   use card_parameters, only: needed_choice, take_from
-   use card_values, only: need_field, read_row
+   use card_parameters, only: needed_choice, take_parameter
+   use card_values, only: read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
@@ -122,7 +122,7 @@ contains
 
       valid = .true.
       quantity = 0
-      call need_field(data, 1, 'quantity', deck, name, valid)
+      call read_field(data, 1, 'quantity', deck, name, valid)
       if (.not. valid) return
       quantity = find_quantity(known, name)
       if (quantity > 0) return
@@ -220,7 +220,7 @@ contains
       logical :: valid
 
       valid = .true.
-      call need_field(data, 2, 'contact pair', deck, name, valid)
+      call read_field(data, 2, 'contact pair', deck, name, valid)
       if (.not. valid) return
       at = index(name, '@')
       if (at > 0) then
@@ -247,7 +247,7 @@ contains
       check%at_last = to_upper(data%text(3)) == 'LAST'
       if (check%at_last) return
       valid = .true.
-      call need_field(data, 3, 'time or LAST', deck, check%when, valid)
+      call read_field(data, 3, 'time or LAST', deck, check%when, valid)
       if (.not. valid .or. size(deck%model%steps) == 0) return
       start = 0.0_dp
       do s = 1, size(deck%model%steps)
@@ -283,7 +283,7 @@ contains
                allocate (deck%model%accuracy%targets(0))
                call check_deck(card, deck)
             end if
-            call take_from(1, card, 'ROUNDS', deck, deck%model%accuracy%rounds)
+            call take_parameter(card, 'ROUNDS', deck, deck%model%accuracy%rounds, '>=1')
             do j = 1, size(card%data)
                call build_target(card%data(j), estimated, deck)
             end do

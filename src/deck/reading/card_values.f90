@@ -1,35 +1,29 @@
 !> Values of the fields of a data card, with an error at their place where they are not what they
 !> should be, such as numbers with a decimal comma, which the dialect reads as two fields.
 module card_values
-   use card_parameters, only: limit_fault
+   use card_parameters, only: read_number
    use cards, only: data_card_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use text, only: integer_fault, is_whole, read_integer, read_real, real_fault, split_words, &
-      string_type
+   use text, only: is_whole, read_real, split_words, string_type
    implicit none
    private
-   public :: need_field, take_field, check_extra, read_row, read_rows, plane_vector, &
-      decimal_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, &
-      check_unneeded, check_unneeded_temperature
+   public :: read_field, check_extra, read_row, read_rows, plane_vector, decimal_comma, &
+      decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, &
+      check_unneeded_temperature
 
-   !> Value of a field; an error where it is missing.
-   interface need_field
-      module procedure need_text_field
-      module procedure need_integer_field
-      module procedure need_real_field
-   end interface need_field
-
-   !> Value of a field where the card has it; else it stays as it is.
-   interface take_field
-      module procedure take_integer_field
-      module procedure take_real_field
-   end interface take_field
+   !> Value of a field by its rule, as in a layout of read_row; it stays as it is where the card does
+   !> not have it, and after an error. A text must be there.
+   interface read_field
+      module procedure read_text_field
+      module procedure read_integer_field
+      module procedure read_real_field
+   end interface read_field
 
    !> A field of a layout.
    type :: field_rule_type
       character(:), allocatable :: name    !! what it holds
-      character(:), allocatable :: limit   !! as limit_fault has it
+      character(:), allocatable :: limit   !! as read_number has it
       real(dp) :: default                  !! where it is not given, or wrong
       logical :: is_needed, is_whole, is_text
    end type field_rule_type
@@ -58,7 +52,7 @@ contains
       end if
    end subroutine check_extra
 
-   subroutine need_text_field(data, i, what, report, value, valid)
+   subroutine read_text_field(data, i, what, report, value, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
@@ -68,31 +62,53 @@ contains
 
       value = data%text(i)
       if (len(value) == 0) call report_missing(data, i, what, report, valid)
-   end subroutine need_text_field
+   end subroutine read_text_field
 
-   subroutine need_integer_field(data, i, what, report, value, valid)
+   subroutine read_integer_field(data, i, rule, report, value, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
-      character(*), intent(in) :: what
+      character(*), intent(in) :: rule
       class(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: value
       logical, intent(inout) :: valid
+      real(dp) :: number
 
-      call take_field(data, i, what, report, value, valid)
-      if (.not. data%has(i)) call report_missing(data, i, what, report, valid)
-   end subroutine need_integer_field
+      number = value
+      call read_by_rule(data, i, rule_of('#'//rule), report, number, valid)
+      value = nint(number)
+   end subroutine read_integer_field
 
-   subroutine need_real_field(data, i, what, report, value, valid)
+   subroutine read_real_field(data, i, rule, report, value, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
-      character(*), intent(in) :: what
+      character(*), intent(in) :: rule
       class(deck_report_type), intent(inout) :: report
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
 
-      call take_field(data, i, what, report, value, valid)
-      if (.not. data%has(i)) call report_missing(data, i, what, report, valid)
-   end subroutine need_real_field
+      call read_by_rule(data, i, rule_of(rule), report, value, valid)
+   end subroutine read_real_field
+
+   subroutine read_by_rule(data, i, rule, report, value, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      type(field_rule_type), intent(in) :: rule
+      class(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: value
+      logical, intent(inout) :: valid                     ! becomes false after an error
+      character(:), allocatable :: fault
+
+      if (data%is_undefined(i)) then
+         valid = .false.
+      else if (data%has(i)) then
+         call read_number(data%fields(i)%text, rule%name, rule%is_whole, rule%limit, value, fault)
+         if (len(fault) == 0) return
+         call report%error(data%place(i), fault)
+         valid = .false.
+      else if (rule%is_needed) then
+         call report_missing(data, i, rule%name, report, valid)
+      end if
+   end subroutine read_by_rule
 
    subroutine report_missing(data, i, what, report, valid)
       type(data_card_type), intent(in) :: data
@@ -105,55 +121,10 @@ contains
       if (.not. data%is_undefined(i)) call report%error(data%place(i), 'missing field: '//what)
    end subroutine report_missing
 
-   subroutine take_integer_field(data, i, what, report, value, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: i
-      character(*), intent(in) :: what
-      class(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: value
-      logical, intent(inout) :: valid
-      integer :: number
-      logical :: is_number
-
-      if (data%is_undefined(i)) valid = .false.
-      if (data%is_undefined(i) .or. .not. data%has(i)) return
-      call read_integer(data%fields(i)%text, number, is_number)
-      if (is_number) then
-         value = number
-      else
-         call report%error(data%place(i), ''''//data%fields(i)%text//''' '// &
-            integer_fault(data%fields(i)%text)//'; expected: '//what)
-         valid = .false.
-      end if
-   end subroutine take_integer_field
-
-   subroutine take_real_field(data, i, what, report, value, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: i
-      character(*), intent(in) :: what
-      class(deck_report_type), intent(inout) :: report
-      real(dp), intent(inout) :: value
-      logical, intent(inout) :: valid
-      real(dp) :: number
-      logical :: is_number
-
-      if (data%is_undefined(i)) valid = .false.
-      if (data%is_undefined(i) .or. .not. data%has(i)) return
-      call read_real(data%fields(i)%text, number, is_number)
-      if (is_number) then
-         value = number
-      else
-         call report%error(data%place(i), ''''//data%fields(i)%text//''' '// &
-            real_fault(data%fields(i)%text)//'; expected: '//what)
-         valid = .false.
-      end if
-   end subroutine take_real_field
-
    !> Reads the numbers of a data card by its layout: its fields, separated by slashes, such as
    !> `@node or set/#degree of freedom/force`. Before a field stands `#` where it is a whole number
    !> and `@` where it is none and is read elsewhere; behind it `?` where it may be missing, and its
-   !> limit, >0, >=0, >0 <=1 or >=0 <=1, and what is taken where it is not given, or wrong: `=1`, or
-   !> 0. Of fields that are missing the first is reported, as is the first one too many.
+   !> limit, as read_number has it, and what is taken where it is not given, or wrong: `=1`, or 0. Of fields that are missing the first is reported, as is the first one too many.
    subroutine read_row(data, layout, report, values, valid)
       class(data_card_type), intent(in) :: data
       character(*), intent(in) :: layout
@@ -164,7 +135,7 @@ contains
       type(field_rule_type) :: rule
       character(:), allocatable :: names
       integer :: i
-      logical :: lacks, sound
+      logical :: is_missing, lacks
 
       valid = .true.
       lacks = .false.
@@ -175,15 +146,11 @@ contains
          rule = rule_of(fields(i)%value)
          names = names//', '//rule%name
          if (rule%is_text) cycle
-         sound = .true.
          values(i) = rule%default
-         if (data%has(i) .or. data%is_undefined(i)) then
-            call read_number(data, i, rule, report, values(i), sound)
-         else if (rule%is_needed) then
-            if (.not. lacks) call report_missing(data, i, rule%name, report, sound)
-            lacks = .true.
-         end if
-         valid = valid .and. sound
+         is_missing = rule%is_needed .and. .not. (data%has(i) .or. data%is_undefined(i))
+         if (.not. (is_missing .and. lacks)) call read_by_rule(data, i, rule, report, values(i), &
+            valid)
+         lacks = lacks .or. is_missing
       end do
       call check_extra(data, size(fields), names(3:), report)
    end subroutine read_row
@@ -221,33 +188,6 @@ contains
       rule%is_text = field(1:1) == '@'
       rule%name = field(merge(2, 1, rule%is_whole .or. rule%is_text):last)
    end function rule_of
-
-   !> Reads a number by its rule.
-   subroutine read_number(data, i, rule, report, value, valid)
-      class(data_card_type), intent(in) :: data
-      integer, intent(in) :: i
-      type(field_rule_type), intent(in) :: rule
-      class(deck_report_type), intent(inout) :: report
-      real(dp), intent(inout) :: value
-      logical, intent(inout) :: valid
-      character(:), allocatable :: fault
-      real(dp) :: given
-      integer :: number
-
-      if (rule%is_whole) then
-         number = 0
-         call take_field(data, i, rule%name, report, number, valid)
-         given = number
-      else
-         given = 0.0_dp
-         call take_field(data, i, rule%name, report, given, valid)
-      end if
-      if (.not. valid) return
-      fault = limit_fault(given, rule%limit)
-      valid = len(fault) == 0
-      if (valid) value = given
-      if (.not. valid) call report%error(data%place(i), rule%name//' '//fault)
-   end subroutine read_number
 
    !> A vector of the plane by its magnitude and the components of its direction.
    subroutine plane_vector(data, first, given, report, vector)

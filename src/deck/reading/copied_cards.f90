@@ -1,7 +1,7 @@
 !> *NFILL, *NCOPY and *ELCOPY of Abaqus -> the *NODE and *ELEMENT cards that they stand for: nodes
 !> between two sets, and copies of sets.
 module copied_cards
-   use card_parameters, only: choice, need_parameter, take_from, take_parameter, take_within
+   use card_parameters, only: choice, need_parameter, take_parameter
    use card_values, only: read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
@@ -32,7 +32,7 @@ contains
       integer :: j
 
       bias = 1.0_dp
-      call take_within('>0', card, 'BIAS', all%report, bias)
+      call take_parameter(card, 'BIAS', all%report, bias, '>0')
       do j = 1, size(card%data)
          call fill_line(card, card%data(j), bias, all)
       end do
@@ -192,7 +192,7 @@ contains
             if (valid .and. norm2(points(4:5) - points(1:2)) > 0.0_dp) call report%error( &
                rows(2)%place(4), 'the axis of the turn must be parallel to z')
             times = 1
-            call take_from(1, card, 'MULTIPLE', report, times)
+            call take_parameter(card, 'MULTIPLE', report, times, '>=1')
             angle = sign(1.0_dp, points(6) - points(3))*points(7)*times*degree
          end if
          turn = rotation(angle)

@@ -2,7 +2,7 @@
 !> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
 module deck_context
    use card_parameters, only: need_parameter
-   use card_values, only: need_field
+   use card_values, only: read_field
    use cards, only: add_note, cards_type, data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -185,7 +185,7 @@ contains
 
       surface = 0
       valid = .true.
-      call need_field(data, position, what, self, name, valid)
+      call read_field(data, position, what, self, name, valid)
       if (valid) call self%look_up('surface', to_upper(name), data%place(position), surface)
    end subroutine need_surface
 
@@ -274,7 +274,7 @@ contains
       integer :: number
       logical :: is_number
 
-      call need_field(data, position, numbers%noun//' or set', deck, name, valid)
+      call read_field(data, position, numbers%noun//' or set', deck, name, valid)
       if (len(name) == 0) return
       call read_integer(name, number, is_number)
       if (is_number) then
