@@ -24,7 +24,7 @@ module deck_builder
    use deck_checks, only: check_model, check_usage
    use deck_context, only: deck_type
    use deck_report, only: deck_report_type, heatless
-   use deck_structure, only: card_count, check_structure
+   use deck_structure, only: cards_of, check_structure
    use heat_checks, only: check_heat_paths, check_starts
    use mesh_checks, only: check_folds
    use load_application, only: apply_requests, collect_fields, turn_equations
@@ -56,7 +56,7 @@ contains
       integer :: i, why
 
       if (size(cards%keywords) == 0) return
-      call deck%take_over(report)
+      deck%deck_report_type = report
       deck%cards => cards
       deck%model => model
       deck%mesh => model%mesh
@@ -103,7 +103,7 @@ contains
       if (.not. allocated(deck%notes)) allocate (deck%notes(0))
       call move_alloc(deck%notes, model%notes)
       model%warnings = deck%warnings()
-      call report%take_over(deck)
+      report = deck%deck_report_type
    end subroutine build_model
 
    !> Builds nodes and elements, their sets and surfaces. The sets of nodes come last: they may
@@ -211,7 +211,7 @@ contains
          any(deck%model%steps%is_transient)) call deck%note('*SPECIFIC HEAT is ignored: no '// &
          'step stores heat')
       if (.not. any(solves_heat(deck%model%steps%analysis))) return
-      if (card_count(deck%cards, 'THERMAL SCHEME') == 0) then
+      if (size(cards_of(deck%cards, 'THERMAL SCHEME')) == 0) then
          if (any(deck%model%steps%is_transient)) call deck%note('no *THERMAL SCHEME: L-STABLE '// &
             'where heat is stored')
          if (any(solves_heat(deck%model%steps%analysis) .and. .not. &

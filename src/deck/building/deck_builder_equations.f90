@@ -8,7 +8,7 @@ module deck_builder_equations
    use equations, only: coupling_type, equation_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
-   use deck_structure, only: card_count, cards_of, is_keyword
+   use deck_structure, only: cards_of, is_keyword
    use kinds, only: dp
    use mesh, only: extent_of
    use load_requests, only: target_type
@@ -199,8 +199,8 @@ contains
       integer :: errors, k, n
 
       errors = deck%error_count()
-      allocate (deck%model%couplings(card_count(deck%cards, 'COUPLING') + card_count(deck%cards, &
-         'RIGID BODY')))
+      allocate (deck%model%couplings(size(cards_of(deck%cards, 'COUPLING')) + &
+         size(cards_of(deck%cards, 'RIGID BODY'))))
       n = 0
       do k = 1, size(deck%cards%keywords)
          if (deck%cards%keywords(k)%name == 'RIGID BODY') then

@@ -12,7 +12,7 @@ module deck_builder_interactions
    use deck_context, only: deck_type
    use deck_report, only: frictionless
    use deck_source, only: place_type
-   use deck_structure, only: card_count
+   use deck_structure, only: cards_of
    use friction_laws, only: friction_law_type, rough_coefficient
    use kinds, only: dp
    use overlap_laws, only: overlap_law_type
@@ -37,7 +37,7 @@ contains
       integer :: k, n, errors
       logical :: valid
 
-      allocate(deck%model%interactions(card_count(deck%cards, 'SURFACE INTERACTION')))
+      allocate(deck%model%interactions(size(cards_of(deck%cards, 'SURFACE INTERACTION'))))
       n = 0
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))

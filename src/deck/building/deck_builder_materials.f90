@@ -6,7 +6,7 @@ module deck_builder_materials
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
-   use deck_structure, only: card_count, cards_of, has_stand_in
+   use deck_structure, only: cards_of, has_stand_in
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
       is_positive_definite, orthotropic_elasticity
    use element_kinds, only: axisymmetric
@@ -40,7 +40,7 @@ contains
       type(deck_type), intent(inout) :: deck
       integer :: k, n
 
-      n = card_count(deck%cards, 'MATERIAL')
+      n = size(cards_of(deck%cards, 'MATERIAL'))
       allocate(deck%model%materials(n), deck%material_place(n))
       n = 0
       do k = 1, size(deck%cards%keywords)

@@ -9,7 +9,7 @@ module deck_builder_steps
       build_restart, build_start, build_thermal_scheme, read_frequency
    use deck_builder_loads, only: build_load_card
    use deck_context, only: deck_type
-   use deck_structure, only: card_count, cards_of
+   use deck_structure, only: cards_of
    use kinds, only: dp
    use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
       increment_growth, least_increment, planned_increments, solves_heat, solves_mechanics, &
@@ -49,7 +49,7 @@ contains
       has_scheme = .false.
       deck%analyses_sound = .not. deck%has_lost('*STEP')
       deck%boundaries_sound = deck%analyses_sound
-      n = card_count(deck%cards, 'STEP')
+      n = size(cards_of(deck%cards, 'STEP'))
       allocate(deck%model%steps(n), deck%step_place(n), deck%analysis_place(n))
       n = 0
       do k = 1, size(deck%cards%keywords)

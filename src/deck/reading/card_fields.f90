@@ -6,7 +6,7 @@ module card_fields
    use text, only: to_upper, without_blanks
    implicit none
    private
-   public :: split_fields, append_fields, drop_empty_end, without_quotes
+   public :: split_fields, drop_empty_end, without_quotes
    public :: is_comment, is_keyword, is_blank, first_text, last_text
 
    character(*), parameter :: blanks = ' '//achar(9)   !! what separates words
@@ -110,42 +110,15 @@ contains
       field%place = place_type(image, start)
    end function trimmed_field
 
-   !> Adds the fields of a continuation; the empty field that the comma at the end of the card left
-   !> is dropped.
-   subroutine append_fields(fields, more)
-      type(field_type), allocatable, intent(inout) :: fields(:)   !! the card so far
-      type(field_type), intent(in) :: more(:)                     !! its continuation
-      type(field_type), allocatable :: all(:)
-      integer :: i, n
-
-      n = size(fields) - 1
-      allocate(all(n + size(more)))
-      do i = 1, n
-         all(i) = fields(i)
-      end do
-      do i = 1, size(more)
-         all(n + i) = more(i)
-      end do
-      call move_alloc(all, fields)
-   end subroutine append_fields
-
    !> Drops the empty fields at the end of a card.
    subroutine drop_empty_end(fields)
       type(field_type), allocatable, intent(inout) :: fields(:)   !! fields of a card
-      type(field_type), allocatable :: kept(:)
-      integer :: i, n
+      integer :: n
 
-      n = size(fields)
-      do while (n > 0)
+      do n = size(fields), 1, -1
          if (len(fields(n)%text) > 0 .or. fields(n)%undefined) exit
-         n = n - 1
       end do
-      if (n == size(fields)) return
-      allocate(kept(n))
-      do i = 1, n
-         kept(i) = fields(i)
-      end do
-      call move_alloc(kept, fields)
+      if (n < size(fields)) fields = fields(:n)
    end subroutine drop_empty_end
 
    !> A text without the quotes around it.

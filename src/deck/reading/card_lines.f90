@@ -1,9 +1,9 @@
 !> One line after another -> cards: comments, continuations, parameters.
 module card_lines
-   use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
+   use card_fields, only: drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
    use card_typos, only: check_commas, lacks_star
-   use cards, only: add_data, add_keyword, add_note, cards_type, extend_data, field_type, &
+   use cards, only: add_data, add_keyword, add_note, cards_type, field_type, &
       keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
@@ -91,8 +91,9 @@ contains
             continues = self%element_fields == 0 .or. filled(fields) /= self%element_fields
          end if
          if (continues) then
-            call append_fields(self%pending, fields)
-            call move_alloc(self%pending, fields)
+            ! The comma at the end of the card left an empty field.
+            fields = [self%pending(:size(self%pending) - 1), fields]
+            deallocate (self%pending)
             call take_fields(self, fields, self%pending_keyword, image, cards, report)
             return
          end if
@@ -235,6 +236,7 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: fields(:)
+      integer :: i
       logical :: valid
 
       if (.not. allocated(self%keyword)) then
@@ -277,7 +279,12 @@ contains
       end if
       if (self%keyword == 'ELEMENT') then
          if (completes_element(self, fields, cards)) then
-            call extend_data(cards, fields)
+            associate (card => cards%keywords(cards%keyword_count))
+               associate (before => card%data(card%data_count)%fields)
+                  fields = [before, pack(fields, [(len(fields(i)%text) > 0, i=1, size(fields))])]
+               end associate
+               call move_alloc(fields, card%data(card%data_count)%fields)
+            end associate
             return
          end if
          call take_fields(self, fields, .false., image, cards, report)

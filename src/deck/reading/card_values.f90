@@ -12,8 +12,8 @@ module card_values
       decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, &
       check_unneeded_temperature
 
-   !> Value of a field by its rule, as in a layout of read_row; it stays as it is where the card does
-   !> not have it, and after an error. A text must be there.
+   !> Value of a field by its rule, as in a layout of read_row; it stays as it is where the card
+   !> does not have it, and after an error. A text must be there.
    interface read_field
       module procedure read_text_field
       module procedure read_integer_field
@@ -123,8 +123,9 @@ contains
 
    !> Reads the numbers of a data card by its layout: its fields, separated by slashes, such as
    !> `@node or set/#degree of freedom/force`. Before a field stands `#` where it is a whole number
-   !> and `@` where it is none and is read elsewhere; behind it `?` where it may be missing, and its
-   !> limit, as read_number has it, and what is taken where it is not given, or wrong: `=1`, or 0. Of fields that are missing the first is reported, as is the first one too many.
+   !> and `@` where it is none and is read elsewhere; behind it `?` where it may be missing, its
+   !> limit, as read_number has it, and what is taken where it is not given, or wrong: `=1`, or 0.
+   !> Of fields that are missing the first is reported, as is the first one too many.
    subroutine read_row(data, layout, report, values, valid)
       class(data_card_type), intent(in) :: data
       character(*), intent(in) :: layout

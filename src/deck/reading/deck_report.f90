@@ -1,9 +1,10 @@
 !> Errors and warnings of a deck with their places, printed in one go.
 module deck_report
-   use card_echo, only: column_of, first_alike, print_card
+   use card_echo, only: column_of, print_card, without_numbers
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: print_line
+   use name_index, only: name_index_type
    use text, only: counted, string_type, to_text, to_upper
    implicit none
    private
@@ -65,7 +66,6 @@ module deck_report
       procedure :: warnings
       procedure :: first_error
       procedure :: print => print_report
-      procedure :: take_over
    end type deck_report_type
 
 contains
@@ -237,23 +237,6 @@ contains
       call add(self, severity_warning, place, message, group)
    end subroutine warning
 
-   !> Takes what another report has, which is empty then.
-   subroutine take_over(self, other)
-      class(deck_report_type), intent(inout) :: self
-      class(deck_report_type), intent(inout) :: other
-
-      self%count = other%count
-      self%errors = other%errors
-      self%source%count = other%source%count
-      call move_alloc(other%path, self%path)
-      call move_alloc(other%diagnostics, self%diagnostics)
-      call move_alloc(other%lost, self%lost)
-      call move_alloc(other%source%images, self%source%images)
-      call move_alloc(other%source%file, self%source%file)
-      call move_alloc(other%source%line, self%source%line)
-      call move_alloc(other%source%paths, self%source%paths)
-   end subroutine take_over
-
    !> Whether the deck has an error.
    pure logical function has_errors(self)
       class(deck_report_type), intent(in) :: self
@@ -356,8 +339,9 @@ contains
    function told_by(self) result(told)
       class(deck_report_type), intent(in) :: self
       type(printed_diagnostic_type), allocatable :: told(:)
-      type(string_type) :: messages(self%count)
-      integer :: first(self%count), card(self%count), cards(self%source%count), i, last
+      type(name_index_type) :: kinds
+      integer, allocatable :: first_of(:)          ! (kinds)
+      integer :: first(self%count), card, cards(self%source%count), i, last
 
       told = [(printed_diagnostic_type(i), i=1, self%count)]
       told%index = order_of(self)
@@ -368,16 +352,23 @@ contains
          if (begins_card(self%source%images(i)%value)) last = i
          cards(i) = last
       end do
-      card = 0
+      allocate (first_of(0))
       do i = 1, self%count
+         first(i) = i
          associate (diagnostic => self%diagnostics(told(i)%index))
-            messages(i)%value = merge('e', 'w', diagnostic%severity == severity_error)// &
-               diagnostic%message
-            if (diagnostic%place%image > 0 .and. diagnostic%places == 1) card(i) = &
-               cards(diagnostic%place%image)
+            if (diagnostic%place%image == 0 .or. diagnostic%places > 1) cycle
+            card = cards(diagnostic%place%image)
+            if (card == 0) cycle
+            associate (kind => to_text(diagnostic%severity)//' '//to_text(card)//' '// &
+               without_numbers(diagnostic%message))
+               if (kinds%find(kind) == 0) then
+                  call kinds%add(kind)
+                  first_of = [first_of, i]
+               end if
+               first(i) = first_of(kinds%find(kind))
+            end associate
          end associate
       end do
-      first = first_alike(card, messages)
       do i = 1, self%count
          associate (leader => told(first(i)), image => self%diagnostics(told(i)%index)%place%image)
             if (first(i) == i) then

@@ -7,8 +7,9 @@ module generated_cards
    use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
    use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
-      growing_cards_type, keep_last, node_place, position_of, rotation
+      growing_cards_type, keep_last, node_place, position_of
    use kinds, only: dp
+   use plane_motions, only: rotation
    use text, only: to_text
    implicit none
    private

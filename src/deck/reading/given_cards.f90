@@ -13,7 +13,7 @@ module given_cards
    implicit none
    private
    public :: given_type, growing_cards_type, add_set, add_generated, add_numbers, add_node_card
-   public :: node_place, keep_last, members_of, position_of, corners_of, exact_text, rotation
+   public :: node_place, keep_last, members_of, position_of, corners_of, exact_text
 
    !> Nodes, or elements, of the cards so far.
    type :: given_type
@@ -248,14 +248,6 @@ contains
          corners = [corners, number]
       end do
    end function corners_of
-
-   !> Turns a place about the origin.
-   pure function rotation(angle)
-      real(dp), intent(in) :: angle                 !! anticlockwise [rad]
-      real(dp) :: rotation(2, 2)
-
-      rotation = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
-   end function rotation
 
    !> A number with all of its digits.
    function exact_text(value) result(string)
