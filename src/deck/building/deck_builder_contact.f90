@@ -119,8 +119,8 @@ contains
       character(*), parameter :: held = 'let it be the master, and the face of the body the slave'
       character(*), parameter :: tied = 'nodes that it holds are TIE NSET= of *RIGID BODY        '
 
-      call deck%need_surface(data, 1, 'slave surface', faces%slave)
-      call deck%need_surface(data, 2, 'master surface', faces%master)
+      call deck%need_item(data, 1, 'surface', 'slave surface', faces%slave)
+      call deck%need_item(data, 2, 'surface', 'master surface', faces%master)
       call check_extra(data, 2, 'slave surface, master surface', deck)
       if (faces%slave > 0 .and. faces%slave == faces%master) call deck%error(data%place(2), &
          'a surface cannot be '// &
@@ -348,8 +348,8 @@ contains
       integer, intent(out) :: contact
       integer :: master, slave
 
-      call deck%need_surface(data, 1, 'slave surface', slave)
-      call deck%need_surface(data, 2, 'master surface', master)
+      call deck%need_item(data, 1, 'surface', 'slave surface', slave)
+      call deck%need_item(data, 2, 'surface', 'master surface', master)
       call check_extra(data, most, layout, deck)
       call find_contact(slave, master, data%place(1), deck, contact)
    end subroutine read_contact

@@ -2,7 +2,7 @@
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
    use card_parameters, only: choice, needed_choice, take_parameter
-   use card_values, only: read_field, read_row
+   use card_values, only: read_row
    use cards, only: data_card_type, keyword_card_type
    use controls, only: continuation_type, crank_nicolson_scheme, explicit_scheme, &
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
@@ -14,7 +14,7 @@ module deck_builder_controls
    use print_requests, only: print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
    use spelling, only: known_choices
-   use text, only: append, string_type, to_text, to_upper
+   use text, only: split_words, string_type, to_text, to_upper
    use time_points, only: time_points_type
    implicit none
    private
@@ -23,29 +23,15 @@ module deck_builder_controls
 
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
 
-   integer, parameter :: not_computed = 0   !! meaning of keys that only CalculiX has
-
-   !> A key of a card.
-   type :: print_key_type
-      character(5) :: name = ''
-      integer :: quantity = not_computed    !! print_displacement, ...
-   end type print_key_type
-
-   type(print_key_type), parameter :: node_keys(*) = [ &
-      print_key_type('U', print_displacement), print_key_type('NT', print_temperature), &
-      print_key_type('TS', print_temperature), print_key_type('RF', print_force), &
-      print_key_type('RFL', print_heat), print_key_type('PN'), print_key_type('PS'), &
-      print_key_type('PT'), print_key_type('PSF'), print_key_type('PTF'), print_key_type('TSF'), &
-      print_key_type('TTF'), print_key_type('TT'), print_key_type('V'), print_key_type('VF'), &
-      print_key_type('MF'), print_key_type('MACH'), print_key_type('CP'), &
-      print_key_type('DEPF'), print_key_type('TURB')]
-   type(print_key_type), parameter :: element_keys(*) = [ &
-      print_key_type('S', print_stress), print_key_type('HFL', print_heat_flux), &
-      print_key_type('COORD', print_position), print_key_type('SVF'), print_key_type('E'), &
-      print_key_type('ME'), print_key_type('PEEQ'), print_key_type('CEEQ'), &
-      print_key_type('ENER'), print_key_type('SDV'), print_key_type('HFLF'), &
-      print_key_type('ELSE'), print_key_type('ELKE'), print_key_type('EVOL'), &
-      print_key_type('EMAS'), print_key_type('EBHE'), print_key_type('CENT')]
+   ! Keys of a card: those that are computed, what they are, and those that only CalculiX has.
+   character(*), parameter :: node_keys = 'U/NT/TS/RF/RFL', element_keys = 'S/HFL/COORD'
+   integer, parameter :: node_quantities(5) = [print_displacement, print_temperature, &
+      print_temperature, print_force, print_heat]
+   integer, parameter :: element_quantities(3) = [print_stress, print_heat_flux, print_position]
+   character(*), parameter :: foreign_node_keys = &
+      '/PN/PS/PT/PSF/PTF/TSF/TTF/TT/V/VF/MF/MACH/CP/DEPF/TURB/'
+   character(*), parameter :: foreign_element_keys = &
+      '/SVF/E/ME/PEEQ/CEEQ/ENER/SDV/HFLF/ELSE/ELKE/EVOL/EMAS/EBHE/CENT/'
 
 contains
 
@@ -105,7 +91,10 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
+      type(thermal_scheme_type), parameter :: schemes(*) = [implicit_scheme, galerkin_scheme, &
+         crank_nicolson_scheme, explicit_scheme, l_stable_scheme]
       character(:), allocatable :: kind
+      integer :: i
 
       kind = needed_choice(card, 'TYPE', &
          'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', deck)
@@ -119,11 +108,8 @@ contains
          call deck%error(card%data(1)%place(1), 'extra data card; *THERMAL SCHEME has one with '// &
             'TYPE=FREE only')
       end if
-      if (kind == 'IMPLICIT') scheme = implicit_scheme
-      if (kind == 'L-STABLE') scheme = l_stable_scheme
-      if (kind == 'GALERKIN') scheme = galerkin_scheme
-      if (kind == 'CRANK-NICOLSON') scheme = crank_nicolson_scheme
-      if (kind == 'EXPLICIT') scheme = explicit_scheme
+      i = findloc(schemes%name == kind, .true., dim=1)
+      if (i > 0) scheme = schemes(i)
    end subroutine build_thermal_scheme
 
    !> Coefficients of eq. (3.4) as the card gives them; multiples of them are the same scheme.
@@ -193,7 +179,6 @@ contains
       type(deck_type), intent(inout) :: deck
       type(start_type), intent(inout) :: start
       real(dp) :: given(size(deck%model%contacts)), value(2)
-      character(:), allocatable :: name
       integer :: i, k
       logical :: sound, valid
 
@@ -202,12 +187,9 @@ contains
       do k = 1, size(card%data)
          associate (data => card%data(k))
             call read_row(data, '@contact pair/conductance >0', deck, value, valid)
-            call read_field(data, 1, 'contact pair', deck, name, valid)
-            i = 0
-            if (len(name) > 0) call deck%look_up('contact pair', name, data%place(1), i)
-            valid = valid .and. i > 0
-            if (valid) given(i) = value(2)
-            sound = sound .and. valid
+            call deck%need_item(data, 1, 'contact pair', 'contact pair', i)
+            if (valid .and. i > 0) given(i) = value(2)
+            sound = sound .and. valid .and. i > 0
          end associate
       end do
       if (.not. sound) return
@@ -222,21 +204,19 @@ contains
 
    !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
    !> former steps.
-   subroutine build_print(card, is_first, deck, requests)
+   subroutine build_print(card, is_later, deck, requests)
       type(keyword_card_type), intent(in) :: card
-      logical, intent(in) :: is_first                     !! first of its keyword in its step
+      logical, intent(inout) :: is_later   !! whether its step has one before; becomes true
       type(deck_type), intent(inout) :: deck
       type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
       type(print_request_type) :: request
       character(:), allocatable :: totals
-      type(print_key_type), allocatable :: keys(:)
       integer :: i, j
       logical :: is_known     ! whether the set is
 
-      if (is_first .and. allocated(requests)) deallocate(requests)
-      keys = element_keys
+      if (allocated(requests) .and. .not. is_later) deallocate(requests)
+      is_later = .true.
       if (card%name == 'NODE PRINT') then
-         keys = node_keys
          call take_set(card, 'NSET', 'node set', deck, request%set, is_known)
          if (is_dropped(card, deck, request%set)) is_known = .false.
          totals = choice(card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
@@ -258,7 +238,7 @@ contains
       allocate(request%quantities(0))
       do j = 1, size(card%data)
          do i = 1, size(card%data(j)%fields)
-            if (card%data(j)%has(i)) call take_quantity(card, card%data(j), i, keys, deck, &
+            if (card%data(j)%has(i)) call take_quantity(card, card%data(j), i, deck, &
                request%quantities)
          end do
       end do
@@ -298,32 +278,37 @@ contains
    end function is_dropped
 
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.
-   subroutine take_quantity(card, data, position, keys, deck, quantities)
+   subroutine take_quantity(card, data, position, deck, quantities)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position
-      type(print_key_type), intent(in) :: keys(:)
       type(deck_type), intent(inout) :: deck
       integer, allocatable, intent(inout) :: quantities(:)
       type(string_type), allocatable :: known(:)
-      character(:), allocatable :: key
+      character(:), allocatable :: foreign, key
+      integer, allocatable :: meanings(:)
       integer :: i
 
+      if (card%name == 'NODE PRINT') then
+         known = split_words(node_keys)
+         meanings = node_quantities
+         foreign = foreign_node_keys
+      else
+         known = split_words(element_keys)
+         meanings = element_quantities
+         foreign = foreign_element_keys
+      end if
       key = to_upper(data%text(position))
-      allocate(known(0))
-      do i = 1, size(keys)
-         if (keys(i)%quantity /= not_computed) call append(known, trim(keys(i)%name))
-         if (keys(i)%name /= key) cycle
-         if (keys(i)%quantity == not_computed) then
-            call deck%warning(data%place(position), key//' of *'//card%name//' is not '// &
-               'computed: it is not printed')
-         else if (.not. any(quantities == keys(i)%quantity)) then
-            quantities = [quantities, keys(i)%quantity]
-         end if
-         return
-      end do
-      call deck%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
-         ' is not printed'//known_choices(key, known))
+      i = findloc([(known(i)%value == key, i=1, size(known))], .true., dim=1)
+      if (i > 0) then
+         if (all(quantities /= meanings(i))) quantities = [quantities, meanings(i)]
+      else if (index(foreign, '/'//key//'/') > 0) then
+         call deck%warning(data%place(position), key//' of *'//card%name//' is not computed: it '// &
+            'is not printed')
+      else
+         call deck%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
+            ' is not printed'//known_choices(key, known))
+      end if
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.

@@ -65,7 +65,7 @@ contains
       known = .true.
       if (of_surfaces) then
          target = 'surface'
-         call deck%need_surface(data, 1, target, surface)
+         call deck%need_item(data, 1, 'surface', target, surface)
          advice = 'prescribe the temperature of its reference node'
          if (keyword == 'DSLOAD') advice = 'load its reference node by *CLOAD'
          call need_faces(data%place(1), advice, deck, surface)

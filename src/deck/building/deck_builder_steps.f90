@@ -27,10 +27,9 @@ module deck_builder_steps
    type :: card_counts_type
       integer :: analyses = 0
       integer :: files = 0             !! *NODE FILE, *EL FILE, *CONTACT FILE
-      integer :: node_prints = 0
-      integer :: element_prints = 0
       logical :: has_amplitude = .false.   !! AMPLITUDE= on *STEP
       logical :: is_uncoupled = .false.  !! *UNCOUPLED TEMPERATURE-DISPLACEMENT
+      logical :: has_prints(2) = .false.   !! *NODE PRINT, *EL PRINT
    end type card_counts_type
 
    real(dp), parameter :: smallest_part = 1.0e-5_dp   !! of a period: smallest increment
@@ -69,9 +68,15 @@ contains
                deck%analyses_sound = .false.
                call deck%missing(card%place, 'the step has no *STATIC, *HEAT TRANSFER or '// &
                   '*COUPLED TEMPERATURE-DISPLACEMENT')
-            case ('FIXED POINT', 'RESTART', 'START', 'THERMAL SCHEME')
-               has_scheme = has_scheme .or. card%name == 'THERMAL SCHEME'
-               call build_control(card, deck, controls)
+            case ('FIXED POINT')
+               call build_fixed_point(card, deck, controls%fixed_point)
+            case ('RESTART')
+               call build_restart(card, deck, controls)
+            case ('START')
+               call build_start(card, deck, controls%start)
+            case ('THERMAL SCHEME')
+               has_scheme = .true.
+               call build_thermal_scheme(card, deck, controls%scheme)
             case ('CONTINUATION')
                if (n > 0) call build_continuation(card, deck, deck%model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
@@ -89,54 +94,16 @@ contains
                end if
             end select
          end associate
-         if (n > 0) call take_controls(controls, has_scheme, counts%is_uncoupled, &
-            deck%model%steps(n))
+         if (n == 0) cycle
+         ! Transients have their own scheme until the deck names one.
+         associate (step => deck%model%steps(n))
+            step%step_controls_type = controls
+            if (step%is_transient .and. .not. has_scheme) step%scheme = l_stable_scheme
+            if (counts%is_uncoupled .and. .not. has_scheme) step%scheme = explicit_scheme
+         end associate
       end do
       call warn_of_nlgeom(deck, deck%model%steps)
    end subroutine build_steps
-
-   !> Reads a card that controls this step and later ones.
-   subroutine build_control(card, deck, controls)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(step_controls_type), intent(inout) :: controls
-
-      select case (card%name)
-      case ('FIXED POINT')
-         call build_fixed_point(card, deck, controls%fixed_point)
-      case ('RESTART')
-         call build_restart(card, deck, controls)
-      case ('START')
-         call build_start(card, deck, controls%start)
-      case default
-         call build_thermal_scheme(card, deck, controls%scheme)
-      end select
-   end subroutine build_control
-
-   !> Controls stay from step to step; transients have their own scheme until the deck names one.
-   subroutine take_controls(controls, has_scheme, is_uncoupled, step)
-      type(step_controls_type), intent(in) :: controls
-      logical, intent(in) :: has_scheme     !! whether *THERMAL SCHEME was there
-      logical, intent(in) :: is_uncoupled   !! *UNCOUPLED TEMPERATURE-DISPLACEMENT
-      type(step_type), intent(inout) :: step
-
-      step%step_controls_type = controls
-      if (has_scheme) return
-      if (step%is_transient) step%scheme = l_stable_scheme
-      if (is_uncoupled) step%scheme = explicit_scheme
-   end subroutine take_controls
-
-   !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
-   subroutine warn_of_nlgeom(deck, steps)
-      type(deck_type), intent(inout) :: deck
-      type(step_type), intent(inout) :: steps(:)
-      integer, allocatable :: places(:)
-
-      steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
-      places = pack(cards_of(deck%cards, 'STEP'), steps%nlgeom)
-      if (size(places) > 0) call deck%warning(deck%cards%keywords(places(1))%place_of('NLGEOM'), &
-         'NLGEOM is not modelled: displacements and strains stay small')
-   end subroutine warn_of_nlgeom
 
    !> Reads a card of a step that asks for output; others are ignored.
    subroutine build_output(card, deck, counts, step)
@@ -150,18 +117,13 @@ contains
          'CONTACT OUTPUT')
          call build_file_output(card, counts%files, deck, step)
       case ('NODE PRINT')
-         counts%node_prints = counts%node_prints + 1
-         call build_print(card, counts%node_prints == 1, deck, step%node_prints)
+         call build_print(card, counts%has_prints(1), deck, step%node_prints)
       case ('EL PRINT')
-         counts%element_prints = counts%element_prints + 1
-         call build_print(card, counts%element_prints == 1, deck, step%element_prints)
+         call build_print(card, counts%has_prints(2), deck, step%element_prints)
       case ('STABILITY')
-         if (step%analysis /= analysis_coupled .or. counts%analyses == 0) then
-            call deck%error(card%place, '*STABILITY needs a step with *COUPLED '// &
-               'TEMPERATURE-DISPLACEMENT before it: whether a state lasts is decided by heat '// &
-               'and contact together')
-            return
-         end if
+         if (step%analysis /= analysis_coupled .or. counts%analyses == 0) call deck%error( &
+            card%place, '*STABILITY needs a step with *COUPLED TEMPERATURE-DISPLACEMENT before '// &
+            'it: whether a state lasts is decided by heat and contact together')
          step%stability_frequency = huge(1)
          call take_parameter(card, 'FREQUENCY', deck, step%stability_frequency, '>=1')
       case ('CONTACT PRINT')
@@ -169,6 +131,18 @@ contains
       case default   ! of the model, or not known
       end select
    end subroutine build_output
+
+   !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
+   subroutine warn_of_nlgeom(deck, steps)
+      type(deck_type), intent(inout) :: deck
+      type(step_type), intent(inout) :: steps(:)
+      integer, allocatable :: places(:)
+
+      steps%nlgeom = steps%nlgeom .and. solves_mechanics(steps%analysis)
+      places = pack(cards_of(deck%cards, 'STEP'), steps%nlgeom)
+      if (size(places) > 0) call deck%warning(deck%cards%keywords(places(1))%place_of('NLGEOM'), &
+         'NLGEOM is not modelled: displacements and strains stay small')
+   end subroutine warn_of_nlgeom
 
    !> Reads *STEP; output goes on as in the step before.
    subroutine begin_step(card, is_later, before, deck, step)
@@ -351,8 +325,8 @@ contains
       logical :: valid
 
       most = merge(5, 4, step%analysis == analysis_heat)
-      call read_row(data, 'first increment? =1/period? =1/smallest increment?/largest '// &
-         'increment?'//trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
+      call read_row(data, 'first increment? >0 =1/period? >0 =1/smallest increment? >0/largest '// &
+         'increment? >0'//trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
       step%first_increment = given(1)
       step%period = given(2)
       step%smallest_increment = min(smallest_part*step%period, step%first_increment)
@@ -368,13 +342,17 @@ contains
          'largest increment ignored: with DIRECT increments are fixed')
       if (.not. (step%direct .or. data%has(3))) call deck%note('smallest increment not given: '// &
          to_text(step%smallest_increment))
-      comma = decimal_comma(data)
-      if (comma > 0 .and. .not. times_fit(data, step)) then
-         call report_decimal_comma(data, comma, deck)
+      if (valid .and. step%first_increment > step%period) then
+         call deck%error(data%place(1), 'the first increment is longer than the period; give a '// &
+            'shorter one')
          valid = .false.
-      else if (valid) then
-         call check_times(data, step, deck, valid)
+      else if (valid .and. step%smallest_increment > step%first_increment) then
+         call deck%error(data%place(3), 'the smallest increment is longer than the first; give '// &
+            'a shorter one')
+         valid = .false.
       end if
+      comma = decimal_comma(data)
+      if (comma > 0 .and. .not. valid) call report_decimal_comma(data, comma, deck)
       if (.not. valid) then
          step%first_increment = 1.0_dp
          step%period = 1.0_dp
@@ -389,49 +367,5 @@ contains
             ': a smaller part of the period is lost in rounding')
       end if
    end subroutine build_increments
-
-   !> Whether the times of a step are positive, and the first increment lies between the smallest
-   !> and the period.
-   pure logical function times_fit(data, step)
-      type(data_card_type), intent(in) :: data
-      type(step_type), intent(in) :: step
-
-      times_fit = .not. any(not_positive(data, step)) .and. &
-         step%first_increment <= step%period .and. step%smallest_increment <= step%first_increment
-   end function times_fit
-
-   !> Which of the times that the card gives are not positive.
-   pure function not_positive(data, step)
-      type(data_card_type), intent(in) :: data
-      type(step_type), intent(in) :: step
-      logical :: not_positive(4)
-      integer :: i
-
-      not_positive = [step%first_increment, step%period, step%smallest_increment, &
-         step%largest_increment] <= 0.0_dp .and. [(data%has(i), i=1, 4)]
-   end function not_positive
-
-   subroutine check_times(data, step, deck, valid)
-      type(data_card_type), intent(in) :: data
-      type(step_type), intent(in) :: step
-      type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
-      logical :: wrong(4)
-      integer :: i
-
-      valid = times_fit(data, step)
-      wrong = not_positive(data, step)
-      do i = 1, 4
-         if (wrong(i)) call deck%error(data%place(i), 'increments and periods must be positive')
-      end do
-      if (valid .or. any(wrong)) return
-      if (step%first_increment > step%period) then
-         call deck%error(data%place(1), 'the first increment is longer than the period; give a '// &
-            'shorter one')
-      else
-         call deck%error(data%place(3), 'the smallest increment is longer than the first; give '// &
-            'a shorter one')
-      end if
-   end subroutine check_times
 
 end module deck_builder_steps

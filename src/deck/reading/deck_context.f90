@@ -90,7 +90,7 @@ module deck_context
       procedure :: take_name
       procedure :: need_named
       procedure :: take_named
-      procedure :: need_surface
+      procedure :: need_item
       procedure :: need_element_set
       procedure :: need_target
       procedure :: look_up
@@ -173,21 +173,22 @@ contains
       if (card%has(parameter)) call self%need_named(card, parameter, noun, index)
    end subroutine take_named
 
-   !> Index of the surface that a field of a data card names; 0 after an error.
-   subroutine need_surface(self, data, position, what, surface)
+   !> Index of the item that a field of a data card names; 0 after an error.
+   subroutine need_item(self, data, position, noun, what, index)
       class(deck_type), intent(inout) :: self           !! receives errors
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! the field
+      character(*), intent(in) :: noun                  !! what it names, such as surface
       character(*), intent(in) :: what                  !! what the field holds
-      integer, intent(out) :: surface
+      integer, intent(out) :: index
       character(:), allocatable :: name
       logical :: valid
 
-      surface = 0
+      index = 0
       valid = .true.
       call read_field(data, position, what, self, name, valid)
-      if (valid) call self%look_up('surface', to_upper(name), data%place(position), surface)
-   end subroutine need_surface
+      if (valid) call self%look_up(noun, to_upper(name), data%place(position), index)
+   end subroutine need_item
 
    !> Index of the item that has a name; 0 after an error.
    subroutine look_up(self, noun, name, place, index)

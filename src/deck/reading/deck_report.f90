@@ -96,8 +96,8 @@ contains
       call self%error(place, what//' is defined twice, first on '//self%source%words_of(first))
    end subroutine twice
 
-   !> Reports an error from which all others of its card image follow: it takes the place of the
-   !> first one that is reported already, and those to come are dropped.
+   !> Reports an error from which all others of its card image follow: it takes the place of those
+   !> that are reported already, and those to come are dropped.
    subroutine root_cause(self, place, message)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
@@ -107,28 +107,23 @@ contains
       call self%error(place, message)
    end subroutine root_cause
 
-   !> Warns of what is hardly meant. An error on its card image follows from it and is replaced by
+   !> Warns of what is hardly meant. Errors on its card image follow from it and are replaced by
    !> this message.
    subroutine possible_cause(self, place, message)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
+      logical :: follows(self%count)
       integer :: i
 
       if (root_cause_of(self, place) > 0) return
-      do i = 1, self%count
-         if (self%diagnostics(i)%place%image == place%image .and. &
-            self%diagnostics(i)%severity == severity_error) exit
-      end do
-      if (i > self%count) then
-         call add(self, severity_warning, place, message)
-         i = self%count
-      end if
-      self%diagnostics(i)%place = place
-      self%diagnostics(i)%message = message
-      self%diagnostics(i)%group = ''
-      self%diagnostics(i)%places = 1
-      self%diagnostics(i)%is_root_cause = .true.
+      follows = [(self%diagnostics(i)%place%image == place%image .and. &
+         self%diagnostics(i)%severity == severity_error, i=1, self%count)]
+      if (any(follows)) self%diagnostics = pack(self%diagnostics(:self%count), .not. follows)
+      self%count = self%count - count(follows)
+      self%errors = self%errors - count(follows)
+      call add(self, merge(severity_error, severity_warning, any(follows)), place, message)
+      self%diagnostics(self%count)%is_root_cause = .true.
    end subroutine possible_cause
 
    !> Makes the warnings of a group errors, in place of the one that follows from them.
@@ -422,9 +417,9 @@ contains
             return
          end do
       end if
-      if (.not. allocated(self%diagnostics)) allocate(self%diagnostics(most_errors))
+      if (.not. allocated(self%diagnostics)) allocate(self%diagnostics(0))
       if (self%count == size(self%diagnostics)) then
-         allocate(more(2*self%count))
+         allocate(more(2*self%count + most_errors))
          more(:self%count) = self%diagnostics
          call move_alloc(more, self%diagnostics)
       end if
