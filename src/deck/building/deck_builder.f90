@@ -13,7 +13,6 @@ module deck_builder
    use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures, &
       build_time_points
    use deck_builder_interactions, only: build_interactions
-   use deck_builder_lines, only: build_lines, split_line_sets
    use deck_builder_materials, only: build_materials, build_orientations, build_sections
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_node_surfaces, only: build_node_surfaces
@@ -29,7 +28,6 @@ module deck_builder
    use mesh_checks, only: check_folds
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
-   use mesh, only: set_type
    use model, only: model_type
    use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use quantity_types, only: quantity_type
@@ -110,26 +108,21 @@ contains
    !> consist of the nodes of the others.
    subroutine build_mesh(deck)
       type(deck_type), intent(inout) :: deck
-      type(set_type), allocatable :: sets(:)
       integer, allocatable :: corners(:, :)
       integer :: errors
 
       call build_nodes(deck)
-      call build_lines(deck)
       call build_elements(deck)
       ! ORDER=1 drops nodes between corners; refined elements have those of the deck at corners.
       allocate (corners(2, size(deck%mesh%node_number)), source=0)
       if (deck%order == 1 .and. deck%levels == 0) corners = side_corners(deck%mesh)
       deck%dropped = corners(1, :) > 0
       errors = deck%error_count()
-      call build_sets('element', deck, sets)
-      call split_line_sets(size(deck%mesh%element_number), sets, deck%line_sets)
-      call move_alloc(sets, deck%mesh%element_sets)
+      call build_sets('element', deck)
       deck%sets_sound = deck%error_count() == errors .and. .not. deck%has_lost('element')
       call build_surfaces(deck)
       errors = deck%error_count()
-      call build_sets('node', deck, sets)
-      call move_alloc(sets, deck%mesh%node_sets)
+      call build_sets('node', deck)
       call build_node_surfaces(deck)
       deck%sets_sound = deck%sets_sound .and. deck%error_count() == errors .and. &
          .not. deck%has_lost('node set')

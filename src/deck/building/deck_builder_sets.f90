@@ -4,7 +4,7 @@ module deck_builder_sets
    use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side
-   use deck_builder_lines, only: is_line_card
+   use deck_builder_mesh, only: is_line_card
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type, item_index_type, place_list_type, read_target
    use deck_structure, only: cards_of
@@ -32,10 +32,10 @@ contains
 
    !> Builds all sets of nodes or of elements, lines among them; a name that is on several cards
    !> is one set.
-   subroutine build_sets(noun, deck, sets)
+   subroutine build_sets(noun, deck)
       character(*), intent(in) :: noun                           !! node or element
       type(deck_type), intent(inout) :: deck
-      type(set_type), allocatable, intent(out) :: sets(:)
+      type(set_type), allocatable :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
       integer :: count, first(2), i, j, k, kind
@@ -71,7 +71,29 @@ contains
          call move_alloc(draft%items(i)%name, sets(i)%name)
          sets(i)%members = unique_sorted(draft%members(i)%numbers())
       end do
+      if (noun == 'node') then
+         call move_alloc(sets, deck%mesh%node_sets)
+      else
+         call split_line_sets(size(deck%mesh%element_number), sets, deck%line_sets)
+         call move_alloc(sets, deck%mesh%element_sets)
+      end if
    end subroutine build_sets
+
+   !> Parts sets of elements and lines: the elements stay, the lines are kept beside them.
+   subroutine split_line_sets(elements, sets, line_sets)
+      integer, intent(in) :: elements                             ! number of elements
+      type(set_type), intent(inout) :: sets(:)  ! members are elements and, behind them, lines
+      type(set_type), allocatable, intent(out) :: line_sets(:)    ! indexes of lines; may be empty
+      integer :: i
+
+      allocate (line_sets(size(sets)))
+      do i = 1, size(sets)
+         line_sets(i)%members = pack(sets(i)%members, sets(i)%members > elements) - elements
+         if (size(line_sets(i)%members) == 0) cycle
+         sets(i)%members = pack(sets(i)%members, sets(i)%members <= elements)
+         sets(i)%of_lines = size(sets(i)%members) == 0
+      end do
+   end subroutine split_line_sets
 
    !> The nodes that a *NODE card gives, of which some may be given again elsewhere.
    function nodes_of(card, numbers) result(nodes)
