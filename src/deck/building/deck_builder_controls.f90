@@ -303,8 +303,8 @@ contains
       if (i > 0) then
          if (all(quantities /= meanings(i))) quantities = [quantities, meanings(i)]
       else if (index(foreign, '/'//key//'/') > 0) then
-         call deck%warning(data%place(position), key//' of *'//card%name//' is not computed: it '// &
-            'is not printed')
+         call deck%warning(data%place(position), key//' of *'//card%name//' is not '// &
+            'computed: it is not printed')
       else
          call deck%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
             ' is not printed'//known_choices(key, known))

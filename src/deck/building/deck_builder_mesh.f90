@@ -330,8 +330,8 @@ contains
          'is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')
    end subroutine warn_of_gmsh
 
-   !> Indexes of the nodes of an element or a line; one that does not exist is an error, and 0. Of the
-   !> elements of a keyword card that have too many fields or too few, the first is reported: its
+   !> Indexes of the nodes of an element or a line; one that does not exist is an error, and 0. Of
+   !> the elements of a keyword card that have too many fields or too few, the first is reported: its
    !> TYPE= may be wrong.
    subroutine read_nodes(data, layout, keyword, deck, nodes, valid)
       type(data_card_type), intent(in) :: data

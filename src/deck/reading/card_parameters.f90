@@ -91,35 +91,30 @@ contains
       if (is_whole) then
          call read_integer(string, whole, valid)
          number = whole
-         fault = integer_fault(string)
+         if (.not. valid) fault = integer_fault(string)
       else
          call read_real(string, number, valid)
-         fault = real_fault(string)
+         if (.not. valid) fault = real_fault(string)
       end if
       if (.not. valid) then
          fault = ''''//string//''' '//fault//'; expected: '//what
          return
       end if
+      fault = ''
       select case (limit)
       case ('>0')
-         valid = number > 0.0_dp
-         fault = what//' must be positive'
+         if (number <= 0.0_dp) fault = ' must be positive'
       case ('>=0')
-         valid = number >= 0.0_dp
-         fault = what//' must not be negative'
+         if (number < 0.0_dp) fault = ' must not be negative'
       case ('>=1', '>=2')
-         valid = number >= index('12', limit(3:))
-         fault = what//' must be at least '//limit(3:)
+         if (number < index('12', limit(3:))) fault = ' must be at least '//limit(3:)
       case ('>0 <=1')
-         valid = number > 0.0_dp .and. number <= 1.0_dp
-         fault = what//' must be above 0 and at most 1'
+         if (number <= 0.0_dp .or. number > 1.0_dp) fault = ' must be above 0 and at most 1'
       case ('>=0 <=1')
-         valid = number >= 0.0_dp .and. number <= 1.0_dp
-         fault = what//' must be between 0 and 1'
+         if (number < 0.0_dp .or. number > 1.0_dp) fault = ' must be between 0 and 1'
       end select
-      if (.not. valid) return
-      value = number
-      fault = ''
+      if (len(fault) == 0) value = number
+      if (len(fault) > 0) fault = what//fault
    end subroutine read_number
 
    !> The one of several words that the value of a parameter is, or begins as in Abaqus; empty where

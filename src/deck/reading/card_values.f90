@@ -179,9 +179,12 @@ contains
       integer :: behind, last
       logical :: is_given
 
-      behind = index(field//' =', ' =')
-      call read_real(field(min(behind + 2, len(field) + 1):), rule%default, is_given)
-      last = index(field(:behind - 1)//' >', ' >') - 1
+      rule%default = 0.0_dp
+      behind = index(field, ' =')
+      if (behind > 0) call read_real(field(behind + 2:), rule%default, is_given)
+      if (behind == 0) behind = len(field) + 1
+      last = index(field(:behind - 1), ' >') - 1
+      if (last < 0) last = behind - 1
       rule%limit = adjustl(field(last + 1:behind - 1))
       rule%is_needed = field(last:last) /= '?'
       if (.not. rule%is_needed) last = last - 1
