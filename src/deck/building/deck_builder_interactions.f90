@@ -78,12 +78,11 @@ contains
       type(deck_type), intent(inout) :: deck
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
-      integer :: behavior, friction, heat, k, radiation, table
+      character(*), parameter :: once(4) = [character(19) :: 'FRICTION', 'SURFACE BEHAVIOR', &
+         'GAP HEAT GENERATION', 'GAP RADIATION']
+      integer :: i, k, table, taken(0:size(once))
 
-      behavior = 0
-      friction = 0
-      heat = 0
-      radiation = 0
+      taken = 0
       table = 0
       do k = place + 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
@@ -93,18 +92,18 @@ contains
             if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
                law_place = card%data(1)%place(1)
             end if
+            i = findloc(once == card%name, .true., dim=1)
+            if (i > 0 .and. taken(i) > 0) call deck%error(card%place, 'a second *'//card%name// &
+               ' in one surface interaction; the first is on '// &
+               deck%source%words_of(deck%cards%keywords(taken(i))%place)//': leave one of them out')
+            taken(i) = k
             select case (card%name)
             case ('FRICTION')
-               call count_once(k, friction, deck)
                call build_friction(card, deck, interaction%friction)
             case ('SURFACE BEHAVIOR')
-               call count_once(k, behavior, deck)
                call build_behavior(card, deck, interaction%overlap)
             case ('GAP HEAT GENERATION')
-               call count_once(k, heat, deck)
                call build_friction_heat(card, deck, interaction%heat)
-            case ('GAP RADIATION')
-               call count_once(k, radiation, deck)
             case ('GAP LAW')
                call build_gap_law(card, interaction%name, deck, interaction%law)
             case ('GAP CONDUCTANCE')
@@ -126,7 +125,7 @@ contains
       end do
       if (table > 0) call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
          .false., deck, interaction%law)
-      if (radiation > 0) call build_gap_radiation(deck%cards%keywords(radiation), deck, &
+      if (taken(4) > 0) call build_gap_radiation(deck%cards%keywords(taken(4)), deck, &
          interaction%law)
    end subroutine build_laws
 
@@ -142,20 +141,6 @@ contains
          has_pressure = has_pressure .or. cards%keywords(k)%has('PRESSURE')
       end do
    end function has_pressure
-
-   !> Takes the keyword card of a law that a surface interaction has once.
-   subroutine count_once(k, taken, deck)
-      integer, intent(in) :: k
-      integer, intent(inout) :: taken         ! the card before, 0 for none; receives this one
-      type(deck_type), intent(inout) :: deck
-
-      associate (card => deck%cards%keywords(k))
-         if (taken > 0) call deck%error(card%place, 'a second *'//card%name//' in one surface '// &
-            'interaction; the first is on '// &
-            deck%source%words_of(deck%cards%keywords(taken)%place)//': leave one of them out')
-      end associate
-      taken = k
-   end subroutine count_once
 
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
    subroutine build_friction(card, deck, friction)
@@ -256,8 +241,7 @@ contains
       case ('EXPONENTIAL', 'TABULAR')
          if (size(card%data) == 0) then
             call deck%error(card%place, '*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE='//kind// &
-               ' has no data: '//trim(merge('c0, p0                                ', &
-               'pressure, overlap; a card for each row', kind == 'EXPONENTIAL')))
+               ' needs data: one card c0, p0, or rows of pressure, overlap')
          else if (kind == 'EXPONENTIAL') then
             ! The pressure at the clearance c0 is a hundredth of p0.
             call read_row(card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)

@@ -19,15 +19,15 @@ module deck_builder_materials
    private
    public :: build_materials, build_orientations, build_sections
 
-   ! Constants of *ELASTIC, as read_row.
+   ! Constants of *ELASTIC, as read_row; one layout a card.
    character(*), parameter :: isotropic_layout = 'Young''s modulus >0/Poisson''s ratio'
-   character(*), parameter :: engineering_layout = &
-      'E1 >0/E2 >0/E3 >0/nu12/nu13/nu23/G12 >0/G13 >0/G23 >0'
-   character(*), parameter :: orthotropic_layout = &
-      'D1111/D1122/D2222/D1133/D2233/D3333/D1212/D1313/D2323'
-   character(*), parameter :: anisotropic_layout = &
-      'D1111/D1122/D2222/D1133/D2233/D3333/D1112/D2212/D3312/D1212/D1113/D2213/D3313/D1213/'// &
-      'D1313/D1123/D2223/D3323/D1223/D1323/D2323'
+   character(*), parameter :: engineering_layout(2) = [character(51) :: &
+      'E1 >0/E2 >0/E3 >0/nu12/nu13/nu23/G12 >0/G13 >0', 'G23 >0']
+   character(*), parameter :: orthotropic_layout(2) = [character(47) :: &
+      'D1111/D1122/D2222/D1133/D2233/D3333/D1212/D1313', 'D2323']
+   character(*), parameter :: anisotropic_layout(3) = [character(47) :: &
+      'D1111/D1122/D2222/D1133/D2233/D3333/D1112/D2212', &
+      'D3312/D1212/D1113/D2213/D3313/D1213/D1313/D1123', 'D2223/D3323/D1223/D1323/D2323']
 
    integer, parameter :: per_card = 8   !! constants of a property on a card
 
@@ -84,9 +84,9 @@ contains
       case ('EXPANSION')
          material%has_expansion = .true.
          if (is_isotropic(card, deck)) then
-            call read_property('coefficient of expansion', card, deck, property, valid)
+            call read_property(['coefficient of expansion'], card, deck, property, valid)
          else
-            call read_property('alpha11/alpha22/alpha33', card, deck, property, valid)
+            call read_property(['alpha11/alpha22/alpha33'], card, deck, property, valid)
          end if
          call take_parameter(card, 'ZERO', deck, material%no_strain)
          if (valid .and. card%has('ZERO')) then
@@ -96,16 +96,16 @@ contains
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
          if (is_isotropic(card, deck)) then
-            call read_property('conductivity >0', card, deck, property, valid)
+            call read_property(['conductivity >0'], card, deck, property, valid)
          else
             call build_conductivity(card, deck, property, valid)
          end if
       case ('SPECIFIC HEAT')
          material%has_specific_heat = .true.
-         call read_property('specific heat >0', card, deck, property, valid)
+         call read_property(['specific heat >0'], card, deck, property, valid)
       case default
          material%has_density = .true.
-         call read_property('density >0', card, deck, property, valid)
+         call read_property(['density >0'], card, deck, property, valid)
       end select
       if (valid) call set_property(material, property)
    end subroutine build_property
@@ -127,7 +127,7 @@ contains
       type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                       ! whether it has no errors
       character(:), allocatable :: kind
-      integer :: cards, row
+      integer :: row
 
       kind = choice(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/'// &
          'ANISO/ANISOTROPIC', deck, '')
@@ -144,12 +144,11 @@ contains
          property%symmetry = anisotropic
          call read_property(anisotropic_layout, card, deck, property, valid)
       case default
-         call read_property(isotropic_layout, card, deck, property, valid)
+         call read_property([isotropic_layout], card, deck, property, valid)
       end select
-      cards = cards_of_row(property)
       do row = 1, size(property%temperature)
          if (.not. valid .and. property%symmetry /= isotropic) exit
-         associate (data => card%data(1 + (row - 1)*cards))
+         associate (data => card%data(1 + (row - 1)*((size(property%names) - 1)/per_card + 1)))
             call check_elasticity(data%place(merge(2, 1, property%symmetry == isotropic)), &
                property, row, deck, valid)
          end associate
@@ -203,8 +202,8 @@ contains
 
       fields = size(card%data(1)%fields)
       n = min(max(fields, 2), 3)
-      if (n == 2) call read_property('K11 >0/K22 >0', card, deck, property, valid)
-      if (n == 3) call read_property('K11 >0/K22 >0/K33', card, deck, property, valid)
+      if (n == 2) call read_property(['K11 >0/K22 >0'], card, deck, property, valid)
+      if (n == 3) call read_property(['K11 >0/K22 >0/K33'], card, deck, property, valid)
       if (n == 3) call deck%note('*CONDUCTIVITY: K33 is ignored')
       if (.not. valid) return
       if (n == 3) then
@@ -220,82 +219,74 @@ contains
       property%values = property%values(:2, :)
    end subroutine build_conductivity
 
-   pure integer function cards_of_row(property)
-      type(property_type), intent(in) :: property          ! with its names
-
-      cards_of_row = 1 + (size(property%names) - 1)/per_card
-   end function cards_of_row
-
-   !> Reads the rows of a property: constants, eight on a card, and the temperature behind the last.
-   subroutine read_property(layout, card, deck, property, valid)
-      character(*), intent(in) :: layout                    ! of the constants, as read_row
+   !> Reads the rows of a property: constants, eight on a card, and the temperature behind the last,
+   !> which means nothing where there is one row.
+   subroutine read_property(layouts, card, deck, property, valid)
+      character(*), intent(in) :: layouts(:)                ! of the cards of a row, as read_row
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                         ! whether all could be read
       type(string_type), allocatable :: fields(:)
-      integer :: i, n, row
-
-      fields = split_words(layout)
-      allocate (property%names(size(fields)))
-      do i = 1, size(fields)
-         property%names(i) = fields(i)%value(:index(fields(i)%value//' >', ' >') - 1)
-      end do
-      n = (size(card%data) - 1)/cards_of_row(property) + 1
-      allocate (property%values(size(fields), n), property%temperature(n), source=0.0_dp)
-      valid = .not. card%flawed
-      do row = 1, merge(n, 0, valid)
-         call read_property_row(fields, row, card, deck, property, valid)
-      end do
-   end subroutine read_property
-
-   !> Reads one row, whose temperature means nothing where it is the only one.
-   subroutine read_property_row(fields, row, card, deck, property, valid)
-      type(string_type), intent(in) :: fields(:)            ! (constants)
-      integer, intent(in) :: row
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(property_type), intent(inout) :: property
-      logical, intent(inout) :: valid                       ! false after an error
-      character(:), allocatable :: layout
+      character(:), allocatable :: ending
+      integer :: c, i, n, rows
       real(dp) :: given(per_card + 1)
-      integer :: i, first, last, place
       logical :: sound
 
-      place = (row - 1)*cards_of_row(property)
-      do first = 1, size(fields), per_card
-         place = place + 1
-         if (place > size(card%data)) then
+      n = 0
+      allocate (property%names(per_card*size(layouts)))
+      do c = 1, size(layouts)
+         fields = split_words(trim(layouts(c)))
+         do i = 1, size(fields)
+            n = n + 1
+            property%names(n) = fields(i)%value(:index(fields(i)%value//' >', ' >') - 1)
+         end do
+      end do
+      property%names = property%names(:n)
+      rows = (size(card%data) - 1)/size(layouts) + 1
+      allocate (property%values(n, rows), property%temperature(rows), source=0.0_dp)
+      valid = .not. card%flawed
+      if (.not. valid) return
+      ending = ''
+      do i = 1, rows*size(layouts)
+         c = modulo(i - 1, size(layouts)) + 1
+         n = per_card*(c - 1)                               ! constants on the cards before
+         if (i > size(card%data)) then
             call deck%error(card%data(size(card%data))%end, 'a card is missing after this one: '// &
-               trim(property%names(first)))
+               trim(property%names(n + 1)))
             valid = .false.
             return
          end if
-         last = min(first + per_card - 1, size(fields))
-         layout = fields(first)%value
-         do i = first + 1, last
-            layout = layout//'/'//fields(i)%value
-         end do
-         if (last == size(fields)) layout = layout//'/temperature'// &
-            trim(merge('?', ' ', size(property%temperature) == 1))
-         call read_row(card%data(place), layout, deck, given, sound)
-         property%values(first:last, row) = given(:last - first + 1)
-         property%temperature(row) = given(last - first + 2)
+         if (c == size(layouts)) ending = '/temperature'//trim(merge('?', ' ', rows == 1))
+         call read_row(card%data(i), trim(layouts(c))//ending, deck, given, sound)
+         ending = ''
          valid = valid .and. sound
+         associate (row => (i - 1)/size(layouts) + 1, last => min(n + per_card, size(property%names)))
+            property%values(n + 1:last, row) = given(:last - n)
+            property%temperature(row) = given(last - n + 1)
+            if (c == size(layouts)) call check_temperature(card%data(i), last - n + 1, row, deck, &
+               property%temperature, valid)
+         end associate
       end do
-      associate (data => card%data(place), behind => size(fields) - per_card* &
-         (cards_of_row(property) - 1) + 1, temperature => property%temperature)
-         if (size(temperature) == 1 .and. data%has(behind)) then
-            call deck%note('the temperature field of a single property row is ignored')
-            call check_unneeded_temperature(data, behind, deck)
-         else if (row > 1 .and. valid) then
-            valid = temperature(row) > temperature(row - 1)
-            if (.not. valid) call deck%error(data%place(behind), 'the temperatures of the rows '// &
-               'must ascend: '//to_text(temperature(row))//' follows '// &
-               to_text(temperature(row - 1)))
-         end if
-      end associate
-   end subroutine read_property_row
+   end subroutine read_property
+
+   !> The temperatures of rows ascend.
+   subroutine check_temperature(data, field, row, deck, temperature, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: field, row
+      type(deck_type), intent(inout) :: deck
+      real(dp), intent(in) :: temperature(:)                ! (rows)
+      logical, intent(inout) :: valid
+
+      if (size(temperature) == 1 .and. data%has(field)) then
+         call deck%note('the temperature field of a single property row is ignored')
+         call check_unneeded_temperature(data, field, deck)
+      else if (row > 1 .and. valid) then
+         valid = temperature(row) > temperature(row - 1)
+         if (.not. valid) call deck%error(data%place(field), 'the temperatures of the rows must '// &
+            'ascend: '//to_text(temperature(row))//' follows '//to_text(temperature(row - 1)))
+      end if
+   end subroutine check_temperature
 
    !> Builds all orientations.
    subroutine build_orientations(deck)

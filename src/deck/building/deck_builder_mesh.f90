@@ -331,8 +331,8 @@ contains
    end subroutine warn_of_gmsh
 
    !> Indexes of the nodes of an element or a line; one that does not exist is an error, and 0. Of
-   !> the elements of a keyword card that have too many fields or too few, the first is reported: its
-   !> TYPE= may be wrong.
+   !> the elements of a keyword card that have too many fields or too few, the first is reported:
+   !> its TYPE= may be wrong.
    subroutine read_nodes(data, layout, keyword, deck, nodes, valid)
       type(data_card_type), intent(in) :: data
       character(*), intent(in) :: layout               ! what the card is

@@ -14,6 +14,9 @@ module deck_builder_options
    private
    public :: build_options, build_load_axis, build_regions
 
+   !> Degrees of freedom 1, 2 and 11.
+   character(*), parameter :: dof_names(3) = [character(11) :: 'u_x', 'u_y', 'temperature']
+
    integer, parameter :: most_levels = 11   !! *REFINE: one element more often divided is too many
 
 contains
@@ -183,51 +186,18 @@ contains
       end if
       deck%model%load_node = members(1)
       deck%model%load_dof = dof
-      deck%model%load_label = dof_name(dof)//' of '//name
+      deck%model%load_label = trim(dof_names(min(dof, 3)))//' of '//name
       if (.not. (deck%boundaries_sound .and. deck%sets_sound)) return
-      if (is_prescribed(deck)) return
-      do i = 1, deck%boundaries%count
-         if (deck%boundaries%items(i)%component /= dof) cycle
-         call deck%error(deck%load_place, 'LOAD= follows a value that no *BOUNDARY prescribes: '// &
-            dof_name(dof)//' of '//name)
-         return
-      end do
-      if (deck%has_lost('*STEP')) return
-      call deck%error(deck%cards%last, 'no *BOUNDARY prescribes any '//dof_name(dof)//' '// &
-         '(degree of freedom '//to_text(dof)//'), which LOAD='//deck%load_set//' of *OPTIONS '// &
-         'follows; give the values, as '//name//', '//to_text(dof)//', '//to_text(dof)//', value')
-   end subroutine build_load_axis
-
-   pure function dof_name(dof) result(name)
-      integer, intent(in) :: dof
-      character(:), allocatable :: name
-
-      select case (dof)
-      case (1)
-         name = 'u_x'
-      case (2)
-         name = 'u_y'
-      case default
-         name = 'temperature'
-      end select
-   end function dof_name
-
-   !> Whether a *BOUNDARY prescribes the degree of freedom of the load axis at its node.
-   pure logical function is_prescribed(deck)
-      type(deck_type), intent(in) :: deck
-      integer :: i
-
-      is_prescribed = .true.
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            if (request%component /= deck%model%load_dof) cycle
-            if (request%item == deck%model%load_node) return
-            if (request%set == 0) cycle
-            if (any(deck%mesh%node_sets(request%set)%members == deck%model%load_node)) return
+            if (request%component == dof .and. any(request%members(deck%mesh%node_sets) == &
+               members(1))) return
          end associate
       end do
-      is_prescribed = .false.
-   end function is_prescribed
+      if (.not. deck%has_lost('*STEP')) call deck%error(deck%load_place, 'no *BOUNDARY prescribes '// &
+         deck%model%load_label//', which LOAD= follows; give the value, as '//name//', '// &
+         to_text(dof)//', '//to_text(dof)//', value')
+   end subroutine build_load_axis
 
    !> Takes the *REFINE cards that name a surface or a set.
    subroutine build_regions(deck)

@@ -62,11 +62,9 @@ contains
             given%drawing%rotation = coupling%rotation
          end associate
       end do
-      if (surface > 0 .or. coupling%element_set > 0 .or. size(coupling%node_sets) > 0) return
-      if (card%has('NSET') .or. card%has('ELSET') .or. card%has('TIE NSET') .or. &
-         card%has('PIN NSET') .or. card%has('ANALYTICAL SURFACE')) return
-      call deck%error(card%place, '*RIGID BODY names nothing that is rigid; give ELSET=, NSET= '// &
-         'or ANALYTICAL SURFACE=')
+      if (.not. (card%has('ELSET') .or. card%has('ANALYTICAL SURFACE') .or. any([(card%has( &
+         trim(names(i))), i=1, size(names))]))) call deck%error(card%place, '*RIGID BODY names '// &
+         'nothing that is rigid; give ELSET=, NSET= or ANALYTICAL SURFACE=')
    end subroutine build_rigid_body
 
    !> Refuses a rigid surface where faces of elements are needed.
