@@ -1,7 +1,7 @@
 !> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied;
 !> *CHANGE FRICTION, *MODEL CHANGE and *CONTACT INTERFERENCE -> what a step changes of contact.
 module deck_builder_contact
-   use card_parameters, only: choice, need_parameter, take_parameter
+   use card_parameters, only: choice, need_parameter, needed_choice, take_parameter
    use card_values, only: check_extra, read_field
    use cards, only: data_card_type, keyword_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
@@ -64,7 +64,6 @@ contains
       if (i == 0) return
       if (deck%model%contacts(i)%has_clearance) call deck%error(card%place, 'the clearance of '// &
          'contact pair '//deck%model%contacts(i)%name//' is given twice')
-      if (deck%model%contacts(i)%has_clearance) return
       deck%model%contacts(i)%has_clearance = .true.
       deck%model%contacts(i)%clearance = value
    end subroutine build_clearance
@@ -255,13 +254,8 @@ contains
       character(:), allocatable :: kind
       integer :: j
 
-      call need_parameter(card, 'TYPE', deck, kind)
-      if (kind == 'ELEMENT') then
-         call deck%error(card%place_of('TYPE'), 'TYPE=ELEMENT is refused: elements are the '// &
-            'same in all steps')
-         return
-      end if
-      kind = choice(card, 'TYPE', 'CONTACT PAIR', deck, '')
+      kind = needed_choice(card, 'TYPE', 'CONTACT PAIR', deck)
+      if (kind == '') return
       change%removes = card%has('REMOVE')
       if ((change%removes .eqv. card%has('ADD')) .and. .not. card%flawed) then
          call deck%error(card%place, '*MODEL CHANGE needs either ADD or REMOVE')

@@ -4,8 +4,9 @@ module deck_builder_element_loads
    use card_values, only: read_field, plane_vector, read_row
    use cards, only: data_card_type
    use deck_builder_rigid, only: need_faces
+   use deck_builder_sets, only: check_face
    use deck_context, only: deck_type
-   use element_kinds, only: axisymmetric, element_corner_count, side_nodes
+   use element_kinds, only: axisymmetric, side_nodes
    use kinds, only: dp
    use load_requests, only: request_type
    use spelling, only: known_choices
@@ -162,7 +163,6 @@ contains
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer, allocatable :: elements(:)
-      integer :: i
 
       if (.not. valid) return
       elements = request%members(deck%mesh%element_sets)
@@ -171,17 +171,7 @@ contains
          if (.not. valid) call deck%error(data%place(2), 'BR and BZ are forces on axisymmetric '// &
             'elements; those of a plane are BX and BY')
       end if
-      if (scan(label, '1234') == 0) return
-      do i = 1, size(elements)
-         if (.not. deck%element_valid(elements(i))) cycle
-         associate (sides => element_corner_count(deck%mesh%element_kind(elements(i))))
-            if (request%component <= sides) cycle
-            call deck%error(data%place(2), 'element '// &
-               to_text(deck%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
-         end associate
-         valid = .false.
-         return
-      end do
+      if (scan(label, '1234') > 0) call check_face(data, elements, request%component, deck, valid)
    end subroutine check_elements
 
    !> Adds a load, of a surface to each of its faces.

@@ -203,30 +203,33 @@ contains
          size(cards_of(deck%cards, 'RIGID BODY'))))
       n = 0
       do k = 1, size(deck%cards%keywords)
-         if (deck%cards%keywords(k)%name == 'RIGID BODY') then
-            n = n + 1
-            call begin_coupling(deck%cards%keywords(k), n, deck)
-            if (deck%cards%keywords(k)%has('ROT NODE')) call find_reference('ROT NODE', &
-               deck%cards%keywords(k), deck, deck%model%couplings(n)%rotation_node)
-            call build_rigid_body(deck%cards%keywords(k), deck, deck%model%couplings(n))
-         else if (deck%cards%keywords(k)%name == 'COUPLING') then
-            n = n + 1
-            call begin_coupling(deck%cards%keywords(k), n, deck)
-            call deck%need_named(deck%cards%keywords(k), 'SURFACE', 'surface', &
-               deck%model%couplings(n)%surface)
-            call need_faces(deck%cards%keywords(k)%place_of('SURFACE'), 'it follows the '// &
-               'reference node of its *RIGID BODY', deck, deck%model%couplings(n)%surface)
-            if (is_keyword(deck%cards, k + 1, 'KINEMATIC')) cycle
-            call deck%error(deck%cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
-               'directly follow *COUPLING and name the degrees of freedom')
-         else if (deck%cards%keywords(k)%name == 'KINEMATIC') then
-            if (is_keyword(deck%cards, k - 1, 'COUPLING')) then
-               call read_degrees(deck%cards%keywords(k), deck, deck%model%couplings(n))
-            else
-               call deck%error(deck%cards%keywords(k)%place, '*KINEMATIC must directly follow '// &
-                  '*COUPLING')
+         associate (card => deck%cards%keywords(k))
+            if (any(card%name == [character(10) :: 'RIGID BODY', 'COUPLING'])) then
+               n = n + 1
+               call begin_coupling(card, n, deck)
             end if
-         end if
+            select case (card%name)
+            case ('RIGID BODY')
+               if (card%has('ROT NODE')) call find_reference('ROT NODE', card, deck, &
+                  deck%model%couplings(n)%rotation_node)
+               call build_rigid_body(card, deck, deck%model%couplings(n))
+            case ('COUPLING')
+               call deck%need_named(card, 'SURFACE', 'surface', deck%model%couplings(n)%surface)
+               call need_faces(card%place_of('SURFACE'), 'it follows the reference node of its '// &
+                  '*RIGID BODY', deck, deck%model%couplings(n)%surface)
+               if (.not. is_keyword(deck%cards, k + 1, 'KINEMATIC')) call deck%error(card%place, &
+                  '*KINEMATIC is missing: it must directly follow *COUPLING and name the '// &
+                  'degrees of freedom')
+            case ('KINEMATIC')
+               if (is_keyword(deck%cards, k - 1, 'COUPLING')) then
+                  call read_degrees(card, deck, deck%model%couplings(n))
+               else
+                  call deck%error(card%place, '*KINEMATIC must directly follow *COUPLING')
+               end if
+            case default
+               cycle
+            end select
+         end associate
       end do
       if (deck%error_count() > errors) call deck%lose('equation')
       call check_rigid_masters(deck)

@@ -11,7 +11,7 @@ module deck_builder_histories
    use element_kinds, only: kind_count, plane_stress
    use kinds, only: dp
    use load_requests, only: request_type, target_type
-   use text, only: read_integer, to_text, to_upper
+   use text, only: read_integer, to_text
    implicit none
    private
    public :: build_amplitudes, build_time_points, build_temperatures, build_initial_stresses
@@ -86,23 +86,15 @@ contains
       type(amplitude_type), intent(inout) :: amplitude
       character(:), allocatable :: kind, none
       real(dp) :: begin, interval
-      integer :: i
+      integer :: errors, i
 
       amplitude%total_time = &
          choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
       none = choice(card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
-      kind = to_upper(card%text('DEFINITION'))
-      select case (kind)
-      case ('PERIODIC', 'MODULATED', 'DECAY', 'SOLUTION DEPENDENT', 'ACTUATOR', 'SPECTRUM', &
-         'USER', 'BUBBLE')
-         call deck%error(card%place_of('DEFINITION'), 'DEFINITION='//kind//' is refused; give '// &
-            'times and values')
-         kind = ''
-      case default
-         kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
-      end select
+      errors = deck%error_count()
+      kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
       amplitude%smooth = kind == 'SMOOTH STEP'
-      if (len(kind) == 0) then
+      if (deck%error_count() > errors) then
          allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
       else if (kind == 'EQUALLY SPACED') then
          begin = 0.0_dp

@@ -147,8 +147,8 @@ contains
       if (card%has('FILM AMPLITUDE')) coefficient = 'follows '//to_upper(card%text( &
          'FILM AMPLITUDE'))
       if (card%has('AMPLITUDE')) sink = 'follows '//to_upper(card%text('AMPLITUDE'))
-      call deck%note('*'//card%name//': the coefficient '//coefficient//', the sink temperature '// &
-         sink)
+      call deck%note('*'//card%name//': the coefficient '//coefficient//', the sink '// &
+         'temperature '//sink)
    end subroutine note_film
 
    !> *CLOAD, *CFLUX: node or set, degree of freedom, value; *TEMPERATURE: node or set, value.

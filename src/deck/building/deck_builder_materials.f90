@@ -261,7 +261,8 @@ contains
          call read_row(card%data(i), trim(layouts(c))//ending, deck, given, sound)
          ending = ''
          valid = valid .and. sound
-         associate (row => (i - 1)/size(layouts) + 1, last => min(n + per_card, size(property%names)))
+         associate (row => (i - 1)/size(layouts) + 1, last => min(n + per_card, size( &
+            property%names)))
             property%values(n + 1:last, row) = given(:last - n)
             property%temperature(row) = given(last - n + 1)
             if (c == size(layouts)) call check_temperature(card%data(i), last - n + 1, row, deck, &
@@ -283,8 +284,8 @@ contains
          call check_unneeded_temperature(data, field, deck)
       else if (row > 1 .and. valid) then
          valid = temperature(row) > temperature(row - 1)
-         if (.not. valid) call deck%error(data%place(field), 'the temperatures of the rows must '// &
-            'ascend: '//to_text(temperature(row))//' follows '//to_text(temperature(row - 1)))
+         if (.not. valid) call deck%error(data%place(field), 'the temperatures of the rows '// &
+            'must ascend: '//to_text(temperature(row))//' follows '//to_text(temperature(row - 1)))
       end if
    end subroutine check_temperature
 

@@ -15,7 +15,7 @@ module deck_builder_mesh
    use kinds, only: dp
    use mesh, only: add_node, extent_of, nodes_per_element
    use sorting, only: repeated
-   use text, only: read_integer, to_text, to_upper
+   use text, only: to_text, to_upper
    implicit none
    private
    public :: build_nodes, build_elements, is_line_card
@@ -146,11 +146,9 @@ contains
    !> drawing or of a rigid body.
    subroutine check_heights(deck)
       type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
       logical :: has_element(0:size(deck%mesh%node_number))
       real(dp) :: rounding
-      integer :: e, i, j, k, number
-      logical :: valid
+      integer :: e, i
 
       if (size(deck%mesh%node_number) == 0) return
       rounding = height_rounding*extent_of(deck%mesh%coordinates)
@@ -158,21 +156,10 @@ contains
       do e = 1, size(deck%mesh%element_number)
          if (deck%element_valid(e)) has_element(deck%mesh%element_nodes(:, e)) = .true.
       end do
-      has_element(0) = .false.
-      if (.not. any(has_element(1:size(deck%node_height)) .and. &
-         abs(deck%node_height) > rounding)) return
-      places = cards_of(deck%cards, 'NODE')
-      do k = 1, size(places)
-         associate (rows => deck%cards%keywords(places(k))%data)
-            do j = 1, size(rows)
-               call read_integer(rows(j)%text(1), number, valid)
-               i = deck%node_index%find(number)
-               if (.not. has_element(i)) cycle
-               if (abs(deck%node_height(i)) <= rounding) cycle
-               if (rows(j)%end%image == deck%node_place(i)%image) call deck%error( &
-                  rows(j)%place(4), 'models are two-dimensional: z must be 0', 'z')
-            end do
-         end associate
+      do i = 1, size(deck%node_height)
+         if (has_element(i) .and. abs(deck%node_height(i)) > rounding) call deck%error( &
+            deck%node_place(i), 'node '//to_text(deck%mesh%node_number(i))//' of an element is '// &
+            'out of the plane; models are two-dimensional: z must be 0', 'z')
       end do
    end subroutine check_heights
 

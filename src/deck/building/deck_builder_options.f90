@@ -194,9 +194,9 @@ contains
                members(1))) return
          end associate
       end do
-      if (.not. deck%has_lost('*STEP')) call deck%error(deck%load_place, 'no *BOUNDARY prescribes '// &
-         deck%model%load_label//', which LOAD= follows; give the value, as '//name//', '// &
-         to_text(dof)//', '//to_text(dof)//', value')
+      if (.not. deck%has_lost('*STEP')) call deck%error(deck%load_place, 'no *BOUNDARY '// &
+         'prescribes '//deck%model%load_label//', which LOAD= follows; give the value, as '// &
+         name//', '//to_text(dof)//', '//to_text(dof)//', value')
    end subroutine build_load_axis
 
    !> Takes the *REFINE cards that name a surface or a set.

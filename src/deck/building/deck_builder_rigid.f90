@@ -54,9 +54,9 @@ contains
       do i = 1, size(deck%mesh%surfaces)
          associate (given => deck%mesh%surfaces(i))
             if (.not. allocated(given%drawing)) cycle
-            if (i /= surface .and. .not. allocated(given%drawing%line)) cycle
             if (i /= surface) then
-               if (.not. any(given%drawing%line(1) == lines)) cycle
+               if (.not. allocated(given%drawing%line)) cycle
+               if (all(given%drawing%line(1) /= lines)) cycle
             end if
             given%drawing%reference = coupling%reference
             given%drawing%rotation = coupling%rotation

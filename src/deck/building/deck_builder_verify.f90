@@ -97,16 +97,21 @@ contains
          valid)
       check%value = values(4)
       check%tolerance = values(5)
-      select case (to_upper(data%text(6)))
-      case ('ABS')
-         check%relative = .false.
-      case ('', 'REL')
-         if (valid .and. .not. abs(check%value) > 0.0_dp) call deck%warning(data%place(4), &
-            'relative to 0 only 0 itself passes; give ABS')
-      case default
-         call deck%error(data%place(6), ''''//data%text(6)//''' is neither REL nor ABS')
-      end select
+      check%relative = is_relative(data, 6, deck)
+      if (valid .and. check%relative .and. .not. abs(check%value) > 0.0_dp) call deck%warning( &
+         data%place(4), 'relative to 0 only 0 itself passes; give ABS')
    end subroutine build_check
+
+   !> Whether a field is REL, which it is where it is missing, and not ABS.
+   logical function is_relative(data, i, deck)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      type(deck_type), intent(inout) :: deck
+
+      is_relative = any(to_upper(data%text(i)) == ['   ', 'REL'])
+      if (is_relative .or. to_upper(data%text(i)) == 'ABS') return
+      call deck%error(data%place(i), ''''//data%text(i)//''' is neither REL nor ABS')
+   end function is_relative
 
    !> The first field: index into known quantities, 0 after an error.
    subroutine read_quantity(data, known, refusal, deck, quantity)
@@ -324,16 +329,9 @@ contains
       if (i > 0) target%quantity = trim(estimated(i)%name)
       call read_row(data, '@quantity/target >0/@REL or ABS/@contact pair', deck, values, valid)
       target%bound = values(2)
-      select case (to_upper(data%text(3)))
-      case ('ABS')
-         target%is_relative = .false.
-      case ('', 'REL')
-         target%is_relative = .true.
-         if (target%bound >= 1.0_dp) call deck%error(data%place(2), 'a target relative to the '// &
-            'value must be below 1; 0.01 is 1 %')
-      case default
-         call deck%error(data%place(3), ''''//data%text(3)//''' is neither REL nor ABS')
-      end select
+      target%is_relative = is_relative(data, 3, deck)
+      if (target%is_relative .and. target%bound >= 1.0_dp) call deck%error(data%place(2), 'a '// &
+         'target relative to the value must be below 1; 0.01 is 1 %')
       target%interface = 0
       if (data%has(4) .and. size(deck%model%contacts) > 0) then
          call deck%look_up('contact pair', data%text(4), data%place(4), target%interface)
