@@ -73,7 +73,7 @@ contains
          known = surface > 0
       else
          target = 'element or set'
-         surface = named_surface(data, deck)
+         call find_surface(data, deck, surface)
          if (surface == 0) call deck%need_target('element', data, 1, request%target_type, known)
       end if
       names = names_of(keyword, of_surfaces)
@@ -143,17 +143,20 @@ contains
    end function names_of
 
    !> Index of the surface that a card names in place of an element or a set; else 0.
-   integer function named_surface(data, deck)
+   subroutine find_surface(data, deck, surface)
       type(data_card_type), intent(in) :: data
-      type(deck_type), intent(in) :: deck
+      type(deck_type), intent(inout) :: deck
+      integer, intent(out) :: surface
       integer :: set
 
-      named_surface = deck%index_of('surface', data%text(1))
-      if (.not. data%has(1)) named_surface = 0
+      surface = 0
       set = deck%index_of('element set', data%text(1))
-      if (set == 0) return
-      if (.not. deck%mesh%element_sets(set)%of_lines) named_surface = 0
-   end function named_surface
+      if (set > 0) then
+         if (.not. deck%mesh%element_sets(set)%of_lines) return
+      end if
+      if (data%has(1)) surface = deck%index_of('surface', data%text(1))
+      if (surface > 0) call deck%look_up('surface', data%text(1), data%place(1), surface)
+   end subroutine find_surface
 
    !> Every element of the request has the side of a label, or the plane.
    subroutine check_elements(data, label, request, deck, valid)

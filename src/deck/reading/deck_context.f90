@@ -12,6 +12,7 @@ module deck_context
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use name_index, only: name_index_type
+   use number_lists, only: number_list_type
    use quantity_types, only: quantity_type
    use sorting, only: number_index_type
    use spelling, only: nearest_known
@@ -64,6 +65,7 @@ module deck_context
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step is
       type(time_points_type), allocatable :: time_points(:)   !! *TIME POINTS
       type(name_index_type), private :: names(size(nouns))   !! of each noun, -> indexes
+      type(number_list_type), private :: used(size(nouns))   !! indexes that cards refer to
       type(place_type), allocatable :: analysis_place(:)  !! (steps) where its analysis is
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element
@@ -94,6 +96,7 @@ module deck_context
       procedure :: need_element_set
       procedure :: need_target
       procedure :: look_up
+      procedure :: unused
    end type deck_type
 
 contains
@@ -200,7 +203,22 @@ contains
 
       index = self%index_of(noun, name)
       if (index == 0) call report_unknown(self, noun, name, place, huge(index))
+      if (index > 0) call self%used(findloc(nouns == noun, .true., dim=1))%add([index])
    end subroutine look_up
+
+   !> The first items of a noun that no card refers to.
+   pure function unused(self, noun, count) result(indexes)
+      class(deck_type), intent(in) :: self
+      character(*), intent(in) :: noun                  !! such as material
+      integer, intent(in) :: count                      !! how many are asked for
+      integer, allocatable :: indexes(:)
+      logical :: is_used(count)
+      integer :: i
+
+      is_used = .false.
+      is_used(self%used(findloc(nouns == noun, .true., dim=1))%numbers()) = .true.
+      indexes = pack([(i, i=1, count)], .not. is_used)
+   end function unused
 
    !> Reports a name that no item has.
    subroutine report_unknown(self, noun, name, place, most)
