@@ -2,7 +2,7 @@
 !> radiation in its gap.
 module deck_builder_gap_heat
    use card_parameters, only: take_parameter
-   use card_values, only: read_row, read_rows
+   use card_values, only: check_ascending, read_row, read_rows
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_gas, law_none
    use deck_context, only: deck_type
@@ -131,7 +131,6 @@ contains
       type(deck_type), intent(inout) :: deck
       real(dp), allocatable, intent(out) :: gap(:), view_factor(:)   ! (rows)
       real(dp) :: values(2, max(size(rows), 1))
-      integer :: i
       logical :: valid
 
       values(1, :) = 1.0_dp
@@ -139,10 +138,7 @@ contains
       call read_rows(rows, 'view factor >=0 <=1 =1/clearance? >=0', deck, values, valid)
       view_factor = values(1, :)
       gap = values(2, :)
-      do i = 2, size(rows)
-         if (valid .and. gap(i) <= gap(i - 1)) call deck%error(rows(i)%place(2), &
-            'clearances must ascend')
-      end do
+      if (valid) call check_ascending(rows, 2, 'clearances', gap, deck)
       if (maxval(view_factor) > 0.0_dp) return
       call deck%error(rows(1)%place(1), 'all view factors are 0: the faces do not radiate; '// &
          'leave *GAP RADIATION out')

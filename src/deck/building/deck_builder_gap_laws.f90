@@ -1,7 +1,7 @@
 !> *GAP LAW -> one side of the conductance of a surface interaction.
 module deck_builder_gap_laws
    use card_parameters, only: needed_choice, take_parameter
-   use card_values, only: read_row
+   use card_values, only: check_ascending, read_row
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
    use deck_builder_gap_conductance, only: gap_table_type, note_ends, read_table
@@ -164,9 +164,8 @@ contains
             end if
          end associate
          if (values(2, i) + law%added_length <= 0.0_dp) values(2, i) = 1.0_dp
-         if (valid .and. any(values(3, :i - 1) >= values(3, i))) call deck%error( &
-            card%data(i)%place(3), 'temperatures must ascend')
       end do
+      if (valid) call check_ascending(card%data, 3, 'temperatures', values(3, :), deck)
       law%gas_a = values(1, 1)
       law%gas_b = values(2, 1)
       if (size(card%data) == 1) return

@@ -1,7 +1,7 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
    use card_parameters, only: choice, take_parameter
-   use card_values, only: check_unneeded, read_row, read_rows
+   use card_values, only: check_ascending, check_unneeded, read_row, read_rows
    use cards, only: cards_type, data_card_type, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
@@ -263,7 +263,6 @@ contains
       type(deck_type), intent(inout) :: deck
       type(overlap_law_type), intent(inout) :: law
       real(dp) :: values(2, size(rows))
-      integer :: i
       logical :: valid
 
       call read_rows(rows, 'pressure/overlap', deck, values, valid)
@@ -274,14 +273,8 @@ contains
          'have pressure 0, and the overlap from which faces press')
       if (size(rows) == 1) call deck%error(rows(1)%place(1), 'a table of pressure and overlap '// &
          'needs two rows or more')
-      do i = 2, size(rows)
-         if (law%pressure(i) <= law%pressure(i - 1)) call deck%error(rows(i)%place(1), &
-            'pressures must rise: '//to_text(law%pressure(i))//' follows '// &
-            to_text(law%pressure(i - 1)))
-         if (law%overlap(i) <= law%overlap(i - 1)) call deck%error(rows(i)%place(2), 'overlaps '// &
-            'must rise: '//to_text(law%overlap(i))//' follows '//to_text(law%overlap(i - 1))// &
-            '; each card is pressure, overlap')
-      end do
+      call check_ascending(rows, 1, 'pressures', law%pressure, deck)
+      call check_ascending(rows, 2, 'overlaps', law%overlap, deck)
    end subroutine read_table
 
 end module deck_builder_interactions

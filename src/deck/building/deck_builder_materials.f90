@@ -2,7 +2,7 @@
 !> *SOLID SECTION, which give elements their material, its axes and their thickness.
 module deck_builder_materials
    use card_parameters, only: choice, take_parameter
-   use card_values, only: check_unneeded, check_unneeded_temperature, read_row
+   use card_values, only: check_ascending, check_unneeded, check_unneeded_temperature, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
@@ -229,7 +229,7 @@ contains
       logical, intent(out) :: valid                         ! whether all could be read
       type(string_type), allocatable :: fields(:)
       character(:), allocatable :: ending
-      integer :: c, i, n, rows
+      integer :: c, errors, i, n, rows
       real(dp) :: given(per_card + 1)
       logical :: sound
 
@@ -265,29 +265,18 @@ contains
             property%names)))
             property%values(n + 1:last, row) = given(:last - n)
             property%temperature(row) = given(last - n + 1)
-            if (c == size(layouts)) call check_temperature(card%data(i), last - n + 1, row, deck, &
-               property%temperature, valid)
+            if (c == size(layouts) .and. rows == 1 .and. card%data(i)%has(last - n + 1)) then
+               call deck%note('the temperature field of a single property row is ignored')
+               call check_unneeded_temperature(card%data(i), last - n + 1, deck)
+            end if
          end associate
       end do
+      if (.not. valid) return
+      errors = deck%error_count()
+      call check_ascending(card%data(size(layouts)::size(layouts)), modulo(size(property%names) - &
+         1, per_card) + 2, 'the temperatures of the rows', property%temperature, deck)
+      valid = deck%error_count() == errors
    end subroutine read_property
-
-   !> The temperatures of rows ascend.
-   subroutine check_temperature(data, field, row, deck, temperature, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: field, row
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(in) :: temperature(:)                ! (rows)
-      logical, intent(inout) :: valid
-
-      if (size(temperature) == 1 .and. data%has(field)) then
-         call deck%note('the temperature field of a single property row is ignored')
-         call check_unneeded_temperature(data, field, deck)
-      else if (row > 1 .and. valid) then
-         valid = temperature(row) > temperature(row - 1)
-         if (.not. valid) call deck%error(data%place(field), 'the temperatures of the rows '// &
-            'must ascend: '//to_text(temperature(row))//' follows '//to_text(temperature(row - 1)))
-      end if
-   end subroutine check_temperature
 
    !> Builds all orientations.
    subroutine build_orientations(deck)

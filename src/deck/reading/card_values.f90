@@ -5,11 +5,11 @@ module card_values
    use cards, only: data_card_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use text, only: is_whole, read_real, split_words, string_type
+   use text, only: is_whole, read_real, split_words, string_type, to_text
    implicit none
    private
-   public :: read_field, check_extra, read_row, read_rows, plane_vector, decimal_comma, &
-      decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, &
+   public :: read_field, check_extra, read_row, read_rows, check_ascending, plane_vector, &
+      decimal_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, &
       check_unneeded_temperature
 
    !> Value of a field by its rule, as in a layout of read_row; it stays as it is where the card
@@ -172,6 +172,20 @@ contains
          valid = valid .and. sound
       end do
    end subroutine read_rows
+
+   !> Reports the first row whose value is not above that of the row before.
+   subroutine check_ascending(rows, i, what, values, report)
+      type(data_card_type), intent(in) :: rows(:)
+      integer, intent(in) :: i                            !! position of the field
+      character(*), intent(in) :: what                    !! the values, such as gaps
+      real(dp), intent(in) :: values(:)                   !! (rows)
+      class(deck_report_type), intent(inout) :: report    !! receives the error
+      integer :: row
+
+      row = findloc(values(2:) <= values(:size(values) - 1), .true., dim=1)
+      if (row > 0) call report%error(rows(row + 1)%place(i), what//' must ascend: '// &
+         to_text(values(row + 1))//' follows '//to_text(values(row)))
+   end subroutine check_ascending
 
    !> The rule of one field of a layout.
    pure type(field_rule_type) function rule_of(field) result(rule)

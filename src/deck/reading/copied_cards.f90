@@ -4,9 +4,10 @@ module copied_cards
    use card_parameters, only: choice, need_parameter, take_parameter
    use card_values, only: read_row
    use cards, only: data_card_type, keyword_card_type
-   use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
-      given_type, growing_cards_type, keep_last, members_of, node_place, position_of
+   use given_cards, only: add_generated, add_node_card, add_numbers, add_set, card_of, corners_of, &
+      growing_cards_type, is_given, keep_last, members_of, node_place
    use kinds, only: dp
+   use number_lists, only: number_list_type
    use plane_motions, only: axis_layout, motion_type, read_motion, rotation
    use text, only: read_integer, to_text, to_upper
    implicit none
@@ -72,8 +73,8 @@ contains
          parts(k) = parts(k - 1) + bias**(1 - k)
       end do
       do i = 1, size(from)
-         x(:, 1) = node_place(all, position_of(from(i), all%nodes))
-         x(:, 2) = node_place(all, position_of(to(i), all%nodes))
+         x(:, 1) = node_place(all, from(i))
+         x(:, 2) = node_place(all, to(i))
          do k = 1, intervals - 1
             call add_node_card(data, from(i) + k*step, x(:, 1) + (x(:, 2) - x(:, &
                1))*(parts(k)/parts(intervals)), all)
@@ -94,7 +95,7 @@ contains
       call read_integer(data%text(i), number, is_number)
       numbers = [number]
       if (.not. is_number) numbers = members_of(all, 'NSET', data%text(i))
-      numbers = pack(numbers, [(position_of(numbers(k), all%nodes) > 0, k=1, size(numbers))])
+      numbers = pack(numbers, [(is_given(numbers(k), all%nodes), k=1, size(numbers))])
       if (size(numbers) > 0) return
       call all%report%error(data%place(i), 'no *NODE before this card has node or set '// &
          to_upper(data%text(i)))
@@ -109,7 +110,7 @@ contains
       integer, allocatable :: numbers(:)
       type(motion_type) :: motion
       real(dp), allocatable :: x(:, :)
-      integer :: at, change, errors, i
+      integer :: change, errors, i
       logical, allocatable :: is_there(:)
 
       errors = all%report%error_count()
@@ -122,12 +123,12 @@ contains
       end if
       allocate (x(2, size(numbers)), is_there(size(numbers)))
       do i = 1, size(numbers)
-         x(:, i) = motion%moved(node_place(all, position_of(numbers(i), all%nodes)))
+         x(:, i) = motion%moved(node_place(all, numbers(i)))
       end do
       do i = 1, size(numbers)
-         at = position_of(numbers(i) + change, all%nodes)
-         is_there(i) = at > 0
-         if (at > 0) is_there(i) = norm2(node_place(all, at) - x(:, i)) <= same_place*maxval(abs(x))
+         is_there(i) = is_given(numbers(i) + change, all%nodes)
+         if (is_there(i)) is_there(i) = norm2(node_place(all, numbers(i) + change) - x(:, i)) <= &
+            same_place*maxval(abs(x))
       end do
       associate (data => card%data(1))
          call add_copies_card(card, 'NODE', 'NSET', '', all)
@@ -174,7 +175,7 @@ contains
       character(:), allocatable :: kind, last_kind
       integer, allocatable :: corners(:), numbers(:)
       type(data_card_type) :: data
-      integer :: at, errors, i, node_shift, shift
+      integer :: at(2), errors, i, node_shift, shift
 
       errors = all%report%error_count()
       call take_old_set(card, 'ELSET', all%elements, all, numbers)
@@ -186,11 +187,11 @@ contains
       end if
       last_kind = ''
       do i = 1, size(numbers)
-         at = position_of(numbers(i), all%elements)
-         kind = all%keywords(all%elements%keyword(at))%text('TYPE')
+         at = card_of(numbers(i), all%elements)
+         kind = all%keywords(at(1))%text('TYPE')
          if (kind /= last_kind) call add_copies_card(card, 'ELEMENT', 'ELSET', kind, all)
          last_kind = kind
-         data = all%keywords(all%elements%keyword(at))%data(all%elements%card(at))
+         data = all%keywords(at(1))%data(at(2))
          corners = corners_of(data)
          if (card%has('REFLECT')) corners = reflected(corners)
          data%fields = data%fields(:1)
@@ -216,7 +217,7 @@ contains
    subroutine take_old_set(card, keyword, given, all, numbers)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: keyword               ! NSET or ELSET
-      type(given_type), intent(in) :: given
+      type(number_list_type), intent(in) :: given
       type(growing_cards_type), intent(in) :: all
       integer, allocatable, intent(out) :: numbers(:)
       character(:), allocatable :: name
@@ -225,7 +226,7 @@ contains
       call need_parameter(card, 'OLD SET', all%report, name)
       if (len(name) == 0) return
       numbers = members_of(all, keyword, name)
-      numbers = pack(numbers, [(position_of(numbers(i), given) > 0, i=1, size(numbers))])
+      numbers = pack(numbers, [(is_given(numbers(i), given), i=1, size(numbers))])
       if (size(numbers) > 0) return
       call all%report%error(card%place_of('OLD SET'), 'no card before this one gives set '//name// &
          ' a node or element')

@@ -7,7 +7,7 @@ module generated_cards
    use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
    use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
-      growing_cards_type, keep_last, node_place, position_of
+      card_of, growing_cards_type, is_given, keep_last, node_place
    use kinds, only: dp
    use plane_motions, only: rotation
    use text, only: to_text
@@ -135,13 +135,11 @@ contains
       integer, intent(in) :: number
       type(growing_cards_type), intent(in) :: all
       type(given_point_type), intent(out) :: node
-      integer :: at
 
       node%number = number
-      at = position_of(number, all%nodes)
-      node%valid = at > 0
+      node%valid = is_given(number, all%nodes)
       if (node%valid) then
-         node%x = node_place(all, at)
+         node%x = node_place(all, number)
       else
          call all%report%error(data%place(i), 'no *NODE before this card has node '// &
             to_text(number))
@@ -204,7 +202,7 @@ contains
       type(growing_cards_type), intent(inout) :: all
       integer, allocatable :: corners(:)
       real(dp) :: given(7)
-      integer :: master, at, i, j
+      integer :: master, card_at(2), i, j
       integer :: counts(2)      ! elements of a row, and rows
       integer :: steps(2, 2)    ! increments of nodes and elements, of both
       logical :: valid
@@ -219,18 +217,18 @@ contains
          call all%report%error(data%place(2), too_many)
          valid = .false.
       end if
-      at = 0
-      if (valid) at = position_of(master, all%elements)
-      if (valid .and. at == 0) call all%report%error(data%place(1), 'no *ELEMENT before this '// &
-         'card has element '//to_text(master))
-      if (at == 0) then
+      card_at = 0
+      if (valid) card_at = card_of(master, all%elements)
+      if (valid .and. card_at(1) == 0) call all%report%error(data%place(1), 'no *ELEMENT '// &
+         'before this card has element '//to_text(master))
+      if (card_at(1) == 0) then
          call all%report%lose('element')
          return
       end if
-      corners = corners_of(all%keywords(all%elements%keyword(at))%data(all%elements%card(at)))
+      corners = corners_of(all%keywords(card_at(1))%data(card_at(2)))
       call add_set(card, 'ELSET', data, [master], all)
       if (product(counts) > 1) call add_generated(card, 'ELEMENT', &
-         all%keywords(all%elements%keyword(at))%text('TYPE'), all)
+         all%keywords(card_at(1))%text('TYPE'), all)
       do j = 0, counts(2) - 1
          do i = 0, counts(1) - 1
             if (i + j == 0) cycle

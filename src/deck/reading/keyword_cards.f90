@@ -235,49 +235,49 @@ contains
       logical, intent(out) :: valid
       type(known_parameter_type) :: known, other
       type(advice_type) :: advice
-      character(:), allocatable :: value
+      character(:), allocatable :: fault, name, value
+      type(place_type) :: place
       integer :: blank, equals, errors
 
       errors = report%error_count()
-      equals = index(field%text, '=')
-      if (equals == 0) equals = len(field%text) + 1
-      known = find_parameter(card%known, field%text(:equals - 1))
-      if (len(known%name) == 0) known = find_abbreviated(card%known, field%text(:equals - 1))
-      if (len(known%name) == 0 .and. len(field%text) > 0) call report_unknown_parameter( &
-         field%text(:equals - 1), field%place, report, cards, card, known)
-      parameter%name = known%name
-      parameter%place = field%place
-      parameter%value_place = field%place
+      place = field%place
+      equals = index(field%text//'=', '=')
+      name = field%text(:equals - 1)
+      known = find_parameter(card%known, name)
+      if (len(known%name) == 0) known = find_abbreviated(card%known, name)
+      if (len(known%name) == 0 .and. len(field%text) > 0) call report_unknown_parameter(name, &
+         place, report, cards, card, known)
       value = field%text(min(equals + 1, len(field%text) + 1):)
+      parameter%name = known%name
       parameter%text = without_quotes(value(first_text(value):))
+      parameter%place = place
+      parameter%value_place = place
+      if (len(value) > 0) parameter%value_place%column = place%column + equals + &
+         first_text(value) - 1
       blank = scan(value(:index(value, '=')), ' ', back=.true.)
       other%name = ''
       if (blank > 0 .and. index(value, '"') == 0) other = find_parameter(card%known, &
          value(blank + 1:index(value, '=') - 1))
-      if (len(value) > 0) parameter%value_place%column = field%place%column + equals + &
-         first_text(value) - 1
+      fault = ''
       if (len(field%text) == 0 .and. .not. field%undefined) then
-         call report%error(field%place, 'an empty parameter')
+         fault = 'an empty parameter'
       else if (len(known%name) == 0) then
          continue
       else if (known%name == 'DEPENDENCIES' .and. parameter%text == '0') then
          known%status = not_needed
       else if (known%status == refused) then
          advice = find_advice(known%name, card%name)
-         call report%error(field%place, known%name//' is refused on *'//card%name//': '// &
-            trim(advice%words))
+         fault = known%name//' is refused on *'//card%name//': '//trim(advice%words)
       else if (known%needs_value .and. len(parameter%text) == 0) then
-         call report%error(field%place, known%name//' needs a value')
+         fault = known%name//' needs a value'
       else if (.not. known%takes_value .and. equals <= len(field%text)) then
-         call report%error(field%place, known%name//' takes no value')
+         fault = known%name//' takes no value'
       else if (len(other%name) > 0) then
-         call report%error(place_type(field%place%image, field%place%column + equals + blank), &
-            'a comma is missing before this parameter')
+         fault = 'a comma is missing before this parameter'
+         place%column = place%column + equals + blank
       end if
-      valid = len(known%name) > 0 .and. known%status == built
-      if (valid) valid = len(parameter%text) > 0 .or. .not. known%needs_value
-      if (valid .and. .not. known%takes_value) valid = equals > len(field%text)
-      valid = valid .and. len(other%name) == 0
+      if (len(fault) > 0) call report%error(place, fault)
+      valid = len(known%name) > 0 .and. len(fault) == 0 .and. known%status == built
       card%flawed = card%flawed .or. field%undefined .or. &
          (report%error_count() > errors .and. .not. valid)
       if (len(known%name) > 0 .and. known%status == not_needed .and. &
