@@ -6,7 +6,7 @@ module deck_builder_sets
    use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side, lines_of
    use deck_builder_mesh, only: is_line_card
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_type, item_index_type, place_list_type, read_target
+   use deck_context, only: deck_type, item_index_type, place_list_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
    use element_sides, only: element_sides_type, find_sides
@@ -160,8 +160,7 @@ contains
          end if
          do i = 1, size(card%data(j)%fields)
             valid = .true.
-            call read_target(card%data(j), i, draft%numbers, draft%items(:known), deck, other, &
-               valid)
+            call deck%need_target(draft%numbers%noun, card%data(j), i, other, valid, known)
             if (other%item > 0) call draft%members(set)%add([other%item])
             ! Each member once, lest sets that hold a set twice double.
             if (other%set > 0) call draft%members(set)%add(unique_sorted( &

@@ -7,7 +7,8 @@
 module mesh_checks
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric, element_corner_count, element_node_count, linear_kind, &
-      plane_strain, side_node_count, side_nodes
+      plane_strain, side_node_count
+   use element_sides, only: side_ends
    use kinds, only: dp
    use mesh, only: mesh_type
    use quadrature, only: integration_rule, most_points, point_count
@@ -106,20 +107,17 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(element_side_type), intent(inout) :: sides(:)
       integer, intent(out) :: n
-      integer :: e, f, nodes(3)
+      integer :: e, f
 
       n = 0
       do e = 1, size(mesh%element_number)
-         if (.not. sound(e)) cycle
-         associate (kind => mesh%element_kind(e))
-            do f = 1, element_corner_count(kind)
-               n = n + 1
-               nodes(:side_node_count(kind)) = mesh%element_nodes(side_nodes(kind, f), e)
-               sides(n) = element_side_type(e, f, minval(nodes([1, side_node_count(kind)])), &
-                  maxval(nodes([1, side_node_count(kind)])), 0)
-               if (side_node_count(kind) == 3) sides(n)%middle = nodes(2)
-            end do
-         end associate
+         do f = 1, merge(element_corner_count(mesh%element_kind(e)), 0, sound(e))
+            n = n + 1
+            associate (ends => side_ends(mesh, e, f))
+               sides(n) = element_side_type(e, f, min(ends(1), ends(3)), max(ends(1), ends(3)), &
+                  ends(2))
+            end associate
+         end do
       end do
    end subroutine list_sides
 

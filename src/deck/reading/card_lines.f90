@@ -28,8 +28,8 @@ module card_lines
       integer :: width = default_width                      !! columns of a card
       character(:), allocatable :: include                  !! path that the card just read includes
       type(place_type) :: include_place                     !! where it is
-      type(field_type), allocatable, private :: pending(:)  !! fields of a card that continues
-      logical, private :: pending_keyword = .false.         !! that card is a keyword card
+      type(field_type), allocatable, private :: pending(:)  !! of a keyword card that continues
+      type(field_type), allocatable, private :: comma       !! behind which an element continues
       character(:), allocatable, private :: keyword         !! keyword to which data cards belong
       logical, private :: skips_data = .false.              !! its data cards are of no use
       character(:), allocatable, private :: refusal_of_data !! error at its first data card
@@ -50,7 +50,7 @@ contains
       type(cards_type), intent(inout) :: cards             !! receives the card that it completes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
-      logical :: continues, is_text, is_variable, title
+      logical :: is_text, is_variable, title
 
       if (is_blank(line)) return
       if (is_comment(line)) return
@@ -79,22 +79,16 @@ contains
                to_upper(fields(1)%text))
             fields(1)%text = '*'//fields(1)%text
          end if
-         call take_fields(self, fields, .true., image, cards, report)
+         call take_fields(self, fields, cards, report)
          return
       end if
       if (allocated(self%pending)) then
          call split_fields(line, image, report, fields)
-         if (self%pending_keyword) then
-            continues = is_parameter(self%pending(1)%text, fields(1)%text)
-         else
-            ! A line with all fields of an element is the next one: the comma is a slip.
-            continues = self%element_fields == 0 .or. filled(fields) /= self%element_fields
-         end if
-         if (continues) then
+         if (is_parameter(self%pending(1)%text, fields(1)%text)) then
             ! The comma at the end of the card left an empty field.
             fields = [self%pending(:size(self%pending) - 1), fields]
             deallocate (self%pending)
-            call take_fields(self, fields, self%pending_keyword, image, cards, report)
+            call take_fields(self, fields, cards, report)
             return
          end if
          call self%finish(cards, report)
@@ -132,48 +126,47 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: lack
-      type(place_type) :: place
 
-      if (.not. allocated(self%pending)) return
-      call move_alloc(self%pending, fields)
-      if (self%pending_keyword) then
+      if (allocated(self%pending)) then
+         call move_alloc(self%pending, fields)
          call drop_empty_end(fields)
          call take_keyword(self, fields, cards, report)
-      else
-         place = fields(size(fields))%place
-         place%column = place%column - 1
+      else if (allocated(self%comma)) then
+         call take_last(cards, fields)
          lack = ''
-         if (self%element_fields > 0) lack = ': the element has '//to_text(size(fields) - 2)// &
+         if (self%element_fields > 0) lack = ': the element has '//to_text(size(fields) - 1)// &
             ' of its '//to_text(self%element_fields - 1)//' nodes'
-         call report%error(place, 'the card ends in a comma, but nothing continues it'//lack)
-         fields(size(fields))%undefined = .true.
-         call take_data(self, fields, place%image, cards, report)
+         call report%error(place_type(self%comma%place%image, self%comma%place%column - 1), &
+            'the card ends in a comma, but nothing continues it'//lack)
+         self%comma%undefined = .true.
+         fields = [fields, self%comma]
+         call add_data(cards, fields, self%comma%place)
+         deallocate (self%comma)
       end if
    end subroutine finish
 
-   !> Takes the fields of a card that may continue.
-   subroutine take_fields(self, fields, keyword, image, cards, report)
+   !> Takes the last data card away again, which goes on.
+   subroutine take_last(cards, fields)
+      type(cards_type), intent(inout) :: cards
+      type(field_type), allocatable, intent(out) :: fields(:)
+
+      associate (card => cards%keywords(cards%keyword_count))
+         call move_alloc(card%data(card%data_count)%fields, fields)
+         card%data_count = card%data_count - 1
+      end associate
+   end subroutine take_last
+
+   !> Takes the fields of a keyword card that may continue.
+   subroutine take_fields(self, fields, cards, report)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)
-      logical, intent(in) :: keyword
-      integer, intent(in) :: image
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
-      logical :: continues
 
-      continues = size(fields) > 1 .and. len(fields(size(fields))%text) == 0
-      if (.not. keyword .and. self%element_fields > 0) then
-         continues = continues .and. size(fields) <= self%element_fields
-      else if (.not. keyword) then
-         continues = continues .and. size(fields) <= most_fields
-      end if
-      if (continues) then
-         self%pending_keyword = keyword
+      if (size(fields) > 1 .and. len(fields(size(fields))%text) == 0) then
          call move_alloc(fields, self%pending)
-      else if (keyword) then
-         call take_keyword(self, fields, cards, report)
       else
-         call take_data(self, fields, image, cards, report)
+         call take_keyword(self, fields, cards, report)
       end if
    end subroutine take_fields
 
@@ -236,7 +229,6 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: fields(:)
-      integer :: i
       logical :: valid
 
       if (.not. allocated(self%keyword)) then
@@ -278,37 +270,56 @@ contains
          end if
       end if
       if (self%keyword == 'ELEMENT') then
-         if (completes_element(self, fields, cards)) then
-            associate (card => cards%keywords(cards%keyword_count))
-               associate (before => card%data(card%data_count)%fields)
-                  fields = [before, pack(fields, [(len(fields(i)%text) > 0, i=1, size(fields))])]
-               end associate
-               call move_alloc(fields, card%data(card%data_count)%fields)
-            end associate
-            return
-         end if
-         call take_fields(self, fields, .false., image, cards, report)
+         call take_element(self, fields, image, cards, report)
       else
          call take_data(self, fields, image, cards, report)
       end if
    end subroutine take_data_line
 
-   !> Whether a line has just the nodes that the element before it lacks: in CalculiX a card may go
-   !> on without a comma at its end.
-   pure logical function completes_element(self, fields, cards)
+   !> A line of elements, which may go on with the element before it or on the next line.
+   subroutine take_element(self, fields, image, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      integer, intent(in) :: image
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(field_type), allocatable :: before(:)
+      type(field_type) :: last
+      integer :: i
+
+      if (continues_element(self, fields, cards)) then
+         call take_last(cards, before)
+         fields = [before, pack(fields, [(len(fields(i)%text) > 0 .or. i == size(fields), &
+            i=1, size(fields))])]
+         if (allocated(self%comma)) deallocate (self%comma)
+      else
+         call self%finish(cards, report)
+      end if
+      last = fields(size(fields))
+      if (size(fields) > 1 .and. len(last%text) == 0 .and. size(fields) <= merge( &
+         self%element_fields, most_fields, self%element_fields > 0)) self%comma = last
+      call take_data(self, fields, image, cards, report)
+   end subroutine take_element
+
+   !> Whether a line goes on with the element before it: this one ends in a comma, which is a slip
+   !> where the line is a whole element; or the line has just the nodes that it lacks, as in
+   !> CalculiX.
+   pure logical function continues_element(self, fields, cards)
       type(card_lines_type), intent(in) :: self
       type(field_type), intent(in) :: fields(:)
       type(cards_type), intent(in) :: cards
       integer :: before
 
-      completes_element = .false.
+      continues_element = allocated(self%comma) .and. (self%element_fields == 0 .or. &
+         filled(fields) /= self%element_fields)
+      if (allocated(self%comma)) return
       associate (card => cards%keywords(cards%keyword_count))
          if (card%data_count == 0) return
          before = size(card%data(card%data_count)%fields)
       end associate
-      completes_element = before < self%element_fields .and. &
+      continues_element = before < self%element_fields .and. &
          before + filled(fields) == self%element_fields
-   end function completes_element
+   end function continues_element
 
    !> A complete data card.
    subroutine take_data(self, fields, image, cards, report)

@@ -20,7 +20,7 @@ module deck_context
    use time_points, only: time_points_type
    implicit none
    private
-   public :: deck_type, item_index_type, place_list_type, plane_by_element, read_target
+   public :: deck_type, item_index_type, place_list_type, plane_by_element
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
 
@@ -255,19 +255,48 @@ contains
       set = 0
    end subroutine need_element_set
 
-   !> Reads the field of a card that names a node or an element, or a set of them.
-   subroutine need_target(self, noun, data, position, target, valid)
+   !> Reads the field of a card that names a node or an element by its number, or a set of them by
+   !> its name. While sets are built those so far are known, and elements are lines, too.
+   subroutine need_target(self, noun, data, position, target, valid, known)
       class(deck_type), intent(inout) :: self           !! receives errors
       character(*), intent(in) :: noun                  !! node or element
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
+      integer, intent(in), optional :: known            !! sets so far
+      character(:), allocatable :: name
+      integer :: most, number
+      logical :: is_number
 
-      if (noun == 'node') call read_target(data, position, self%node_index, self%mesh%node_sets, &
-         self, target, valid)
-      if (noun == 'element') call read_target(data, position, self%element_index, &
-         self%mesh%element_sets, self, target, valid)
+      call read_field(data, position, noun//' or set', self, name, valid)
+      if (len(name) == 0) return
+      most = huge(most)
+      if (present(known)) most = known
+      call read_integer(name, number, is_number)
+      if (.not. is_number) then
+         target%set = self%index_of(noun//' set', name)
+         if (target%set > most) target%set = 0
+      else if (noun == 'node') then
+         target%item = self%node_index%find(number)
+      else if (present(known)) then
+         target%item = self%member_index%find(number)
+      else
+         target%item = self%element_index%find(number)
+      end if
+      if (target%set > 0 .and. noun == 'element' .and. .not. present(known)) then
+         if (self%mesh%element_sets(target%set)%of_lines) then
+            call report_lines(self%mesh%element_sets(target%set)%name, data%place(position), self)
+            valid = .false.
+         end if
+      end if
+      if (target%item > 0 .or. target%set > 0) return
+      valid = .false.
+      if (is_number .or. verify(name, '0123456789') == 0) then
+         call self%missing(data%place(position), 'there is no '//noun//' '//name, noun, name)
+      else
+         call report_unknown(self, noun//' set', to_upper(name), data%place(position), most)
+      end if
    end subroutine need_target
 
    !> Reports an element set that has lines only where elements or their faces are due.
@@ -279,44 +308,5 @@ contains
       call report%error(place, 'element set '//name// &
          ' contains only lines, springs or trusses; make a *SURFACE or an *NSET of lines')
    end subroutine report_lines
-
-   !> Reads the field of a card that names one node or element by its number, or a set by its name.
-   subroutine read_target(data, position, numbers, sets, deck, target, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position                   !! position of the field
-      type(item_index_type), intent(in) :: numbers      !! numbers -> indexes
-      type(set_type), intent(in) :: sets(:)             !! sets that are known, the first ones
-      class(deck_type), intent(inout) :: deck           !! receives errors
-      type(target_type), intent(out) :: target
-      logical, intent(inout) :: valid                   !! becomes false after an error
-      character(:), allocatable :: name
-      integer :: number
-      logical :: is_number
-
-      call read_field(data, position, numbers%noun//' or set', deck, name, valid)
-      if (len(name) == 0) return
-      call read_integer(name, number, is_number)
-      if (is_number) then
-         target%item = numbers%find(number)
-      else
-         target%set = deck%index_of(numbers%noun//' set', name)
-         if (target%set > size(sets)) target%set = 0
-      end if
-      if (target%set > 0) then
-         if (sets(target%set)%of_lines) then
-            call report_lines(sets(target%set)%name, data%place(position), deck)
-            valid = .false.
-         end if
-      end if
-      if (target%item > 0 .or. target%set > 0) return
-      valid = .false.
-      if (is_number .or. verify(name, '0123456789') == 0) then
-         call deck%missing(data%place(position), 'there is no '//numbers%noun//' '//name, &
-            numbers%noun, name)
-      else
-         call report_unknown(deck, numbers%noun//' set', to_upper(name), data%place(position), &
-            size(sets))
-      end if
-   end subroutine read_target
 
 end module deck_context
