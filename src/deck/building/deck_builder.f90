@@ -7,13 +7,14 @@ module deck_builder
    use controls, only: method_names
    use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities
    use deck_builder_contact, only: build_contacts, build_ties
+   use deck_builder_axes, only: build_orientations, build_transforms
    use deck_builder_bars, only: build_bars
-   use deck_builder_equations, only: build_couplings, build_equations, build_transforms
+   use deck_builder_equations, only: build_couplings, build_equations
    use deck_builder_gap_heat, only: check_friction_heat
    use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures, &
       build_time_points
    use deck_builder_interactions, only: build_interactions
-   use deck_builder_materials, only: build_materials, build_orientations, build_sections
+   use deck_builder_materials, only: build_materials, build_sections
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_node_surfaces, only: build_node_surfaces
    use deck_builder_options, only: build_load_axis, build_options, build_regions

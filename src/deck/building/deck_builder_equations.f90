@@ -1,7 +1,6 @@
-!> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom;
-!> *TRANSFORM -> nodes with axes of their own, and what cards say of them.
+!> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom.
 module deck_builder_equations
-   use card_parameters, only: choice, need_parameter
+   use card_parameters, only: need_parameter
    use card_values, only: read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
@@ -10,15 +9,14 @@ module deck_builder_equations
    use deck_source, only: place_type
    use deck_structure, only: cards_of, is_keyword
    use kinds, only: dp
-   use mesh, only: extent_of
    use load_requests, only: target_type
    use sorting, only: sort_order
    use steps, only: dof_temperature
    use text, only: read_integer, to_text
-   use transforms, only: axis_in_plane, transform_type
+   use transforms, only: axis_in_plane
    implicit none
    private
-   public :: build_equations, build_couplings, build_transforms, find_reference
+   public :: build_equations, build_couplings, find_reference
 
    integer, parameter :: term_fields = 3   !! node or set, degree of freedom, coefficient
 
@@ -28,8 +26,6 @@ module deck_builder_equations
       real(dp) :: coefficient = 0.0_dp
       type(place_type) :: place                    !! where it is
    end type term_type
-
-   real(dp), parameter :: negligible = 1.0e-9_dp   !! part of a direction or of the model
 
 contains
 
@@ -331,107 +327,5 @@ contains
          end select
       end do
    end subroutine read_range
-
-   !> Builds all transforms.
-   subroutine build_transforms(deck)
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
-      integer :: n
-
-      places = cards_of(deck%cards, 'TRANSFORM')
-      allocate (deck%model%transforms(size(places)))
-      do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)), transform => deck%model%transforms(n))
-            transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
-            transform%card = card%place%image
-            call deck%need_named(card, 'NSET', 'node set', transform%set)
-            transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
-            if (size(card%data) > 0) call read_points(card%data(1), deck, transform)
-            call check_nodes(card, n, deck)
-         end associate
-      end do
-   end subroutine build_transforms
-
-   !> Two points: on the first axis and in the plane of the first two; or on the axis of a cylinder.
-   subroutine read_points(data, deck, transform)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      type(transform_type), intent(inout) :: transform
-      real(dp) :: given(6), x(3, 2)
-      logical :: valid
-
-      call read_row(data, 'x of point a/y of point a/z of point a?/x of point b/y of point b/'// &
-         'z of point b?', deck, given, valid)
-      x = reshape(given, shape(x))
-      if (.not. valid) return
-      transform%point = x(:2, 1)
-      if (transform%cylindrical) then
-         x(:, 2) = x(:, 2) - x(:, 1)
-         transform%sense = sign(1.0_dp, x(3, 2))
-         if (norm2(x(:2, 2)) > negligible*norm2(x(:, 2)) .or. &
-            norm2(x(:, 2)) <= 0.0_dp) call deck%error(data%place(1), 'TYPE=C of a plane is '// &
-            'round an axis along z, such as 0., 0., 0., 0., 0., 1.')
-      else
-         call set_axes(x, transform, valid)
-         if (.not. valid) call deck%error(data%place(1), 'TYPE=R of a plane has two points, '// &
-            'not in line with the origin, that put one of the three axes along z, such as 1., '// &
-            '1., 0., -1., 1., 0.')
-      end if
-   end subroutine read_points
-
-   !> The axes in the plane of two points, TYPE=R. One of the three axes must be along z.
-   pure subroutine set_axes(x, transform, valid)
-      real(dp), intent(in) :: x(3, 2)
-      type(transform_type), intent(inout) :: transform
-      logical, intent(out) :: valid
-      real(dp) :: axes(3, 3)
-
-      valid = all(norm2(x, dim=1) > 0.0_dp)
-      if (.not. valid) return
-      axes(:, 1) = x(:, 1)/norm2(x(:, 1))
-      axes(:, 2) = x(:, 2)/norm2(x(:, 2))
-      axes(:, 2) = axes(:, 2) - dot_product(axes(:, 1), axes(:, 2))*axes(:, 1)
-      valid = norm2(axes(:, 2)) > negligible
-      if (.not. valid) return
-      axes(:, 2) = axes(:, 2)/norm2(axes(:, 2))
-      axes(:, 3) = cshift(axes(:, 1), 1)*cshift(axes(:, 2), 2) - &
-         cshift(axes(:, 1), 2)*cshift(axes(:, 2), 1)
-      transform%out_of_plane = maxloc(abs(axes(3, :)), dim=1)
-      valid = norm2(axes(:2, transform%out_of_plane)) <= negligible
-      associate (first => axes(:2, merge(2, 1, transform%out_of_plane == 1)), &
-         second => axes(:2, merge(2, 3, transform%out_of_plane == 3)))
-         transform%point = first
-         transform%sense = sign(1.0_dp, first(1)*second(2) - first(2)*second(1))
-      end associate
-   end subroutine set_axes
-
-   !> A node has one transform, and is not on the axis of it.
-   subroutine check_nodes(card, n, deck)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: n
-      type(deck_type), intent(inout) :: deck
-      integer :: i, k
-
-      if (deck%model%transforms(n)%set == 0) return
-      associate (members => deck%mesh%node_sets(deck%model%transforms(n)%set)%members, number => &
-         deck%mesh%node_number, x => deck%mesh%coordinates)
-         do i = 1, size(members)
-            do k = 1, n - 1
-               if (deck%model%transforms(k)%set == 0) cycle
-               if (all(deck%mesh%node_sets(deck%model%transforms(k)%set)%members /= &
-                  members(i))) cycle
-               call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' '// &
-                  'has axes of its own by '//deck%model%transforms(k)%title//' already')
-               return
-            end do
-            if (.not. deck%model%transforms(n)%cylindrical) cycle
-            if (norm2(x(:, members(i)) - deck%model%transforms(n)%point) > &
-               negligible*extent_of(x)) cycle
-            call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' is '// &
-               'on the axis, where no direction is radial')
-            return
-         end do
-      end associate
-   end subroutine check_nodes
 
 end module deck_builder_equations

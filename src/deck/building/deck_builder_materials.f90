@@ -1,9 +1,9 @@
-!> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *ORIENTATION and
-!> *SOLID SECTION, which give elements their material, its axes and their thickness.
+!> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *SOLID SECTION, which gives
+!> elements their material, its axes and their thickness.
 module deck_builder_materials
    use card_parameters, only: choice, take_parameter
    use card_values, only: check_ascending, check_unneeded, check_unneeded_temperature, read_row
-   use cards, only: data_card_type, keyword_card_type
+   use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, has_stand_in
@@ -12,12 +12,12 @@ module deck_builder_materials
    use element_kinds, only: axisymmetric
    use element_types, only: truss
    use kinds, only: dp
-   use materials, only: anisotropic, engineering, isotropic, material_type, orientation_type, &
-      orthotropic, property_keywords, property_type, set_property
+   use materials, only: anisotropic, engineering, isotropic, material_type, orthotropic, &
+      property_keywords, property_type, set_property
    use text, only: split_words, string_type, to_text
    implicit none
    private
-   public :: build_materials, build_orientations, build_sections
+   public :: build_materials, build_sections
 
    ! Constants of *ELASTIC, as read_row; one layout a card.
    character(*), parameter :: isotropic_layout = 'Young''s modulus >0/Poisson''s ratio'
@@ -30,8 +30,6 @@ module deck_builder_materials
       'D3312/D1212/D1113/D2213/D3313/D1213/D1313/D1123', 'D2223/D3323/D1223/D1323/D2323']
 
    integer, parameter :: per_card = 8   !! constants of a property on a card
-
-   real(dp), parameter :: degree = acos(-1.0_dp)/180
 
 contains
 
@@ -277,83 +275,6 @@ contains
          1, per_card) + 2, 'the temperatures of the rows', property%temperature, deck)
       valid = deck%error_count() == errors
    end subroutine read_property
-
-   !> Builds all orientations.
-   subroutine build_orientations(deck)
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
-      integer :: n
-
-      places = cards_of(deck%cards, 'ORIENTATION')
-      allocate(deck%model%orientations(size(places)))
-      do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)))
-            call deck%take_name(places(n), 'orientation', deck%model%orientations(n)%name)
-            if (size(card%data) > 0) call build_axes(card, deck%model%orientations(n), deck)
-         end associate
-      end do
-   end subroutine build_orientations
-
-   !> Two points. a lies on axis 1, b in the plane of axes 1 and 2 on the side of axis 2; or both
-   !> lie on the axis of a cylinder, along which axis 3 points from a to b.
-   subroutine build_axes(card, orientation, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(orientation_type), intent(inout) :: orientation
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: system
-      real(dp) :: a(3), b(3), given(6), turn
-      logical :: valid
-
-      system = choice(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, 'RECTANGULAR')
-      associate (data => card%data(1))
-         call read_row(data, 'x of a/y of a/z of a/x of b/y of b/z of b', deck, given, valid)
-         a = given(:3)
-         b = given(4:)
-         if (.not. valid) return
-         orientation%cylindrical = system == 'CYLINDRICAL'
-         turn = a(1)*b(2) - a(2)*b(1)
-         if (orientation%cylindrical) then
-            if (norm2(b(1:2) - a(1:2)) > 0.0_dp .or. &
-               .not. abs(b(3) - a(3)) > 0.0_dp) call deck%error(data%place(4), 'the axis '// &
-               'through a and b must be parallel to z')
-            orientation%centre = a(1:2)
-            orientation%orientation_sign = sign(1.0_dp, b(3) - a(3))
-         else if (abs(a(3)) > 0.0_dp .or. abs(b(3)) > 0.0_dp) then
-            call deck%error(data%place(merge(3, 6, abs(a(3)) > 0.0_dp)), 'axes 1 and 2 lie in '// &
-               'the plane: the z components of a and b must be 0')
-         else if (.not. abs(turn) > epsilon(turn)*norm2(a)*norm2(b)) then
-            call deck%error(data%place(1), 'a and b must not lie on one line')
-         else
-            orientation%direction = a(1:2)/norm2(a(1:2))
-            orientation%orientation_sign = sign(1.0_dp, turn)
-         end if
-      end associate
-      if (size(card%data) > 1) then
-         call turn_axes(card%data(2), orientation, deck)
-      end if
-   end subroutine build_axes
-
-   !> The second card: a turn round axis 3, from axis 1 towards axis 2.
-   subroutine turn_axes(data, orientation, deck)
-      type(data_card_type), intent(in) :: data
-      type(orientation_type), intent(inout) :: orientation
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: angle, given(2)
-      logical :: valid
-
-      call read_row(data, '#axis/angle in degrees?', deck, given, valid)
-      if (.not. valid) return
-      if (nint(given(1)) /= 3) then
-         call deck%error(data%place(1), 'a turn about axis 1 or 2 leaves the plane: only axis 3')
-         return
-      end if
-      angle = given(2)*degree
-      associate (first => orientation%direction, &
-         second => orientation%orientation_sign*[-orientation%direction(2), &
-         orientation%direction(1)])
-         orientation%direction = cos(angle)*first + sin(angle)*second
-      end associate
-   end subroutine turn_axes
 
    !> Builds all sections, and gives the elements theirs.
    subroutine build_sections(deck)
