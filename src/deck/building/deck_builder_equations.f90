@@ -202,7 +202,14 @@ contains
          associate (card => deck%cards%keywords(k))
             if (any(card%name == [character(10) :: 'RIGID BODY', 'COUPLING'])) then
                n = n + 1
-               call begin_coupling(card, n, deck)
+               associate (coupling => deck%model%couplings(n), nodes => deck%mesh%node_number)
+                  coupling%rotation = size(nodes) - size(deck%model%couplings) + n
+                  coupling%card = card%place%image
+                  coupling%title = '*'//card%name//', '//deck%source%words_of(card%place)
+                  call find_reference('REF NODE', card, deck, coupling%reference)
+                  if (coupling%reference > 0) deck%mesh%coordinates(:, coupling%rotation) = &
+                     deck%mesh%coordinates(:, coupling%reference)
+               end associate
             end if
             select case (card%name)
             case ('RIGID BODY')
@@ -230,22 +237,6 @@ contains
       if (deck%error_count() > errors) call deck%lose('equation')
       call check_rigid_masters(deck)
    end subroutine build_couplings
-
-   !> Title and reference node of a coupling, and the node of its rotation.
-   subroutine begin_coupling(card, n, deck)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: n                     ! index of the coupling
-      type(deck_type), intent(inout) :: deck
-
-      associate (coupling => deck%model%couplings(n))
-         coupling%rotation = size(deck%mesh%node_number) - size(deck%model%couplings) + n
-         coupling%card = card%place%image
-         coupling%title = '*'//card%name//', '//deck%source%words_of(card%place)
-         call find_reference('REF NODE', card, deck, coupling%reference)
-         if (coupling%reference > 0) deck%mesh%coordinates(:, coupling%rotation) = &
-            deck%mesh%coordinates(:, coupling%reference)
-      end associate
-   end subroutine begin_coupling
 
    !> The node that a parameter names, which the card must have: its number, or a set of one node.
    subroutine find_reference(parameter, card, deck, node)
@@ -283,49 +274,39 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling
-      integer :: j
+      real(dp) :: range(2)
+      integer :: dof, j
+      logical :: valid
 
       if (size(card%data) == 0) then
          coupling%follows = .true.
          call deck%note('*KINEMATIC without data: displacements along x and y follow')
       end if
       do j = 1, size(card%data)
-         call read_range(card%data(j), deck, coupling)
+         associate (data => card%data(j))
+            call read_row(data, '#first degree of freedom/#last degree of freedom?', deck, range, &
+               valid)
+            if (.not. valid) cycle
+            if (.not. data%has(2)) range(2) = range(1)
+            if (range(2) < range(1)) call deck%error(data%place(2), 'the last degree of '// &
+               'freedom is below the first')
+            do dof = nint(range(1)), nint(range(2))
+               select case (dof)
+               case (1, 2)
+                  coupling%follows(dof) = .true.
+               case (3:6)
+                  call deck%note('*KINEMATIC: degrees of freedom 3 to 6, which nodes of a face '// &
+                     'do not have, are ignored')
+               case (dof_temperature)
+                  coupling%is_warm = .true.
+               case default
+                  call deck%error(data%place(merge(1, 2, dof == nint(range(1)))), 'degree of '// &
+                     'freedom '//to_text(dof)//'; faces follow in 1, 2 and 11')
+                  exit
+               end select
+            end do
+         end associate
       end do
    end subroutine read_degrees
-
-   subroutine read_range(data, deck, coupling)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      type(coupling_type), intent(inout) :: coupling
-      real(dp) :: range(2)
-      integer :: dof, first, last
-      logical :: valid
-
-      call read_row(data, '#first degree of freedom/#last degree of freedom?', deck, range, valid)
-      first = nint(range(1))
-      last = first
-      if (data%has(2)) last = nint(range(2))
-      if (.not. valid) return
-      if (last < first) then
-         call deck%error(data%place(2), 'the last degree of freedom is below the first')
-         return
-      end if
-      do dof = first, last
-         select case (dof)
-         case (1, 2)
-            coupling%follows(dof) = .true.
-         case (3:6)
-            call deck%note('*KINEMATIC: degrees of freedom 3 to 6, which nodes of a face do '// &
-               'not have, are ignored')
-         case (dof_temperature)
-            coupling%is_warm = .true.
-         case default
-            call deck%error(data%place(merge(1, 2, dof == first)), 'degree of freedom '// &
-               to_text(dof)//'; faces follow in 1, 2 and 11')
-            return
-         end select
-      end do
-   end subroutine read_range
 
 end module deck_builder_equations

@@ -147,6 +147,8 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(friction_law_type), intent(out) :: friction
+      real(dp) :: values(2)
+      logical :: valid
 
       call take_parameter(card, 'TAUMAX', deck, friction%largest_shear, '>0')
       if (card%has('ROUGH')) then
@@ -156,33 +158,24 @@ contains
          if (size(card%data) > 0) call deck%error(card%data(1)%place(1), '*FRICTION, ROUGH has '// &
             'no data')
       else if (size(card%data) > 0) then
-         call read_coefficient(card%data(1), deck, friction%coefficient)
+         associate (data => card%data(1), coefficient => friction%coefficient)
+            call read_row(data, 'coefficient of friction >=0/stick slope?', deck, values, valid)
+            coefficient = values(1)
+            ! With a larger one a pressure is lost in the last places of mu times it.
+            if (coefficient > rough_coefficient) then
+               call deck%error(data%place(1), 'the coefficient of friction must not exceed '// &
+                  to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
+            else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then
+               call deck%warning(data%place(1), 'a coefficient of friction of '// &
+                  to_text(coefficient)//' is unusual: is it in per cent? Use ROUGH for faces '// &
+                  'that never slip while closed')
+            end if
+            if (size(data%fields) == 1) return
+            call deck%note('*FRICTION: the stick slope is ignored')
+            call check_unneeded(data, 2, 'a stick slope', deck, frictionless)
+         end associate
       end if
    end subroutine build_friction
-
-   !> The coefficient, which is not so large that a pressure is lost in the last places of mu times
-   !> it; a stick slope behind it is not needed.
-   subroutine read_coefficient(data, deck, coefficient)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(inout) :: coefficient
-      real(dp) :: values(2)
-      logical :: valid
-
-      call read_row(data, 'coefficient of friction >=0/stick slope?', deck, values, valid)
-      coefficient = values(1)
-      if (coefficient > rough_coefficient) then
-         call deck%error(data%place(1), 'the coefficient of friction must not exceed '// &
-            to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
-      else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then
-         call deck%warning(data%place(1), 'a coefficient of friction of '//to_text(coefficient)// &
-            ' is unusual: is it in per cent? Use ROUGH for faces that never slip while closed')
-      end if
-      if (size(data%fields) > 1) then
-         call deck%note('*FRICTION: the stick slope is ignored')
-         call check_unneeded(data, 2, 'a stick slope', deck, frictionless)
-      end if
-   end subroutine read_coefficient
 
    !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
    subroutine check_law(card, law_place, interaction, deck)

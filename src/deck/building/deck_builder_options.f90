@@ -72,7 +72,13 @@ contains
       if (plane == 'STRAIN') deck%plane = plane_strain
       if (plane == 'STRESS') deck%plane = plane_stress
       if (plane == 'AXISYMMETRIC') deck%plane = axisymmetric
-      if (card%has('ORDER')) call build_order(card, deck)
+      if (card%has('ORDER')) then
+         deck%model%order_place = card%place_of('ORDER')
+         call take_parameter(card, 'ORDER', deck, deck%order)
+         if (all(deck%order /= [1, 2])) call deck%error(deck%model%order_place, 'ORDER= must '// &
+            'be 1 (elements without midside nodes) or 2 (elements as they are)')
+         if (deck%order /= 1) deck%order = 2
+      end if
       if (card%has('ERRORS')) deck%model%estimates_errors = choice(card, 'ERRORS', 'YES/NO', deck, &
          'YES') == 'YES'
       if (card%has('UNITS')) call build_units(card, deck)
@@ -80,20 +86,6 @@ contains
       deck%load_set = to_upper(card%text('LOAD'))
       deck%load_place = card%place_of('LOAD')
    end subroutine build_option_card
-
-   subroutine build_order(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      integer :: errors
-
-      errors = deck%error_count()
-      deck%model%order_place = card%place_of('ORDER')
-      call take_parameter(card, 'ORDER', deck, deck%order)
-      if (any(deck%order == [1, 2])) return
-      if (deck%error_count() == errors) call deck%error(deck%model%order_place, 'ORDER= must '// &
-         'be 1 (elements without midside nodes) or 2 (elements as they are)')
-      deck%order = 2
-   end subroutine build_order
 
    !> UNITS="length stress power temperature".
    subroutine build_units(card, deck)
@@ -203,38 +195,30 @@ contains
    subroutine build_regions(deck)
       type(deck_type), intent(inout) :: deck
       type(refined_region_type) :: region
-      integer :: k
+      integer :: k, surface
 
       allocate(deck%model%regions(0))
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             if (card%name /= 'REFINE') cycle
             if (.not. (card%has('SURFACE') .or. card%has('ELSET'))) cycle
-            call build_region(card, deck, region)
+            region = refined_region_type(card=card%place%image)
+            call take_levels(card, deck, region%levels)
+            if (card%has('SURFACE') .and. card%has('ELSET')) then
+               call deck%error(card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, not '// &
+                  'both; give a card for each')
+            else if (card%has('SURFACE')) then
+               call deck%need_named(card, 'SURFACE', 'surface', surface)
+               call need_faces(card%place_of('SURFACE'), 'name the face that touches it', deck, &
+                  surface)
+               region%surfaces = [surface]
+            else
+               call deck%need_element_set(card, region%set)
+            end if
+            call take_parameter(card, 'DISTANCE', deck, region%distance, '>0')
             deck%model%regions = [deck%model%regions, region]
          end associate
       end do
    end subroutine build_regions
-
-   subroutine build_region(card, deck, region)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(refined_region_type), intent(out) :: region
-      integer :: surface
-
-      region%card = card%place%image
-      call take_levels(card, deck, region%levels)
-      if (card%has('SURFACE') .and. card%has('ELSET')) then
-         call deck%error(card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, not both; '// &
-            'give a card for each')
-      else if (card%has('SURFACE')) then
-         call deck%need_named(card, 'SURFACE', 'surface', surface)
-         call need_faces(card%place_of('SURFACE'), 'name the face that touches it', deck, surface)
-         region%surfaces = [surface]
-      else
-         call deck%need_element_set(card, region%set)
-      end if
-      call take_parameter(card, 'DISTANCE', deck, region%distance, '>0')
-   end subroutine build_region
 
 end module deck_builder_options

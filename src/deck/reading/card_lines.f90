@@ -2,6 +2,7 @@
 module card_lines
    use card_fields, only: drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
+   use card_parameters, only: take_parameter
    use card_typos, only: check_commas, lacks_star
    use cards, only: add_data, add_keyword, add_note, cards_type, field_type, &
       keyword_card_type
@@ -13,13 +14,12 @@ module card_lines
    use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: is_output
    use spelling, only: find_look_alike
-   use text, only: read_integer, to_text, to_upper
+   use text, only: to_text, to_upper
    implicit none
    private
    public :: card_lines_type, default_width
 
    integer, parameter :: default_width = 256   !! columns of a card
-   integer, parameter :: least_width = 80      !! that a deck may give
    integer, parameter :: most_fields = 9   !! of an *ELEMENT data card, that of eight nodes
 
    !> State of the reader between two lines.
@@ -178,7 +178,7 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
       type(keyword_card_type) :: card
-      integer :: i
+      integer :: i, width
       logical :: valid
 
       do i = 2, size(fields)
@@ -195,7 +195,11 @@ contains
          end if
          return
       end if
-      if (card%name == 'OPTIONS') call take_width(self, card, report)
+      if (card%name == 'OPTIONS') then
+         width = self%width
+         call take_parameter(card, 'WIDTH', report, width, '>=80')
+         self%width = max(self%width, width)
+      end if
       if (card%name == 'ELEMENT') self%element_fields = element_type_fields(card%text('TYPE'))
       self%keyword = card%name
       if (allocated(self%refusal_of_data)) deallocate(self%refusal_of_data)
@@ -205,22 +209,6 @@ contains
       card%data_lost = .not. valid
       call add_keyword(cards, card)
    end subroutine take_keyword
-
-   !> WIDTH= of *OPTIONS widens every card of the deck.
-   subroutine take_width(self, card, report)
-      type(card_lines_type), intent(inout) :: self
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      integer :: width
-      logical :: valid
-
-      if (.not. card%has('WIDTH')) return
-      call read_integer(card%text('WIDTH'), width, valid)
-      if (valid) valid = width >= least_width
-      if (valid) self%width = max(self%width, width)
-      if (.not. valid) call report%error(card%place_of('WIDTH'), 'WIDTH= needs a whole number '// &
-         'of at least '//to_text(least_width))
-   end subroutine take_width
 
    subroutine take_data_line(self, line, image, cards, report)
       type(card_lines_type), intent(inout) :: self

@@ -81,11 +81,11 @@ contains
       character(*), intent(in) :: string           !! as written
       character(*), intent(in) :: what             !! what it is, such as value of TOL=
       logical, intent(in) :: is_whole              !! whether it must be a whole number
-      character(*), intent(in) :: limit            !! >0, >=0, >=1, >=2, >0 <=1, >=0 <=1 or empty
+      character(*), intent(in) :: limit            !! >0, >=0, >=n, >0 <=1, >=0 <=1 or empty
       real(dp), intent(inout) :: value
       character(:), allocatable, intent(out) :: fault   !! what is wrong with it, or empty
       real(dp) :: number
-      integer :: whole
+      integer :: least, whole
       logical :: valid
 
       if (is_whole) then
@@ -106,8 +106,9 @@ contains
          if (number <= 0.0_dp) fault = ' must be positive'
       case ('>=0')
          if (number < 0.0_dp) fault = ' must not be negative'
-      case ('>=1', '>=2')
-         if (number < index('12', limit(3:))) fault = ' must be at least '//limit(3:)
+      case ('>=1', '>=2', '>=80')
+         read (limit(3:), *) least
+         if (number < least) fault = ' must be at least '//limit(3:)
       case ('>0 <=1')
          if (number <= 0.0_dp .or. number > 1.0_dp) fault = ' must be above 0 and at most 1'
       case ('>=0 <=1')

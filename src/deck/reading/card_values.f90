@@ -43,7 +43,10 @@ contains
       integer :: comma
 
       if (size(data%fields) <= most) return
-      comma = surplus_comma(data, most)
+      comma = decimal_comma(data)
+      if (may_be_decimals(data, most + 1)) then
+         if (adjacent(data, most)) comma = most
+      end if
       if (comma == 0) then
          call report%error(data%place(most + 1), 'extra field; the card is '//layout)
       else
@@ -250,17 +253,6 @@ contains
          return
       end do
    end function decimal_comma
-
-   !> Position of the field whose decimals make a card longer than it may be; 0 where there is none.
-   pure integer function surplus_comma(data, most)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: most                         !! most fields, fewer than it has
-
-      surplus_comma = decimal_comma(data)
-      if (may_be_decimals(data, most + 1)) then
-         if (adjacent(data, most)) surplus_comma = most
-      end if
-   end function surplus_comma
 
    !> Whether the next field begins right behind the comma.
    pure logical function adjacent(data, i)

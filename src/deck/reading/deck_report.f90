@@ -335,6 +335,7 @@ contains
       class(deck_report_type), intent(in) :: self
       type(printed_diagnostic_type), allocatable :: told(:)
       type(name_index_type) :: kinds
+      character(:), allocatable :: line
       integer, allocatable :: first_of(:)          ! (kinds)
       integer :: first(self%count), card, cards(self%source%count), i, last
 
@@ -344,7 +345,8 @@ contains
       last = 0
       ! Fewer messages are all told.
       do i = 1, merge(size(cards), 0, self%count > most_alike)
-         if (begins_card(self%source%images(i)%value)) last = i
+         line = adjustl(self%source%images(i)%value)
+         if (index(line, '*') == 1 .and. index(line, '**') /= 1) last = i
          cards(i) = last
       end do
       allocate (first_of(0))
@@ -377,14 +379,6 @@ contains
       where (told%more_lines < most_alike) told%more_lines = 0
       told = pack(told, [(first(i) == i .or. told(first(i))%more_lines == 0, i=1, self%count)])
    end function told_by
-
-   pure logical function begins_card(line)
-      character(*), intent(in) :: line
-      character(:), allocatable :: words
-
-      words = adjustl(line)
-      begins_card = index(words, '*') == 1 .and. index(words, '**') /= 1
-   end function begins_card
 
    !> The order of the diagnostics by image, then column, then as reported.
    function order_of(self) result(order)

@@ -72,8 +72,15 @@ contains
       after_step = .false.
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
-            call check_step_card(card, report, step_open)
-            if (card%name == 'STEP') step = k
+            if (card%name == 'STEP') then
+               if (step_open) call report%error(card%place, 'the step before has no *END STEP')
+               step_open = .true.
+               step = k
+            else if (card%name == 'END STEP') then
+               if (.not. step_open) call report%missing(card%place, 'this *END STEP has no '// &
+                  '*STEP', '*STEP')
+               step_open = .false.
+            end if
             after_step = after_step .or. step_open
             if (card%known > 0 .and. len(card%meant) == 0) call check_section(card, step_open, &
                after_step, report)
@@ -114,22 +121,6 @@ contains
       end select
    end subroutine lose_definitions
 
-   !> Follows *STEP and *END STEP.
-   subroutine check_step_card(card, report, step_open)
-      type(keyword_card_type), intent(in) :: card
-      class(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: step_open
-
-      if (card%name == 'STEP') then
-         if (step_open) call report%error(card%place, 'the step before has no *END STEP')
-         step_open = .true.
-      else if (card%name == 'END STEP') then
-         if (.not. step_open) call report%missing(card%place, 'this *END STEP has no *STEP', &
-            '*STEP')
-         step_open = .false.
-      end if
-   end subroutine check_step_card
-
    subroutine check_section(card, step_open, after_step, report)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: step_open, after_step
@@ -156,12 +147,16 @@ contains
       type(keyword_type) :: known
       character(:), allocatable :: most
       integer :: k
+      logical :: says_all
 
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k), n => size(cards%keywords(k)%data))
             if (card%known == 0) cycle
             known = known_keywords(card%known)
-            if (n < known%least_data .and. .not. (says_all(card) .or. card%data_lost)) then
+            ! OP=NEW, ROUGH, or an element set or surface of which an *NSET takes the nodes.
+            says_all = chosen(card, 'OP', 'MOD/NEW') == 'NEW' .or. card%has('ROUGH') .or. &
+               (card%name == 'NSET' .and. (card%has('ELSET') .or. card%has('SURFACE')))
+            if (n < known%least_data .and. .not. (says_all .or. card%data_lost)) then
                call report%error(card%place, '*'//card%name//' needs a data card')
             else if (n > known%most_data) then
                most = 'none'
@@ -172,15 +167,6 @@ contains
          end associate
       end do
    end subroutine check_data_counts
-
-   !> Whether a card needs no data because its parameters say all that it has to say: OP=NEW, ROUGH,
-   !> or an element set or surface of which an *NSET takes the nodes.
-   pure logical function says_all(card)
-      type(keyword_card_type), intent(in) :: card
-
-      says_all = chosen(card, 'OP', 'MOD/NEW') == 'NEW' .or. (card%name == 'NSET' .and. (card%has( &
-         'ELSET') .or. card%has('SURFACE'))) .or. (card%name == 'FRICTION' .and. card%has('ROUGH'))
-   end function says_all
 
    !> Reports a deck without *STEP at the first card that belongs in one.
    subroutine need_step(cards, report)
