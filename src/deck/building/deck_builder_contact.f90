@@ -5,8 +5,7 @@ module deck_builder_contact
    use card_values, only: check_extra, read_field
    use cards, only: data_card_type, keyword_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
-      friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces, &
-      tie_definition_type
+      friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces
    use deck_builder_interactions, only: build_friction
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
@@ -25,7 +24,9 @@ contains
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       type(contact_definition_type) :: common
-      integer :: i, k, n
+      character(:), allocatable :: text
+      real(dp) :: value
+      integer :: i, k, master, n, slave
 
       places = cards_of(deck%cards, 'CONTACT PAIR')
       allocate (deck%model%contacts(data_count(deck%cards, places)))
@@ -43,30 +44,23 @@ contains
       end do
       places = cards_of(deck%cards, 'CLEARANCE')
       do n = 1, size(places)
-         call build_clearance(deck%cards%keywords(places(n)), deck)
+         associate (card => deck%cards%keywords(places(n)))
+            call deck%need_named(card, 'MASTER', 'surface', master)
+            call deck%need_named(card, 'SLAVE', 'surface', slave)
+            call need_parameter(card, 'VALUE', deck, text)
+            value = 0.0_dp
+            call take_parameter(card, 'VALUE', deck, value)
+            call find_contact(slave, master, card%place, deck, i)
+            if (i == 0) cycle
+            associate (contact => deck%model%contacts(i))
+               if (contact%has_clearance) call deck%error(card%place, 'the clearance of '// &
+                  'contact pair '//contact%name//' is given twice')
+               contact%has_clearance = .true.
+               contact%clearance = value
+            end associate
+         end associate
       end do
    end subroutine build_contacts
-
-   !> Reads a clearance, for the interface of the two surfaces that it names.
-   subroutine build_clearance(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: text
-      real(dp) :: value
-      integer :: i, master, slave
-
-      call deck%need_named(card, 'MASTER', 'surface', master)
-      call deck%need_named(card, 'SLAVE', 'surface', slave)
-      call need_parameter(card, 'VALUE', deck, text)
-      value = 0.0_dp
-      call take_parameter(card, 'VALUE', deck, value)
-      call find_contact(slave, master, card%place, deck, i)
-      if (i == 0) return
-      if (deck%model%contacts(i)%has_clearance) call deck%error(card%place, 'the clearance of '// &
-         'contact pair '//deck%model%contacts(i)%name//' is given twice')
-      deck%model%contacts(i)%has_clearance = .true.
-      deck%model%contacts(i)%clearance = value
-   end subroutine build_clearance
 
    !> The interface of two surfaces; 0 after an error, and where a surface is 0.
    subroutine find_contact(slave, master, place, deck, contact)
@@ -176,7 +170,13 @@ contains
       n = 0
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
-            call check_tie_card(card, deck%model%ties(:n), deck)
+            if (choice(card, 'ADJUST', 'YES/NO', deck, 'NO') == 'YES') call deck%note('*TIE, '// &
+               'ADJUST=YES: nodes are not moved, an initial gap is not closed')
+            do i = 1, n
+               if (card%has('NAME') .and. to_upper(deck%model%ties(i)%faces%name) == to_upper( &
+                  card%text('NAME'))) call deck%error(card%place_of('NAME'), &
+                  deck%model%ties(i)%faces%title()//' is defined twice')
+            end do
             do i = 1, size(card%data)
                n = n + 1
                associate (tie => deck%model%ties(n))
@@ -192,23 +192,6 @@ contains
          end associate
       end do
    end subroutine build_ties
-
-   !> Checks that a card has a name of its own; no node is moved.
-   subroutine check_tie_card(card, ties, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(tie_definition_type), intent(in) :: ties(:)     ! those of the cards before
-      type(deck_type), intent(inout) :: deck
-      integer :: i
-
-      if (choice(card, 'ADJUST', 'YES/NO', deck, 'NO') == 'YES') call deck%note('*TIE, '// &
-         'ADJUST=YES: nodes are not moved, an initial gap is not closed')
-      if (.not. card%has('NAME')) return
-      do i = 1, size(ties)
-         if (to_upper(ties(i)%faces%name) /= to_upper(card%text('NAME'))) cycle
-         call deck%error(card%place_of('NAME'), ties(i)%faces%title()//' is defined twice')
-         return
-      end do
-   end subroutine check_tie_card
 
    !> Reads one card of a step.
    subroutine build_contact_change(k, step, deck)

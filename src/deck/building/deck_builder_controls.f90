@@ -218,7 +218,15 @@ contains
       is_later = .true.
       if (card%name == 'NODE PRINT') then
          call take_set(card, 'NSET', 'node set', deck, request%set, is_known)
-         if (is_dropped(card, deck, request%set)) is_known = .false.
+         if (request%set > 0) then
+            associate (set => deck%mesh%node_sets(request%set))
+               if (size(set%members) > 0 .and. all(deck%dropped(set%members))) then
+                  call deck%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
+                     set%name//', because none is a corner: nothing is printed')
+                  is_known = .false.
+               end if
+            end associate
+         end if
          totals = choice(card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
          request%each_node = totals /= 'ONLY'
          request%totals = totals /= 'NO'
@@ -260,22 +268,6 @@ contains
          deck%take_named(card, parameter, noun, set)
       is_known = set > 0 .or. card%lacks(parameter)
    end subroutine take_set
-
-   !> Whether ORDER=1 leaves no node of a set, which is warned of: there is nothing to print.
-   logical function is_dropped(card, deck, set)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      integer, intent(in) :: set      ! 0 for all nodes
-
-      is_dropped = .false.
-      if (set == 0) return
-      associate (members => deck%mesh%node_sets(set)%members)
-         is_dropped = size(members) > 0
-         if (is_dropped) is_dropped = all(deck%dropped(members))
-      end associate
-      if (is_dropped) call deck%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
-         deck%mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
-   end function is_dropped
 
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.
    subroutine take_quantity(card, data, position, deck, quantities)

@@ -93,56 +93,46 @@ contains
       end do
    end function largest_friction
 
-   !> Reads one *GAP RADIATION: emissivities of both faces, then view factors over the clearance.
+   !> Reads one *GAP RADIATION: emissivities of both faces, then view factors over the clearance, 1
+   !> at all clearances where there are none.
    !> Two large grey faces exchange sigma/(1/e1 + 1/e2 - 1) (T1^4 - T2^4), times the view factor.
    subroutine build_gap_radiation(card, deck, law)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives radiation in the open gap
-      real(dp) :: emissivity(2)
-      real(dp), allocatable :: gap(:), view_factor(:)
+      real(dp) :: emissivity(2), values(2, max(size(card%data) - 1, 1))
       logical :: valid
 
       call read_row(card%data(1), 'emissivity >0 <=1 =1/emissivity >0 <=1 =1', deck, &
          emissivity, valid)
-      call read_view_factors(card%data(2:), deck, gap, view_factor)
-      if (size(card%data) > 1 .and. view_factor(size(view_factor)) > 0.0_dp) call deck%note( &
-         '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last view '// &
-         'factor')
-      if (.not. deck%model%constants%has_radiation) call deck%error(card%place, '*GAP '// &
-         'RADIATION needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
-      if (law%open_kind == law_none) law%open_kind = law_gas
-      if (allocated(law%by_temperature)) then
-         if (law%by_temperature%radiance > 0.0_dp) call deck%error(card%place, '*GAP RADIATION '// &
-            'beside EMISSIVITY= of *GAP LAW: leave one of them out')
-      end if
-      if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%radiance = deck%model%constants%stefan_boltzmann*maxval(view_factor)/( &
-         1.0_dp/emissivity(1) + 1.0_dp/emissivity(2) - 1.0_dp)
-      law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
-      if (minval(view_factor) >= maxval(view_factor)) return
-      law%view_gap = gap
-      law%view_factor = view_factor/maxval(view_factor)
-   end subroutine build_gap_radiation
-
-   !> Rows of view factor and clearance; 1 at all clearances where there are none.
-   subroutine read_view_factors(rows, deck, gap, view_factor)
-      type(data_card_type), intent(in) :: rows(:)
-      type(deck_type), intent(inout) :: deck
-      real(dp), allocatable, intent(out) :: gap(:), view_factor(:)   ! (rows)
-      real(dp) :: values(2, max(size(rows), 1))
-      logical :: valid
-
       values(1, :) = 1.0_dp
       values(2, :) = 0.0_dp
-      call read_rows(rows, 'view factor >=0 <=1 =1/clearance? >=0', deck, values, valid)
-      view_factor = values(1, :)
-      gap = values(2, :)
-      if (valid) call check_ascending(rows, 2, 'clearances', gap, deck)
-      if (maxval(view_factor) > 0.0_dp) return
-      call deck%error(rows(1)%place(1), 'all view factors are 0: the faces do not radiate; '// &
-         'leave *GAP RADIATION out')
-      view_factor = 1.0_dp
-   end subroutine read_view_factors
+      associate (rows => card%data(2:), view_factor => values(1, :), gap => values(2, :))
+         call read_rows(rows, 'view factor >=0 <=1 =1/clearance? >=0', deck, values, valid)
+         if (valid) call check_ascending(rows, 2, 'clearances', gap, deck)
+         if (maxval(view_factor) <= 0.0_dp) then
+            call deck%error(rows(1)%place(1), 'all view factors are 0: the faces do not '// &
+               'radiate; leave *GAP RADIATION out')
+            view_factor = 1.0_dp
+         end if
+         if (size(rows) > 0 .and. view_factor(size(view_factor)) > 0.0_dp) call deck%note( &
+            '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last '// &
+            'view factor')
+         if (.not. deck%model%constants%has_radiation) call deck%error(card%place, '*GAP '// &
+            'RADIATION needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
+         if (law%open_kind == law_none) law%open_kind = law_gas
+         if (allocated(law%by_temperature)) then
+            if (law%by_temperature%radiance > 0.0_dp) call deck%error(card%place, '*GAP '// &
+               'RADIATION beside EMISSIVITY= of *GAP LAW: leave one of them out')
+         end if
+         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
+         law%by_temperature%radiance = deck%model%constants%stefan_boltzmann*maxval(view_factor)/( &
+            1.0_dp/emissivity(1) + 1.0_dp/emissivity(2) - 1.0_dp)
+         law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
+         if (minval(view_factor) >= maxval(view_factor)) return
+         law%view_gap = gap
+         law%view_factor = view_factor/maxval(view_factor)
+      end associate
+   end subroutine build_gap_radiation
 
 end module deck_builder_gap_heat

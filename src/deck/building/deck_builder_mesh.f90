@@ -32,6 +32,7 @@ contains
    subroutine build_nodes(deck)
       type(deck_type), intent(inout) :: deck
       real(dp), allocatable :: heights(:)
+      real(dp) :: place(2)
       integer, allocatable :: places(:)
       integer :: j, k, n
       logical :: told
@@ -61,7 +62,14 @@ contains
       if (n == 0) call deck%lose('node')
       deck%node_index%noun = 'node'
       call deck%node_index%build(deck%mesh%node_number)
-      call add_rotations(deck)
+      ! A node for the rotation of each coupling and rigid body, which no card can name.
+      do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
+         if (all(deck%cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
+         place = deck%mesh%coordinates(:, 1)
+         call add_node(deck%mesh, place)
+         deck%node_place = [deck%node_place, deck%cards%keywords(k)%place]
+         deck%node_valid = [deck%node_valid, .true.]
+      end do
    end subroutine build_nodes
 
    !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
@@ -94,22 +102,6 @@ contains
       deck%node_valid = deck%node_valid(kept)
       deck%node_height = deck%node_height(kept)
    end subroutine drop_repeated
-
-   !> Adds a node for the rotation of each coupling and rigid body, which no card can name.
-   subroutine add_rotations(deck)
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: place(2)
-      integer :: k
-
-      if (size(deck%mesh%node_number) == 0) return
-      do k = 1, size(deck%cards%keywords)
-         if (all(deck%cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
-         place = deck%mesh%coordinates(:, 1)
-         call add_node(deck%mesh, place)
-         deck%node_place = [deck%node_place, deck%cards%keywords(k)%place]
-         deck%node_valid = [deck%node_valid, .true.]
-      end do
-   end subroutine add_rotations
 
    !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what is behind z
    !> is the direction of a normal in Abaqus.
@@ -181,23 +173,6 @@ contains
       if (number == 0) call deck%lose(noun)
    end subroutine read_number
 
-   !> Reports elements that are given twice: one of the two may stand for one that is missing.
-   subroutine check_repeated(places, numbers, deck)
-      type(place_type), intent(in) :: places(:)        ! where each is
-      integer, intent(in) :: numbers(:)
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: second(:)                ! indexes into numbers
-      integer :: i
-
-      second = repeated(numbers)
-      second = pack(second, numbers(second) > 0)
-      do i = 1, size(second)
-         call deck%twice(places(second(i)), 'element '//to_text(numbers(second(i))), &
-            places(findloc(numbers, numbers(second(i)), dim=1)))
-      end do
-      if (size(second) > 0) call deck%lose('element')
-   end subroutine check_repeated
-
    !> Whether a keyword card begins elements that are lines.
    pure logical function is_line_card(card)
       type(keyword_card_type), intent(in) :: card   !! any card
@@ -209,7 +184,8 @@ contains
    !> Builds the elements and the lines, in the order of the deck.
    subroutine build_elements(deck)
       type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
+      integer, allocatable :: numbers(:), places(:), second(:)
+      type(place_type), allocatable :: places_of(:)
       logical, allocatable :: of_lines(:)
       integer :: e, k, line, n
 
@@ -242,10 +218,18 @@ contains
       deck%element_index%noun = 'element'
       call deck%element_index%build(deck%mesh%element_number)
       ! Elements and lines have different numbers.
-      call check_repeated([deck%element_place, deck%line_place], [deck%mesh%element_number, &
-         deck%line_number], deck)
+      numbers = [deck%mesh%element_number, deck%line_number]
+      places_of = [deck%element_place, deck%line_place]
+      second = repeated(numbers)
+      second = pack(second, numbers(second) > 0)
+      do k = 1, size(second)
+         call deck%twice(places_of(second(k)), 'element '//to_text(numbers(second(k))), places_of( &
+            findloc(numbers, numbers(second(k)), dim=1)))
+      end do
+      ! One of the two may stand for one that is missing.
+      if (size(second) > 0) call deck%lose('element')
       deck%member_index%noun = 'element'
-      call deck%member_index%build([deck%mesh%element_number, deck%line_number])
+      call deck%member_index%build(numbers)
    end subroutine build_elements
 
    !> Adds the lines of a card.

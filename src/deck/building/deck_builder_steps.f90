@@ -62,7 +62,9 @@ contains
                call begin_step(card, n > 1, before, deck, deck%model%steps(n))
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
-               call begin_analysis(card, n, counts, deck, deck%model%steps)
+               counts%analyses = counts%analyses + 1
+               if (counts%analyses > 1) call deck%error(card%place, 'a second analysis in one step')
+               if (n > 0) call build_analysis(card, n, counts, deck, deck%model%steps(n))
             case ('END STEP')
                if (counts%analyses > 0) cycle
                deck%analyses_sound = .false.
@@ -175,36 +177,18 @@ contains
       end if
    end subroutine begin_step
 
-   !> Reads the analysis of step n, the only one that it may have.
-   subroutine begin_analysis(card, n, counts, deck, steps)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: n   !! number of the step, 0 before the first
-      type(card_counts_type), intent(inout) :: counts
-      type(deck_type), intent(inout) :: deck
-      type(step_type), intent(inout) :: steps(:)
-
-      counts%analyses = counts%analyses + 1
-      if (counts%analyses > 1) call deck%error(card%place, 'a second analysis in one step')
-      counts%is_uncoupled = card%name(1:2) == 'UN'
-      if (n == 0) return
-      deck%analysis_place(n) = card%place
-      call build_analysis(card, n, deck, steps(n))
-      if (steps(n)%is_transient .and. .not. counts%has_amplitude) then
-         steps(n)%ramped = .false.
-         call deck%note('*'//card%name//' without STEADY STATE: loads without an amplitude act '// &
-            'at once; *STEP, AMPLITUDE=RAMP ramps them')
-      end if
-   end subroutine begin_analysis
-
    !> Reads *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
-   subroutine build_analysis(card, n, deck, step)
+   subroutine build_analysis(card, n, counts, deck, step)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n   ! number of the step
+      type(card_counts_type), intent(inout) :: counts
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
       character(:), allocatable :: creep
       integer :: errors
 
+      counts%is_uncoupled = card%name(1:2) == 'UN'
+      deck%analysis_place(n) = card%place
       errors = deck%error_count()
       step%analysis = analysis_coupled
       if (card%name == 'STATIC') step%analysis = analysis_static
@@ -225,6 +209,10 @@ contains
       else if (.not. adapts_increments(step)) then
          call fit_increments(card, n, deck, step)
       end if
+      if (counts%has_amplitude .or. .not. step%is_transient) return
+      step%ramped = .false.
+      call deck%note('*'//card%name//' without STEADY STATE: loads without an amplitude act at '// &
+         'once; *STEP, AMPLITUDE=RAMP ramps them')
    end subroutine build_analysis
 
    !> Whether an analysis gives its largest increment.

@@ -149,25 +149,22 @@ contains
       integer, intent(in) :: kind
       type(deck_type), intent(inout) :: deck
       type(verify_type), intent(inout) :: check
+      character(:), allocatable :: lack
 
+      lack = ''
+      if (any(kind == [of_interface, of_contact_points]) .and. size(deck%model%contacts) == 0) &
+         lack = 'CONTACT PAIR'
+      if (kind == of_sections .and. .not. any(deck%model%couplings%is_section())) lack = &
+         'PRE-TENSION SECTION'
       if (kind == of_history) then
          if (data%has(2)) call deck%error(data%place(2), check%quantity//' has no location: '// &
             'leave this field empty')
+      else if (len(lack) > 0) then
+         call deck%missing(data%place(1), 'the deck has no *'//lack//': there is no '// &
+            check%quantity, merge('equation', '        ', kind == of_sections))
+      else if (any(to_upper(check%where) == ['MIN', 'MAX'])) then
          return
-      end if
-      if ((kind == of_interface .or. kind == of_contact_points) .and. size(deck%model%contacts) == &
-         0) then
-         call deck%missing(data%place(1), 'the deck has no *CONTACT PAIR: there is no '// &
-            check%quantity)
-         return
-      end if
-      if (kind == of_sections .and. .not. any(deck%model%couplings%is_section())) then
-         call deck%missing(data%place(1), 'the deck has no *PRE-TENSION SECTION: there is no '// &
-            check%quantity, 'equation')
-         return
-      end if
-      if (any(to_upper(check%where) == ['MIN', 'MAX'])) return
-      if (kind == of_nodes .or. kind == of_sections) then
+      else if (any(kind == [of_nodes, of_sections])) then
          call check_nodes(data, kind, deck)
       else if (kind == of_interface .and. check%where == '' .and. size(deck%model%contacts) == 1) &
          then
@@ -203,11 +200,9 @@ contains
       if (size(nodes) == 0 .and. kind == of_sections) then
          call deck%error(data%place(2), data%text(2)//' is not the reference node of a '// &
             '*PRE-TENSION SECTION')
-      else if (size(nodes) == 0 .and. .not. all(deck%element_valid)) then
-         return
       else if (size(nodes) == 0) then
-         call deck%missing(data%place(2), 'no element has a node of '//data%text(2)//': it has '// &
-            'no values', 'element')
+         if (all(deck%element_valid)) call deck%missing(data%place(2), 'no element has a node '// &
+            'of '//data%text(2)//': it has no values', 'element')
       else if (all(deck%dropped(nodes))) then
          call deck%error(data%place(2), 'ORDER=1 leaves no node of '//data%text(2)//', because '// &
             'none is a corner: it has no values')
@@ -227,17 +222,16 @@ contains
       valid = .true.
       call read_field(data, 2, 'contact pair', deck, name, valid)
       if (.not. valid) return
-      at = index(name, '@')
-      if (at > 0) then
+      at = index(name//'@', '@')
+      if (at <= len(name)) then
          call read_real(trim(adjustl(name(at + 1:))), s, valid)
          if (valid) valid = s >= 0.0_dp
          if (kind /= of_contact_points .or. .not. valid) then
             call deck%error(data%place(2), ''''//name//''' is not a location of this quantity')
             return
          end if
-         name = trim(name(:at - 1))
       end if
-      call deck%look_up('contact pair', name, data%place(2), at)
+      call deck%look_up('contact pair', trim(name(:at - 1)), data%place(2), at)
    end subroutine check_interface
 
    !> A total time that an increment meets, or LAST.
@@ -279,14 +273,25 @@ contains
    subroutine build_accuracy(estimated, deck)
       type(quantity_type), intent(in) :: estimated(:)      !! quantities whose errors are estimated
       type(deck_type), intent(inout) :: deck
-      integer :: k, j
+      integer, allocatable :: places(:)
+      integer :: k, j, why
 
-      do k = 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            if (card%name /= 'ACCURACY') cycle
-            if (.not. allocated(deck%model%accuracy%targets)) then
+      places = cards_of(deck%cards, 'ACCURACY')
+      do k = 1, size(places)
+         associate (card => deck%cards%keywords(places(k)))
+            if (k == 1) then
                allocate (deck%model%accuracy%targets(0))
-               call check_deck(card, deck)
+               why = reason_of_deck(deck%model)
+               if (size(deck%model%contacts) == 0) call deck%missing(card%place, 'the deck has '// &
+                  'no *CONTACT PAIR: there is no quantity that *ACCURACY could name')
+               if (why /= no_reason) then
+                  call deck%error(card%place, '*ACCURACY needs bounds of errors, which do not '// &
+                     'know '//words_of_reason(why)//'; refine by *REFINE and, where heat is '// &
+                     'stored, LOCAL ERROR=')
+               else if (.not. deck%model%estimates_errors) then
+                  call deck%error(card%place, '*ACCURACY needs estimated errors; leave '// &
+                     'ERRORS=NO out of *OPTIONS')
+               end if
             end if
             call take_parameter(card, 'ROUNDS', deck, deck%model%accuracy%rounds, '>=1')
             do j = 1, size(card%data)
@@ -295,23 +300,6 @@ contains
          end associate
       end do
    end subroutine build_accuracy
-
-   !> The targets need an interface and estimates.
-   subroutine check_deck(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-
-      if (size(deck%model%contacts) == 0) call deck%missing(card%place, 'the deck has no '// &
-         '*CONTACT PAIR: there is no quantity that *ACCURACY could name')
-      if (reason_of_deck(deck%model) /= no_reason) then
-         call deck%error(card%place, '*ACCURACY needs bounds of errors, which do not know '// &
-            words_of_reason(reason_of_deck(deck%model))//'; refine by *REFINE and, where heat '// &
-            'is stored, LOCAL ERROR=')
-         return
-      end if
-      if (.not. deck%model%estimates_errors) call deck%error(card%place, '*ACCURACY needs '// &
-         'estimated errors; leave ERRORS=NO out of *OPTIONS')
-   end subroutine check_deck
 
    !> quantity, target, REL|ABS, interface.
    subroutine build_target(data, estimated, deck)

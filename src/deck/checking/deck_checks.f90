@@ -35,14 +35,19 @@ contains
    !> Checks the model before it is refined.
    subroutine check_model(deck)
       type(deck_type), intent(inout) :: deck
-      integer :: uses(4, size(deck%mesh%element_number))
+      integer :: uses(4, size(deck%mesh%element_number)), e, without
       logical :: inverted(size(deck%mesh%element_number))
       character(:), allocatable :: fault
 
       ! The mesh once it is refined.
       fault = numbering_fault(deck%mesh, size(deck%mesh%element_number)*4_long**deck%levels)
       if (len(fault) > 0) call deck%error(deck%levels_place, fault)
-      call check_sections(deck)
+      e = findloc(deck%mesh%element_section, 0, dim=1)
+      without = count(deck%mesh%element_section == 0)
+      if (size(deck%model%sections) > 0 .and. without > 0 .and. deck%sections_sound .and. &
+         deck%sets_sound) call deck%error(deck%element_place(e), 'no *SOLID SECTION for '// &
+         'element '//to_text(deck%mesh%element_number(e))//'; elements without one: '// &
+         to_text(without))
       call check_materials(deck)
       call check_planes(deck)
       call check_orientations(deck)
@@ -51,19 +56,6 @@ contains
       call check_sides(deck, inverted, uses)
       call check_loads(deck, uses)
    end subroutine check_model
-
-   !> Every element has a section.
-   subroutine check_sections(deck)
-      type(deck_type), intent(inout) :: deck
-      integer :: without, e
-
-      without = count(deck%mesh%element_section == 0)
-      if (size(deck%model%sections) == 0 .or. without == 0) return
-      if (.not. (deck%sections_sound .and. deck%sets_sound)) return
-      e = findloc(deck%mesh%element_section, 0, dim=1)
-      call deck%error(deck%element_place(e), 'no *SOLID SECTION for element '// &
-         to_text(deck%mesh%element_number(e))//'; elements without one: '//to_text(without))
-   end subroutine check_sections
 
    !> Every material in use has what the steps need.
    subroutine check_materials(deck)

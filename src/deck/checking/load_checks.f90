@@ -188,7 +188,20 @@ contains
       card = 0
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            if (deck%analyses_sound) call check_support_effect(request, deck)
+            associate (analyses => deck%model%steps(max(1, request%step):)%analysis)
+               if (.not. deck%analyses_sound) then
+                  continue
+               else if (request%component == dof_temperature) then
+                  if (.not. (any(solves_heat(analyses)) .or. deck%has_lost('heat'))) call &
+                     deck%warning(request%place, 'a temperature without effect: no step from '// &
+                     'here on solves heat; take *COUPLED TEMPERATURE-DISPLACEMENT', &
+                     'temperature without effect')
+               else if (abs(request%value) > 0.0_dp .and. .not. any(solves_mechanics( &
+                  analyses))) then   ! supports of 0 do no harm
+                  call deck%warning(request%place, 'a displacement without effect: no step '// &
+                     'from here on solves mechanics')
+               end if
+            end associate
             if (request%card == card) cycle
             card = request%card
             ! As CalculiX does.
@@ -204,24 +217,6 @@ contains
          call check_conflicts(deck, i)
       end do
    end subroutine check_boundaries
-
-   !> Warns of values that come after the last step that solves for what they prescribe. Supports of
-   !> 0 do no harm.
-   subroutine check_support_effect(request, deck)
-      type(request_type), intent(in) :: request
-      type(deck_type), intent(inout) :: deck
-
-      associate (analyses => deck%model%steps(max(1, request%step):)%analysis)
-         if (request%component == dof_temperature) then
-            if (.not. (any(solves_heat(analyses)) .or. deck%has_lost('heat'))) call deck%warning( &
-               request%place, 'a temperature without effect: no step from here on solves heat; '// &
-               'take *COUPLED TEMPERATURE-DISPLACEMENT', 'temperature without effect')
-         else if (abs(request%value) > 0.0_dp) then
-            if (.not. any(solves_mechanics(analyses))) call deck%warning(request%place, &
-               'a displacement without effect: no step from here on solves mechanics')
-         end if
-      end associate
-   end subroutine check_support_effect
 
    !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
    subroutine check_dropped(deck)

@@ -21,26 +21,13 @@ module copied_cards
 contains
 
    !> *NFILL: nodes between those of two sets, in the order of their numbers, at equal distances or,
-   !> with BIAS=, at distances of which each is the one behind it times the bias.
-   subroutine fill_nodes(card, all)
-      type(keyword_card_type), intent(in) :: card
-      type(growing_cards_type), intent(inout) :: all            !! receives the cards
-      real(dp) :: bias
-      integer :: j
-
-      bias = 1.0_dp
-      call take_parameter(card, 'BIAS', all%report, bias, '>0')
-      do j = 1, size(card%data)
-         call fill_line(card, card%data(j), bias, all)
-      end do
-   end subroutine fill_nodes
-
-   !> Two sets or nodes, number of intervals, increment.
-   subroutine fill_line(card, data, bias, all)
+   !> with BIAS=, at distances of which each is the one behind it times the bias. A data card has
+   !> two sets or nodes, number of intervals, increment.
+   subroutine fill_nodes(card, data, bias, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: bias
-      type(growing_cards_type), intent(inout) :: all
+      type(growing_cards_type), intent(inout) :: all            !! receives the cards
       integer, allocatable :: from(:), to(:)
       real(dp) :: given(4), x(2, 2)
       real(dp), allocatable :: parts(:)
@@ -80,7 +67,7 @@ contains
                1))*(parts(k)/parts(intervals)), all)
          end do
       end do
-   end subroutine fill_line
+   end subroutine fill_nodes
 
    !> A node set, or one node, of the cards so far.
    subroutine end_of_fill(data, i, all, numbers, valid)

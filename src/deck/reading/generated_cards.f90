@@ -1,6 +1,6 @@
 !> *NGEN, *NFILL, *NCOPY, *ELGEN and *ELCOPY -> the *NODE and *ELEMENT cards that they stand for.
 module generated_cards
-   use card_parameters, only: choice
+   use card_parameters, only: choice, take_parameter
    use card_values, only: read_row
    use cards, only: add_data, add_keyword, cards_type, data_card_type, keyword_card_type, &
       replace_cards
@@ -38,6 +38,7 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout), target :: report   !! receives errors
       type(growing_cards_type) :: all
+      real(dp) :: bias
       integer :: k, j
 
       do k = 1, size(cards%keywords)
@@ -56,14 +57,15 @@ contains
                cycle
             end if
             select case (card%name)
-            case ('NFILL')
-               call fill_nodes(card, all)
             case ('NCOPY')
                call copy_nodes(card, all)
             case ('ELCOPY')
                call copy_elements(card, all)
             case default
+               bias = 1.0_dp
+               call take_parameter(card, 'BIAS', report, bias, '>0')
                do j = 1, size(card%data)
+                  if (card%name == 'NFILL') call fill_nodes(card, card%data(j), bias, all)
                   if (card%name == 'NGEN') call generate_nodes(card, card%data(j), all)
                   if (card%name == 'ELGEN') call generate_elements(card, card%data(j), all)
                end do
