@@ -132,7 +132,7 @@ contains
    !> Puts the loads and supports of a sound deck on its mesh, and checks what that shows.
    subroutine complete_model(deck)
       type(deck_type), intent(inout) :: deck
-      integer :: s
+      integer :: n, s
 
       call find_bodies(deck%mesh)
       call check_folds(deck)
@@ -150,7 +150,19 @@ contains
       deck%model%deck_equations = size(deck%model%equations)
       deck%model%written_levels = deck%levels
       deck%model%written_order = deck%order
-      call take_requests(deck)
+      allocate (deck%model%requests)
+      deck%model%requests%supports = deck%boundaries
+      deck%model%requests%loads = deck%loads
+      deck%model%requests%temperatures = deck%temperatures
+      call collect_fields(deck%model)
+      n = 0
+      if (deck%boundaries%count > 0) n = deck%boundaries%items(deck%boundaries%count)%card
+      allocate (deck%model%boundary_places(n))
+      do n = 1, deck%boundaries%count
+         associate (request => deck%boundaries%items(n))
+            deck%model%boundary_places(request%card)%value = deck%source%words_of(request%place)
+         end associate
+      end do
       call apply_requests(deck%model)
       call check_amplitudes(deck)
       call check_starts(deck)
@@ -164,26 +176,6 @@ contains
       end if
       call note_defaults(deck)
    end subroutine complete_model
-
-   !> Gives a model what its deck asks for, and the places of the supports in words.
-   subroutine take_requests(deck)
-      type(deck_type), intent(in) :: deck
-      integer :: i, n
-
-      allocate (deck%model%requests)
-      deck%model%requests%supports = deck%boundaries
-      deck%model%requests%loads = deck%loads
-      deck%model%requests%temperatures = deck%temperatures
-      call collect_fields(deck%model)
-      n = 0
-      if (deck%boundaries%count > 0) n = deck%boundaries%items(deck%boundaries%count)%card
-      allocate (deck%model%boundary_places(n))
-      do i = 1, deck%boundaries%count
-         associate (request => deck%boundaries%items(i))
-            deck%model%boundary_places(request%card)%value = deck%source%words_of(request%place)
-         end associate
-      end do
-   end subroutine take_requests
 
    !> Notes the defaults of what the deck does not say at all.
    subroutine note_defaults(deck)

@@ -2,7 +2,7 @@
 module deck_builder_equations
    use card_parameters, only: need_parameter
    use card_values, only: read_field, read_row
-   use cards, only: data_card_type, keyword_card_type
+   use cards, only: keyword_card_type
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use equations, only: coupling_type, equation_type
    use deck_context, only: deck_type
@@ -57,16 +57,18 @@ contains
       deck%model%equations = list(:count)
    end subroutine build_equations
 
-   !> Reads one equation: the number of its terms, then the terms, any number on a card.
+   !> Reads one equation: the number of its terms, then the terms, any number on a card, each a node
+   !> or set, degree of freedom, coefficient.
    subroutine read_terms(card, data, deck, terms)
       type(keyword_card_type), intent(in) :: card
       integer, intent(inout) :: data               ! its first data card; then that behind it
       type(deck_type), intent(inout) :: deck
       type(term_type), allocatable, intent(out) :: terms(:)   ! unallocated after an error
       type(term_type), allocatable :: found(:)
+      type(term_type) :: term
       type(place_type) :: place
       real(dp) :: given(1)
-      integer :: i, n
+      integer :: dof, i, n
       logical :: valid
 
       place = card%data(data)%place(1)
@@ -76,7 +78,19 @@ contains
       allocate (found(0))
       do while (valid .and. size(found) < n .and. data <= size(card%data))
          do i = 1, size(card%data(data)%fields), term_fields
-            call read_term(card%data(data), i, deck, found, valid)
+            associate (row => card%data(data))
+               term%place = row%place(i)
+               call deck%need_target('node', row, i, term%target_type, valid)
+               call read_field(row, i + 1, 'degree of freedom', deck, dof, valid)
+               call read_field(row, i + 2, 'coefficient', deck, term%coefficient, valid)
+               if (.not. valid) cycle
+               term%dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
+                  term%members(deck%mesh%node_sets), dof)
+               valid = any(term%dof == [1, 2, dof_temperature])
+               if (.not. valid) call deck%error(row%place(i + 1), 'degree of freedom '// &
+                  to_text(dof)//'; an equation relates 1 and 2, or 11')
+               found = [found, term]
+            end associate
          end do
          data = data + 1
       end do
@@ -89,31 +103,6 @@ contains
          call move_alloc(found, terms)
       end if
    end subroutine read_terms
-
-   !> Reads one term: node or set, degree of freedom, coefficient.
-   subroutine read_term(card, position, deck, terms, valid)
-      type(data_card_type), intent(in) :: card
-      integer, intent(in) :: position
-      type(deck_type), intent(inout) :: deck
-      type(term_type), allocatable, intent(inout) :: terms(:)
-      logical, intent(inout) :: valid
-      type(term_type) :: term
-      integer :: dof
-
-      term%place = card%place(position)
-      call deck%need_target('node', card, position, term%target_type, valid)
-      call read_field(card, position + 1, 'degree of freedom', deck, dof, valid)
-      call read_field(card, position + 2, 'coefficient', deck, term%coefficient, valid)
-      if (.not. valid) return
-      term%dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
-         term%members(deck%mesh%node_sets), dof)
-      if (all(term%dof /= [1, 2, dof_temperature])) then
-         call deck%error(card%place(position + 1), 'degree of freedom '//to_text(dof)//'; an '// &
-            'equation relates 1 and 2, or 11')
-         valid = .false.
-      end if
-      terms = [terms, term]
-   end subroutine read_term
 
    !> Displacements and temperatures are solved one after the other; sets have one length; the first
    !> term, which the others determine, is there.

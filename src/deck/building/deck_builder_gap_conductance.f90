@@ -1,7 +1,7 @@
 !> *GAP CONDUCTANCE: a table of conductance over the pressure, or over the clearance, at one mean
 !> temperature of the faces or at several.
 module deck_builder_gap_conductance
-   use card_values, only: check_unneeded_temperature, decimal_comma, read_rows, report_decimal_comma
+   use card_values, only: check_unneeded, decimal_comma, read_rows, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
       line_value
@@ -214,7 +214,7 @@ contains
          return
       end do
       if (differ .or. .not. valid) return
-      call check_unneeded_temperature(rows(1), 3, deck)
+      call check_unneeded(rows(1), 3, 'a temperature', deck)
       if (any([(rows(i)%has(3), i=1, size(rows))])) call deck%note('*GAP CONDUCTANCE: the '// &
          'temperature, the same in every row, is ignored')
    end subroutine check_temperatures

@@ -239,7 +239,10 @@ contains
       integer, allocatable, intent(out) :: dofs(:)
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
+      character(:), allocatable :: advice
+      real(dp) :: given
       integer :: dof, first, i, last
+      logical :: is_number
 
       dofs = [integer ::]
       i = findloc(support_names == to_upper(data%text(2)), .true., dim=1)
@@ -260,7 +263,11 @@ contains
          deck, first, valid)
       last = first
       if (.not. valid) return
-      call read_field(data, 3, 'last degree of freedom'//value_advice(data)//'?', deck, last, valid)
+      advice = ''
+      call read_real(data%text(3), given, is_number)
+      if (is_number .and. size(data%fields) == 3) advice = '; the value is the fourth field: '// &
+         data%text(1)//', '//data%text(2)//', '//data%text(2)//', '//data%text(3)
+      call read_field(data, 3, 'last degree of freedom'//advice//'?', deck, last, valid)
       call read_field(data, 4, 'value?', deck, value, valid)
       call check_extra(data, 4, 'node or set, first and last degree of freedom, value', deck)
       dofs = [(dof, dof=first, last)]
@@ -268,19 +275,6 @@ contains
       call deck%error(data%place(3), 'the last degree of freedom is below the first')
       valid = .false.
    end subroutine read_degrees
-
-   !> Shows where a value belongs that stands in the place of the last degree of freedom.
-   pure function value_advice(data) result(advice)
-      type(data_card_type), intent(in) :: data
-      character(:), allocatable :: advice
-      real(dp) :: value
-      logical :: is_number
-
-      advice = ''
-      call read_real(data%text(3), value, is_number)
-      if (is_number .and. size(data%fields) == 3) advice = '; the value is the fourth field: '// &
-         data%text(1)//', '//data%text(2)//', '//data%text(2)//', '//data%text(3)
-   end function value_advice
 
    !> Requests a degree of freedom. 0 on 3 to 6, which a plane does not have, is ignored.
    subroutine add_support(data, dof, request, deck, valid)

@@ -2,7 +2,7 @@
 !> elements their material, its axes and their thickness.
 module deck_builder_materials
    use card_parameters, only: choice, take_parameter
-   use card_values, only: check_ascending, check_unneeded, check_unneeded_temperature, read_row
+   use card_values, only: check_ascending, check_unneeded, read_row
    use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
@@ -265,7 +265,7 @@ contains
             property%temperature(row) = given(last - n + 1)
             if (c == size(layouts) .and. rows == 1 .and. card%data(i)%has(last - n + 1)) then
                call deck%note('the temperature field of a single property row is ignored')
-               call check_unneeded_temperature(card%data(i), last - n + 1, deck)
+               call check_unneeded(card%data(i), last - n + 1, 'a temperature', deck)
             end if
          end associate
       end do

@@ -80,9 +80,19 @@ contains
       integer, intent(out) :: uses(:, :)
       type(element_side_type) :: sides(4*size(deck%mesh%element_number))
       integer, allocatable :: order(:)
-      integer :: first, last, n
+      integer :: e, f, first, last, n
 
-      call list_sides(deck%element_valid .and. .not. inverted, deck%mesh, sides, n)
+      n = 0
+      do e = 1, size(inverted)
+         if (inverted(e) .or. .not. deck%element_valid(e)) cycle
+         do f = 1, element_corner_count(deck%mesh%element_kind(e))
+            n = n + 1
+            associate (ends => side_ends(deck%mesh, e, f))
+               sides(n) = element_side_type(e, f, min(ends(1), ends(3)), max(ends(1), ends(3)), &
+                  ends(2))
+            end associate
+         end do
+      end do
       order = sort_order(sides(:n)%high)
       order = order(sort_order(sides(order)%low))
       uses = 0
@@ -100,26 +110,6 @@ contains
       call check_middles(deck, sides(:n))
       call check_faces(deck, uses)
    end subroutine check_sides
-
-   !> The sides of sound elements, in the order of the elements.
-   pure subroutine list_sides(sound, mesh, sides, n)
-      logical, intent(in) :: sound(:)   !! (elements)
-      type(mesh_type), intent(in) :: mesh
-      type(element_side_type), intent(inout) :: sides(:)
-      integer, intent(out) :: n
-      integer :: e, f
-
-      n = 0
-      do e = 1, size(mesh%element_number)
-         do f = 1, merge(element_corner_count(mesh%element_kind(e)), 0, sound(e))
-            n = n + 1
-            associate (ends => side_ends(mesh, e, f))
-               sides(n) = element_side_type(e, f, min(ends(1), ends(3)), max(ends(1), ends(3)), &
-                  ends(2))
-            end associate
-         end do
-      end do
-   end subroutine list_sides
 
    !> Checks the elements that meet between two corners.
    subroutine check_meeting(deck, sides, uses)

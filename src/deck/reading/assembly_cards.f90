@@ -223,12 +223,27 @@ contains
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
       type(instance_type) :: owner
+      type(string_type), allocatable :: names(:)
       integer :: first, i, k
 
       first = all%keyword_count + 1
       owner%name = ''
       if (open%level == at_assembly) owner = open%assembly
-      if (card%has('INSTANCE')) call find_owner(card, open, report, owner)
+      if (card%has('INSTANCE')) then
+         owner%name = to_upper(card%text('INSTANCE'))
+         owner%offset = 0
+         allocate (names(0))
+         do i = 1, size(open%instances)
+            call append(names, open%instances(i)%name)
+            if (open%instances(i)%name == owner%name) exit
+         end do
+         if (i <= size(open%instances)) then
+            owner = open%instances(i)
+         else
+            call report%missing(card%place_of('INSTANCE'), 'unknown instance '//owner%name// &
+               nearest_known(owner%name, names), 'instance', owner%name)
+         end if
+      end if
       call copy_card(card, owner, all)
       associate (copy => all%keywords(first))
          do k = 1, size(copy%parameters)
@@ -246,27 +261,6 @@ contains
          end do
       end associate
    end subroutine take_flat
-
-   !> The instance that INSTANCE= of a set names.
-   subroutine find_owner(card, open, report, owner)
-      type(keyword_card_type), intent(in) :: card
-      type(reading_type), intent(in) :: open
-      type(deck_report_type), intent(inout) :: report
-      type(instance_type), intent(out) :: owner
-      type(string_type), allocatable :: names(:)
-      integer :: i
-
-      owner%name = to_upper(card%text('INSTANCE'))
-      allocate (names(0))
-      do i = 1, size(open%instances)
-         call append(names, open%instances(i)%name)
-         if (open%instances(i)%name /= owner%name) cycle
-         owner = open%instances(i)
-         return
-      end do
-      call report%missing(card%place_of('INSTANCE'), 'unknown instance '//owner%name// &
-         nearest_known(owner%name, names), 'instance', owner%name)
-   end subroutine find_owner
 
    !> Adds a card of a part for an instance. Errors that the copy has are reported where the card
    !> of the part is.

@@ -9,8 +9,7 @@ module card_values
    implicit none
    private
    public :: read_field, check_extra, read_row, read_rows, check_ascending, plane_vector, &
-      decimal_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, &
-      check_unneeded_temperature
+      decimal_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded
 
    !> Value of a field by its rule, as in a layout of read_row; it stays as it is where the card
    !> does not have it, and after an error. A text must be there.
@@ -311,8 +310,16 @@ contains
       class(deck_report_type), intent(inout) :: report    !! receives the warning
       character(*), intent(in), optional :: group         !! by which it is is_told
       character(:), allocatable :: message
+      real(dp) :: temperature
+      logical :: is_number
 
       if (.not. may_be_decimals(data, i)) return
+      if (what == 'a temperature') then
+         call read_real(data%text(i), temperature, is_number)
+         ! A plausible one is no decimals, unless it is directly behind the comma of `0,`.
+         if (temperature >= least_plausible .and. (verify(data%text(i - 1), '+-0') > 0 .or. .not. &
+            adjacent(data, i - 1))) return
+      end if
       associate (whole => data%fields(i - 1)%text, decimals => data%fields(i)%text)
          message = 'decimal comma? '//whole//','//decimals//' is two fields: '//whole//', and '// &
             what//', which is ignored; write '//whole//'.'//decimals//', or '//whole// &
@@ -324,23 +331,5 @@ contains
          call report%possible_cause(data%place(i - 1), message)
       end if
    end subroutine check_unneeded
-
-   !> As check_unneeded for the temperature behind a property: a plausible one is no decimals,
-   !> unless it is directly behind the comma of `0,`.
-   subroutine check_unneeded_temperature(data, i, report)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: i                            !! position of the field, from 2
-      class(deck_report_type), intent(inout) :: report    !! receives the warning
-      real(dp) :: temperature
-      logical :: is_number
-
-      if (.not. may_be_decimals(data, i)) return
-      call read_real(data%text(i), temperature, is_number)
-      associate (before => data%fields(i - 1), field => data%fields(i))
-         if (temperature >= least_plausible .and. (verify(before%text, '+-0') > 0 .or. &
-            field%place%column > before%place%column + len(before%text) + 1)) return
-      end associate
-      call check_unneeded(data, i, 'a temperature', report)
-   end subroutine check_unneeded_temperature
 
 end module card_values

@@ -82,8 +82,16 @@ contains
                step_open = .false.
             end if
             after_step = after_step .or. step_open
-            if (card%known > 0 .and. len(card%meant) == 0) call check_section(card, step_open, &
-               after_step, report)
+            if (card%known == 0 .or. len(card%meant) > 0) cycle
+            associate (section => known_keywords(card%known)%section)
+               if (section == in_model .and. after_step) call report%error(card%place, '*'// &
+                  card%name//' must come before the first *STEP', 'late cards of the model')
+               if (section == in_step .and. .not. step_open .and. card%name /= 'END STEP') call &
+                  report%missing(card%place, '*'//card%name//' must be between *STEP and *END '// &
+                  'STEP', '*STEP')
+               if (card%name == 'BOUNDARY' .and. after_step .and. .not. step_open) call &
+                  report%error(card%place, '*BOUNDARY must be in a step or before the first')
+            end associate
          end associate
       end do
       if (step_open) call report%error(cards%keywords(step)%place, 'this step has no *END STEP')
@@ -120,25 +128,6 @@ contains
          return
       end select
    end subroutine lose_definitions
-
-   subroutine check_section(card, step_open, after_step, report)
-      type(keyword_card_type), intent(in) :: card
-      logical, intent(in) :: step_open, after_step
-      class(deck_report_type), intent(inout) :: report
-
-      select case (known_keywords(card%known)%section)
-      case (in_model)
-         if (after_step) call report%error(card%place, '*'//card%name//' must come before the '// &
-            'first *STEP', 'late cards of the model')
-      case (in_step)
-         if (.not. step_open .and. card%name /= 'END STEP') call report%missing(card%place, &
-            '*'//card%name//' must be between *STEP and *END STEP', '*STEP')
-      case default
-         if (card%name == 'BOUNDARY' .and. after_step .and. .not. step_open) then
-            call report%error(card%place, '*BOUNDARY must be in a step or before the first')
-         end if
-      end select
-   end subroutine check_section
 
    !> Checks the number of data cards of all keyword cards.
    subroutine check_data_counts(cards, report)

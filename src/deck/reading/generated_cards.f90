@@ -111,7 +111,17 @@ contains
          call make_circle(card, data, given, ends, all, circle)
          valid = circle%valid
       end if
-      if (valid) call check_range(data, ends%number, step, all%report, valid)
+      if (valid) then
+         n = ends(2)%number - ends(1)%number
+         valid = step > 0 .and. n > 0 .and. mod(n, max(step, 1)) == 0
+         if (.not. valid) then
+            call all%report%error(data%place(3), 'increments of '//to_text(step)//' do not '// &
+               'lead from '//to_text(ends(1)%number)//' to '//to_text(ends(2)%number))
+         else if (n/step > most_generated) then
+            call all%report%error(data%place(2), too_many)
+            valid = .false.
+         end if
+      end if
       if (.not. valid) then
          call all%report%lose('node')
          return
@@ -177,24 +187,6 @@ contains
       call all%report%error(data%place(4), 'the center of the circle is one of its nodes')
       circle%valid = .false.
    end subroutine make_circle
-
-   !> The increment leads from the first number to the last.
-   subroutine check_range(data, ends, step, report, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: ends(2), step
-      type(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: valid
-
-      valid = step > 0 .and. ends(2) > ends(1)
-      if (valid) valid = mod(ends(2) - ends(1), step) == 0
-      if (.not. valid) then
-         call report%error(data%place(3), 'increments of '//to_text(step)//' do not lead from '// &
-            to_text(ends(1))//' to '//to_text(ends(2)))
-      else if ((ends(2) - ends(1))/step > most_generated) then
-         call report%error(data%place(2), too_many)
-         valid = .false.
-      end if
-   end subroutine check_range
 
    !> Master element; then for the elements of a row, and for the rows, their number and the
    !> increments of their nodes and of their own numbers.
