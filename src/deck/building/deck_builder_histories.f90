@@ -34,16 +34,50 @@ contains
    !> Builds all amplitudes.
    subroutine build_amplitudes(deck)
       type(deck_type), intent(inout) :: deck
+      character(:), allocatable :: kind, none
       integer, allocatable :: places(:)
-      integer :: n
+      real(dp) :: begin, interval
+      integer :: errors, i, n
 
       places = cards_of(deck%cards, 'AMPLITUDE')
       allocate(deck%model%amplitudes(size(places)))
       do n = 1, size(places)
          call deck%take_name(places(n), 'amplitude', deck%model%amplitudes(n)%name)
-         call build_amplitude(deck%cards%keywords(places(n)), deck, deck%model%amplitudes(n))
+         associate (card => deck%cards%keywords(places(n)), amplitude => deck%model%amplitudes(n))
+            amplitude%total_time = counts_total_time(card, deck)
+            none = choice(card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
+            errors = deck%error_count()
+            kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
+            amplitude%smooth = kind == 'SMOOTH STEP'
+            if (deck%error_count() > errors) then
+               allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
+            else if (kind == 'EQUALLY SPACED') then
+               begin = 0.0_dp
+               interval = 1.0_dp
+               call take_parameter(card, 'BEGIN', deck, begin)
+               call need_parameter(card, 'FIXED INTERVAL', deck, none)
+               call take_parameter(card, 'FIXED INTERVAL', deck, interval, '>0')
+               amplitude%values = values_of(card, 'value', deck)
+               amplitude%times = [(begin + i*interval, i=0, size(amplitude%values) - 1)]
+            else
+               if (card%has('FIXED INTERVAL')) call deck%error(card%place_of('FIXED INTERVAL'), &
+                  'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
+               if (card%has('BEGIN')) call deck%error(card%place_of('BEGIN'), 'BEGIN= needs '// &
+                  'DEFINITION=EQUALLY SPACED')
+               call read_points(card, deck, amplitude)
+            end if
+         end associate
       end do
    end subroutine build_amplitudes
+
+   !> Whether times are those since the start, and not those of a step.
+   logical function counts_total_time(card, deck)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+
+      counts_total_time = &
+         choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
+   end function counts_total_time
 
    !> Builds all *TIME POINTS: times, any number of them a card, or start, end and interval.
    subroutine build_time_points(deck)
@@ -58,8 +92,7 @@ contains
       do n = 1, size(places)
          call deck%take_name(places(n), 'time points', deck%time_points(n)%name)
          associate (card => deck%cards%keywords(places(n)), points => deck%time_points(n))
-            points%total_time = &
-               choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
+            points%total_time = counts_total_time(card, deck)
             allocate (points%times(0))
             do j = 1, size(card%data)
                valid = .true.
@@ -78,40 +111,6 @@ contains
          end associate
       end do
    end subroutine build_time_points
-
-   !> Parameters of the card, then its points.
-   subroutine build_amplitude(card, deck, amplitude)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(amplitude_type), intent(inout) :: amplitude
-      character(:), allocatable :: kind, none
-      real(dp) :: begin, interval
-      integer :: errors, i
-
-      amplitude%total_time = &
-         choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
-      none = choice(card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
-      errors = deck%error_count()
-      kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
-      amplitude%smooth = kind == 'SMOOTH STEP'
-      if (deck%error_count() > errors) then
-         allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
-      else if (kind == 'EQUALLY SPACED') then
-         begin = 0.0_dp
-         interval = 1.0_dp
-         call take_parameter(card, 'BEGIN', deck, begin)
-         call need_parameter(card, 'FIXED INTERVAL', deck, none)
-         call take_parameter(card, 'FIXED INTERVAL', deck, interval, '>0')
-         amplitude%values = values_of(card, 'value', deck)
-         amplitude%times = [(begin + i*interval, i=0, size(amplitude%values) - 1)]
-      else
-         if (card%has('FIXED INTERVAL')) call deck%error(card%place_of('FIXED INTERVAL'), &
-            'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
-         if (card%has('BEGIN')) call deck%error(card%place_of('BEGIN'), 'BEGIN= needs '// &
-            'DEFINITION=EQUALLY SPACED')
-         call read_points(card, deck, amplitude)
-      end if
-   end subroutine build_amplitude
 
    !> All fields of a card as numbers, without those that cannot be read.
    function values_of(card, what, deck) result(values)

@@ -1,6 +1,6 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choice, needed_choice, take_parameter
+   use card_parameters, only: choice, need_parameter, needed_choice, take_parameter
    use cards, only: keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline
    use deck_builder_rigid, only: need_faces
@@ -53,7 +53,13 @@ contains
                if (solver == 'SKYLINE') deck%model%solver = solver_skyline
                if (solver == 'MUMPS') deck%model%solver = solver_mumps
             case ('REFINE')
-               call build_levels(card, deck)
+               if (card%has('SURFACE') .or. card%has('ELSET')) cycle
+               if (card%has('DISTANCE')) call deck%error(card%place_of('DISTANCE'), 'DISTANCE= '// &
+                  'is measured from a surface or a set: give SURFACE= or ELSET= too')
+               if (deck%levels_place%image > 0) call deck%error(card%place, 'a second *REFINE '// &
+                  'of the whole model')
+               deck%levels_place = card%place_of('LEVELS')
+               call take_levels(card, deck, deck%levels)
             case ('CONTROLS')
                call deck%note('*'//card%name//' is ignored')
             case default
@@ -113,28 +119,14 @@ contains
       deck%model%units%temperature = trim(words(4))
    end subroutine build_units
 
-   subroutine build_levels(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-
-      if (card%has('SURFACE') .or. card%has('ELSET')) return
-      if (card%has('DISTANCE')) call deck%error(card%place_of('DISTANCE'), 'DISTANCE= is '// &
-         'measured from a surface or a set: give SURFACE= or ELSET= too')
-      if (deck%levels_place%image > 0) then
-         call deck%error(card%place, 'a second *REFINE of the whole model')
-         return
-      end if
-      deck%levels_place = card%place_of('LEVELS')
-      call take_levels(card, deck, deck%levels)
-   end subroutine build_levels
-
    !> Reads LEVELS= of *REFINE; 0 after an error.
    subroutine take_levels(card, deck, levels)
       type(keyword_card_type), intent(in) :: card          !! the *REFINE
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: levels                     !! 0 before
+      character(:), allocatable :: text
 
-      if (card%lacks('LEVELS')) call deck%error(card%place, '*REFINE needs LEVELS=')
+      call need_parameter(card, 'LEVELS', deck, text)
       call take_parameter(card, 'LEVELS', deck, levels)
       if (levels >= 0 .and. levels <= most_levels) return
       call deck%error(card%place_of('LEVELS'), 'LEVELS= must lie between 0 and '// &

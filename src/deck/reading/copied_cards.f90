@@ -4,8 +4,8 @@ module copied_cards
    use card_parameters, only: choice, need_parameter, take_parameter
    use card_values, only: read_row
    use cards, only: data_card_type, keyword_card_type
-   use given_cards, only: add_generated, add_node_card, add_numbers, add_set, card_of, corners_of, &
-      growing_cards_type, is_given, keep_last, members_of, node_place
+   use given_cards, only: add_generated, add_numbers, add_set, card_of, corners_of, &
+      growing_cards_type, is_given, members_of, node_place
    use kinds, only: dp
    use number_lists, only: number_list_type
    use plane_motions, only: axis_layout, motion_type, read_motion, rotation
@@ -63,8 +63,8 @@ contains
          x(:, 1) = node_place(all, from(i))
          x(:, 2) = node_place(all, to(i))
          do k = 1, intervals - 1
-            call add_node_card(data, from(i) + k*step, x(:, 1) + (x(:, 2) - x(:, &
-               1))*(parts(k)/parts(intervals)), all)
+            call add_numbers(data, [from(i) + k*step], all, x(:, 1) + (x(:, 2) - x(:, 1))*(parts( &
+               k)/ parts(intervals)))
          end do
       end do
    end subroutine fill_nodes
@@ -120,7 +120,7 @@ contains
       associate (data => card%data(1))
          call add_copies_card(card, 'NODE', 'NSET', '', all)
          do i = 1, size(numbers)
-            if (.not. is_there(i)) call add_node_card(data, numbers(i) + change, x(:, i), all)
+            if (.not. is_there(i)) call add_numbers(data, [numbers(i) + change], all, x(:, i))
          end do
          if (.not. (any(is_there) .and. card%has('NEW SET'))) return
          call add_copies_card(card, 'NSET', 'NSET', '', all)
@@ -184,7 +184,6 @@ contains
          data%fields = data%fields(:1)
          data%fields(1)%place = card%place
          call add_numbers(data, [numbers(i) + shift, corners + node_shift], all)
-         call keep_last(all)
       end do
    end subroutine copy_elements
 

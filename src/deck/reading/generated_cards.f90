@@ -6,7 +6,7 @@ module generated_cards
       replace_cards
    use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
-   use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
+   use given_cards, only: add_generated, add_numbers, add_set, corners_of, &
       card_of, growing_cards_type, is_given, keep_last, node_place
    use kinds, only: dp
    use plane_motions, only: rotation
@@ -136,7 +136,7 @@ contains
          else
             from = ends(1)%x + (ends(2)%x - ends(1)%x)*i/n
          end if
-         call add_node_card(data, ends(1)%number + i*step, from, all)
+         call add_numbers(data, [ends(1)%number + i*step], all, from)
       end do
    end subroutine generate_nodes
 
@@ -228,7 +228,6 @@ contains
             if (i + j == 0) cycle
             call add_numbers(data, [master + i*steps(2, 1) + j*steps(2, 2), &
                corners + i*steps(1, 1) + j*steps(1, 2)], all)
-            call keep_last(all)
          end do
       end do
    end subroutine generate_elements

@@ -12,7 +12,7 @@ module given_cards
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none
    private
-   public :: growing_cards_type, add_set, add_generated, add_numbers, add_node_card
+   public :: growing_cards_type, add_set, add_generated, add_numbers
    public :: node_place, keep_last, members_of, card_of, is_given, corners_of, exact_text
 
    !> Cards that take the place of others, so far.
@@ -58,49 +58,25 @@ contains
       call add_keyword(all, generated)
    end subroutine add_generated
 
-   !> Adds a data card of numbers.
-   subroutine add_numbers(data, numbers, all)
+   !> Adds a data card of numbers and, of a node, its place.
+   subroutine add_numbers(data, numbers, all, x)
       type(data_card_type), intent(in) :: data      !! whose place it has
       integer, intent(in) :: numbers(:)             !! its fields
       type(growing_cards_type), intent(inout) :: all        !! receives the card
-      type(string_type) :: words(size(numbers))
-      integer :: i
-
-      do i = 1, size(numbers)
-         words(i)%value = to_text(numbers(i))
-      end do
-      call add_fields(data, words, all)
-   end subroutine add_numbers
-
-   subroutine add_fields(data, words, all)
-      type(data_card_type), intent(in) :: data
-      type(string_type), intent(in) :: words(:)
-      type(growing_cards_type), intent(inout) :: all
+      real(dp), intent(in), optional :: x(2)        !! the fields behind them [length]
       type(field_type), allocatable :: fields(:)
-      integer :: i
+      integer :: i, n
 
-      allocate(fields(size(words)))
-      do i = 1, size(words)
-         fields(i)%text = words(i)%value
+      n = size(numbers)
+      allocate (fields(n + merge(2, 0, present(x))))
+      do i = 1, size(fields)
+         if (i <= n) fields(i)%text = to_text(numbers(i))
+         if (i > n) fields(i)%text = exact_text(x(i - n))
          fields(i)%place = data%place(1)
       end do
       call add_data(all, fields, data%end)
-   end subroutine add_fields
-
-   !> Adds a node.
-   subroutine add_node_card(data, number, x, all)
-      type(data_card_type), intent(in) :: data      !! whose place it has
-      integer, intent(in) :: number                 !! of the node
-      real(dp), intent(in) :: x(2)                  !! its place [length]
-      type(growing_cards_type), intent(inout) :: all        !! receives the card
-      type(string_type) :: words(3)
-
-      words(1)%value = to_text(number)
-      words(2)%value = exact_text(x(1))
-      words(3)%value = exact_text(x(2))
-      call add_fields(data, words, all)
       call keep_last(all)
-   end subroutine add_node_card
+   end subroutine add_numbers
 
    !> Place of a node that is given; a coordinate that is no number is 0 and reported elsewhere.
    function node_place(all, number) result(x)
