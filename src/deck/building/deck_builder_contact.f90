@@ -200,55 +200,45 @@ contains
       type(deck_type), intent(inout) :: deck
       type(contact_changes_type) :: changes
       type(friction_change_type) :: change
+      type(pair_change_type) :: pair
+      integer :: j
 
       if (step == 0) return
       changes = deck%model%steps(step)%changes
-      select case (deck%cards%keywords(k)%name)
-      case ('CHANGE FRICTION')
-         if (is_keyword(deck%cards, k + 1, 'FRICTION')) return
-         call deck%error(deck%cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION '// &
-            'after it')
-      case ('FRICTION')
-         if (is_keyword(deck%cards, k - 1, 'CHANGE FRICTION')) then
-            call build_friction(deck%cards%keywords(k), deck, change%friction)
-            call deck%need_named(deck%cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
-               change%interaction)
-            if (change%interaction == 0) return
-            if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
-            changes%frictions = [changes%frictions, change]
-         else
-            call deck%error(deck%cards%keywords(k)%place, '*FRICTION in a step needs *CHANGE '// &
-               'FRICTION, INTERACTION= before it')
-         end if
-      case ('MODEL CHANGE')
-         call change_pairs(deck%cards%keywords(k), deck, changes)
-      case default
-         call change_interferences(deck%cards%keywords(k), step, deck, changes)
-      end select
+      associate (card => deck%cards%keywords(k))
+         select case (card%name)
+         case ('CHANGE FRICTION')
+            if (.not. is_keyword(deck%cards, k + 1, 'FRICTION')) call deck%error(card%place, &
+               '*CHANGE FRICTION needs a *FRICTION after it')
+         case ('FRICTION')
+            if (is_keyword(deck%cards, k - 1, 'CHANGE FRICTION')) then
+               call build_friction(card, deck, change%friction)
+               call deck%need_named(deck%cards%keywords(k - 1), 'INTERACTION', 'surface '// &
+                  'interaction', change%interaction)
+               if (change%interaction == 0) return
+               if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
+               changes%frictions = [changes%frictions, change]
+            else
+               call deck%error(card%place, '*FRICTION in a step needs *CHANGE FRICTION, '// &
+                  'INTERACTION= before it')
+            end if
+         case ('MODEL CHANGE')
+            if (needed_choice(card, 'TYPE', 'CONTACT PAIR', deck) == '') return
+            pair%removes = card%has('REMOVE')
+            if ((pair%removes .eqv. card%has('ADD')) .and. .not. card%flawed) call deck%error( &
+               card%place, '*MODEL CHANGE needs either ADD or REMOVE')
+            if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
+            do j = 1, size(card%data)
+               call read_contact(card%data(j), 2, 'slave surface, master surface', deck, &
+                  pair%contact)
+               if (pair%contact > 0) changes%pairs = [changes%pairs, pair]
+            end do
+         case default
+            call change_interferences(card, step, deck, changes)
+         end select
+      end associate
       deck%model%steps(step)%changes = changes
    end subroutine build_contact_change
-
-   !> The interfaces that *MODEL CHANGE removes or adds.
-   subroutine change_pairs(card, deck, changes)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(contact_changes_type), intent(inout) :: changes
-      type(pair_change_type) :: change
-      character(:), allocatable :: kind
-      integer :: j
-
-      kind = needed_choice(card, 'TYPE', 'CONTACT PAIR', deck)
-      if (kind == '') return
-      change%removes = card%has('REMOVE')
-      if ((change%removes .eqv. card%has('ADD')) .and. .not. card%flawed) then
-         call deck%error(card%place, '*MODEL CHANGE needs either ADD or REMOVE')
-      end if
-      if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
-      do j = 1, size(card%data)
-         call read_contact(card%data(j), 2, 'slave surface, master surface', deck, change%contact)
-         if (change%contact > 0) changes%pairs = [changes%pairs, change]
-      end do
-   end subroutine change_pairs
 
    !> The interferences of some interfaces.
    subroutine change_interferences(card, step, deck, changes)

@@ -158,30 +158,19 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(start_type), intent(inout) :: start           !! receives the start
+      real(dp) :: given(size(deck%model%contacts)), value(2)
       character(:), allocatable :: from
+      integer :: i, k
+      logical :: sound, valid
 
       from = needed_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', deck)
-      if (from == 'GIVEN') then
-         call build_given(card, deck, start)
-      else if (size(card%data) > 0 .and. from /= '') then
-         call deck%error(card%data(1)%place(1), 'extra data card; *START has them with '// &
-            'FROM=GIVEN only')
-      end if
+      if (from /= 'GIVEN' .and. size(card%data) > 0 .and. from /= '') call deck%error( &
+         card%data(1)%place(1), 'extra data card; *START has them with FROM=GIVEN only')
       if (from == 'PREVIOUS') start%kind = start_previous
       if (from == 'OPEN') start%kind = start_open
       if (from == 'CLOSED') start%kind = start_closed
       if (from == 'BOTH') start%kind = start_both
-   end subroutine build_start
-
-   !> Interface and conductance, a card each.
-   subroutine build_given(card, deck, start)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(start_type), intent(inout) :: start
-      real(dp) :: given(size(deck%model%contacts)), value(2)
-      integer :: i, k
-      logical :: sound, valid
-
+      if (from /= 'GIVEN') return
       given = 0.0_dp
       sound = .true.
       do k = 1, size(card%data)
@@ -193,14 +182,14 @@ contains
          end associate
       end do
       if (.not. sound) return
-      do i = 1, size(given)
-         if (given(i) > 0.0_dp) cycle
+      i = findloc(given > 0.0_dp, .false., dim=1)
+      if (i == 0) then
+         start = start_type(kind=start_given, conductance=given)
+      else
          call deck%error(card%place, '*START, FROM=GIVEN gives no conductance to '// &
             deck%model%contacts(i)%name)
-         return
-      end do
-      start = start_type(kind=start_given, conductance=given)
-   end subroutine build_given
+      end if
+   end subroutine build_start
 
    !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
    !> former steps.

@@ -132,12 +132,10 @@ contains
          if (of_surfaces .or. labels(i)%component > 0) then
             names = names//'/'//trim(labels(i)%name)
          else
-            names = names//repeat('/'//trim(labels(i)%name)//'#', 4)
+            do side = 1, 4
+               names = names//'/'//trim(labels(i)%name)//to_text(side)
+            end do
          end if
-      end do
-      do side = 1, 4
-         i = index(names, '#')
-         if (i > 0) names(i:i) = to_text(side)
       end do
       names = names(2:)
    end function names_of

@@ -99,11 +99,12 @@ contains
       do i = 1, size(card%data)
          call read_real(card%data(i)%text(1), conductance(i), valid)
          if (.not. valid) exit
-         if (i == 1) cycle
-         if (card%data(i)%text(3) /= card%data(i - 1)%text(3)) cycle
-         valid = conductance(i) <= conductance(i - 1)
+         associate (before => max(i - 1, 1))
+            if (card%data(i)%text(3) /= card%data(before)%text(3)) cycle
+            valid = conductance(i) <= conductance(before)
+            falls = falls .or. conductance(i) < conductance(before)
+         end associate
          if (.not. valid) exit
-         falls = falls .or. conductance(i) < conductance(i - 1)
       end do
       is_of_clearance = has_pressure .or. (falls .and. valid)
    end function is_of_clearance
@@ -150,8 +151,9 @@ contains
       type(deck_type), intent(inout) :: deck
       type(gap_table_type), intent(out) :: table
       character(:), allocatable :: layout
+      real(dp), allocatable :: grid(:)
       real(dp) :: values(3, size(card%data))
-      integer :: i
+      integer :: i, k
       logical :: valid
 
       layout = 'conductance >=0/'//noun//' >=0'
@@ -180,7 +182,18 @@ contains
                'ends at a different gap than at the first temperature; no heat crosses beyond '// &
                'the end, which must be the same at all temperatures')
          end do
-         call make_columns(temperature, table)
+         ! One column for each temperature, with the conductance at all gaps or pressures.
+         grid = ascending(table%abscissa)
+         table%temperature = ascending(temperature)
+         allocate (table%columns(size(grid), size(table%temperature)))
+         do k = 1, size(table%temperature)
+            associate (here => abs(temperature - table%temperature(k)) <= 0.0_dp)
+               table%columns(:, k) = [(line_value(pack(table%abscissa, here), &
+                  pack(table%omega, here), grid(i)), i=1, size(grid))]
+            end associate
+         end do
+         call move_alloc(grid, table%abscissa)
+         table%omega = table%columns(:, 1)
       end associate
    end subroutine read_table
 
@@ -218,26 +231,6 @@ contains
       if (any([(rows(i)%has(3), i=1, size(rows))])) call deck%note('*GAP CONDUCTANCE: the '// &
          'temperature, the same in every row, is ignored')
    end subroutine check_temperatures
-
-   !> One column for each temperature.
-   subroutine make_columns(temperature, table)
-      real(dp), intent(in) :: temperature(:)               ! (rows as written) ascending
-      type(gap_table_type), intent(inout) :: table
-      real(dp), allocatable :: grid(:)
-      logical :: here(size(temperature))
-      integer :: i, k
-
-      grid = ascending(table%abscissa)
-      table%temperature = ascending(temperature)
-      allocate (table%columns(size(grid), size(table%temperature)))
-      do k = 1, size(table%temperature)
-         here = abs(temperature - table%temperature(k)) <= 0.0_dp
-         table%columns(:, k) = [(line_value(pack(table%abscissa, here), &
-            pack(table%omega, here), grid(i)), i=1, size(grid))]
-      end do
-      call move_alloc(grid, table%abscissa)
-      table%omega = table%columns(:, 1)
-   end subroutine make_columns
 
    !> Each of some values once.
    pure function ascending(values) result(sorted)

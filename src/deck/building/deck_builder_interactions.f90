@@ -2,7 +2,7 @@
 module deck_builder_interactions
    use card_parameters, only: choice, take_parameter
    use card_values, only: check_ascending, check_unneeded, read_row, read_rows
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use cards, only: cards_type, keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
@@ -220,7 +220,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(overlap_law_type), intent(out) :: law           !! of hard faces, or of soft ones
       character(:), allocatable :: kind
-      real(dp) :: values(2)
+      real(dp) :: rows(2, size(card%data)), values(2)
       logical :: valid
 
       kind = to_upper(card%text('PRESSURE-OVERCLOSURE'))
@@ -243,31 +243,21 @@ contains
             if (size(card%data) > 1) call deck%error(card%data(2)%place(1), &
                'an exponential law has one card: c0, p0')
          else
-            call read_table(card%data, deck, law)
+            ! Rows of pressure, from 0 on, and overlap.
+            call read_rows(card%data, 'pressure/overlap', deck, rows, valid)
+            law%pressure = rows(1, :)
+            law%overlap = rows(2, :)
+            if (.not. valid) return
+            if (abs(law%pressure(1)) > 0.0_dp) call deck%error(card%data(1)%place(1), 'the '// &
+               'first row must have pressure 0, and the overlap from which faces press')
+            if (size(card%data) == 1) call deck%error(card%data(1)%place(1), 'a table of '// &
+               'pressure and overlap needs two rows or more')
+            call check_ascending(card%data, 1, 'pressures', law%pressure, deck)
+            call check_ascending(card%data, 2, 'overlaps', law%overlap, deck)
          end if
       case default
          call deck%note('*SURFACE BEHAVIOR is ignored: contact is exact')
       end select
    end subroutine build_behavior
-
-   !> Rows of pressure, from 0 on, and overlap; both rise.
-   subroutine read_table(rows, deck, law)
-      type(data_card_type), intent(in) :: rows(:)
-      type(deck_type), intent(inout) :: deck
-      type(overlap_law_type), intent(inout) :: law
-      real(dp) :: values(2, size(rows))
-      logical :: valid
-
-      call read_rows(rows, 'pressure/overlap', deck, values, valid)
-      law%pressure = values(1, :)
-      law%overlap = values(2, :)
-      if (.not. valid) return
-      if (abs(law%pressure(1)) > 0.0_dp) call deck%error(rows(1)%place(1), 'the first row must '// &
-         'have pressure 0, and the overlap from which faces press')
-      if (size(rows) == 1) call deck%error(rows(1)%place(1), 'a table of pressure and overlap '// &
-         'needs two rows or more')
-      call check_ascending(rows, 1, 'pressures', law%pressure, deck)
-      call check_ascending(rows, 2, 'overlaps', law%overlap, deck)
-   end subroutine read_table
 
 end module deck_builder_interactions

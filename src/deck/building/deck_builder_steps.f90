@@ -113,11 +113,24 @@ contains
       type(deck_type), intent(inout) :: deck
       type(card_counts_type), intent(inout) :: counts
       type(step_type), intent(inout) :: step
+      type(time_points_type) :: points
+      integer :: frequency
 
       select case (card%name)
       case ('NODE FILE', 'EL FILE', 'CONTACT FILE', 'NODE OUTPUT', 'ELEMENT OUTPUT', &
          'CONTACT OUTPUT')
-         call build_file_output(card, counts%files, deck, step)
+         ! As often as the most frequent of these cards asks; FREQUENCY=0 leaves the last increment.
+         call read_frequency(card, deck, frequency, points)
+         if (counts%files == 0) step%field_points = time_points_type()
+         if (allocated(points%times)) step%field_points = points
+         if (frequency == 0) then
+            call deck%note('*'//card%name//', FREQUENCY=0: the last increment of the step is '// &
+               'written')
+            frequency = huge(frequency)
+         end if
+         if (counts%files > 0) frequency = min(frequency, step%field_frequency)
+         counts%files = counts%files + 1
+         step%field_frequency = frequency
       case ('NODE PRINT')
          call build_print(card, counts%has_prints(1), deck, step%node_prints)
       case ('EL PRINT')
@@ -280,28 +293,6 @@ contains
 
       too_many = planned_increments(step) > step%max_increments + increment_rounding
    end function too_many
-
-   !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0
-   !> leaves its last increment.
-   subroutine build_file_output(card, files, deck, step)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(inout) :: files
-      type(deck_type), intent(inout) :: deck
-      type(step_type), intent(inout) :: step
-      type(time_points_type) :: points
-      integer :: frequency
-
-      call read_frequency(card, deck, frequency, points)
-      if (files == 0) step%field_points = time_points_type()
-      if (allocated(points%times)) step%field_points = points
-      if (frequency == 0) then
-         call deck%note('*'//card%name//', FREQUENCY=0: the last increment of the step is written')
-         frequency = huge(frequency)
-      end if
-      files = files + 1
-      if (files > 1) frequency = min(frequency, step%field_frequency)
-      step%field_frequency = frequency
-   end subroutine build_file_output
 
    !> First increment, period, smallest and largest increment.
    subroutine build_increments(data, deck, step)

@@ -179,7 +179,7 @@ contains
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
       integer, allocatable :: cards(:)
-      real(dp) :: start, last
+      real(dp) :: ends(2), start, last
       integer :: a, i, s
 
       cards = cards_of(deck%cards, 'AMPLITUDE')
@@ -193,8 +193,11 @@ contains
          associate (curve => deck%model%amplitudes(a), period => deck%model%steps(s)%period)
             message = ''
             last = curve%times(size(curve%times))
-            if (is_idle(curve, start, merge(sum(deck%model%steps(s:)%period), period, &
-               curve%total_time))) then
+            ends = start + [0.0_dp, merge(sum(deck%model%steps(s:)%period), period, &
+               curve%total_time)]
+            if (.not. is_level(curve) .and. abs(amplitude_value(curve, ends(1))) + &
+               abs(amplitude_value(curve, ends(2))) + sum(abs(curve%values), mask=curve%times > &
+               ends(1) .and. curve%times < ends(2)) <= 0.0_dp) then
                message = 'amplitude '//curve%name//' is 0 throughout step '//to_text(s)// &
                   ', which begins to use it'
                if (.not. curve%total_time) message = message//'; without TIME=TOTAL TIME its '// &
@@ -247,16 +250,6 @@ contains
          end associate
       end do
    end function missed_peak
-
-   !> Whether an amplitude that is not always 0 is so over an interval.
-   pure logical function is_idle(curve, start, length)
-      type(amplitude_type), intent(in) :: curve
-      real(dp), intent(in) :: start, length
-
-      is_idle = .not. is_level(curve) .and. abs(amplitude_value(curve, start)) + &
-         abs(amplitude_value(curve, start + length)) + sum(abs(curve%values), &
-         mask=curve%times > start .and. curve%times < start + length) <= 0.0_dp
-   end function is_idle
 
    !> Whether an amplitude is the same everywhere, so that it does not matter where it ends.
    pure logical function is_level(curve)

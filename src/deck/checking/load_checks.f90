@@ -56,7 +56,17 @@ contains
             case default
                continue
             end select
-            if (deck%analyses_sound) call check_effect(request, deck)
+            if (.not. deck%analyses_sound) cycle
+            associate (analyses => deck%model%steps(request%step:)%analysis)
+               if (is_heat(request%kind) .and. .not. any(solves_heat(analyses))) then
+                  call deck%warning(request%place, 'a heat load without effect: no step from '// &
+                     'here on solves heat')
+               else if (request%kind /= load_temperature .and. .not. (is_heat(request%kind) .or. &
+                  any(solves_mechanics(analyses)))) then
+                  call deck%warning(request%place, 'a load without effect: no step from here '// &
+                     'on solves mechanics')
+               end if
+            end associate
          end associate
       end do
       call check_boundaries(deck, used)
@@ -143,22 +153,6 @@ contains
             '0, 0, direction 0, 1, 0')
       end if
    end subroutine check_axis
-
-   !> Warns of what comes after the last step that solves for what it loads.
-   subroutine check_effect(request, deck)
-      type(request_type), intent(in) :: request
-      type(deck_type), intent(inout) :: deck
-
-      associate (analyses => deck%model%steps(request%step:)%analysis)
-         if (is_heat(request%kind)) then
-            if (.not. any(solves_heat(analyses))) call deck%warning(request%place, 'a heat '// &
-               'load without effect: no step from here on solves heat')
-         else if (request%kind /= load_temperature) then
-            if (.not. any(solves_mechanics(analyses))) call deck%warning(request%place, &
-               'a load without effect: no step from here on solves mechanics')
-         end if
-      end associate
-   end subroutine check_effect
 
    !> Warns of loads on sides between two elements.
    subroutine check_faces(request, uses, deck)

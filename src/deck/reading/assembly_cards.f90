@@ -274,8 +274,16 @@ contains
 
       copy = card
       do i = 1, size(copy%parameters)
-         if (.not. is_name(card%name, copy%parameters(i)%name)) cycle
-         call prefix(instance, copy%parameters(i)%text)
+         select case (copy%parameters(i)%name)   ! names of what the part has for itself
+         case ('NSET', 'ELSET', 'SURFACE', 'ORIENTATION', 'REF NODE', 'NODE', 'ROT NODE', &
+            'TIE NSET', 'PIN NSET', 'ANALYTICAL SURFACE')
+            call prefix(instance, copy%parameters(i)%text)
+         case ('NAME')
+            if (any(card%name == [character(11) :: 'SURFACE', 'ORIENTATION'])) call &
+               prefix(instance, copy%parameters(i)%text)
+         case default
+            continue
+         end select
       end do
       call add_keyword(all, copy)
       do j = 1, size(card%data)
@@ -284,21 +292,6 @@ contains
          call add_data(all, fields, card%data(j)%end)
       end do
    end subroutine copy_card
-
-   !> Whether the value of a parameter is the name of something that the part has for itself.
-   pure logical function is_name(keyword, parameter)
-      character(*), intent(in) :: keyword, parameter
-
-      select case (parameter)
-      case ('NSET', 'ELSET', 'SURFACE', 'ORIENTATION', 'REF NODE', 'NODE', 'ROT NODE', 'TIE NSET', &
-         'PIN NSET', 'ANALYTICAL SURFACE')
-         is_name = .true.
-      case ('NAME')
-         is_name = keyword == 'SURFACE' .or. keyword == 'ORIENTATION'
-      case default
-         is_name = .false.
-      end select
-   end function is_name
 
    !> Puts the name of the instance before a name, and adds its offset to a number.
    subroutine prefix(instance, text)

@@ -57,7 +57,7 @@ contains
       type(deck_report_type), intent(inout) :: report             !! receives errors
       type(field_type), allocatable, intent(out) :: fields(:)     !! at least one field
       integer :: commas(len(line) + 1)
-      integer :: i, n, first, opened, told
+      integer :: i, n, first, opened, start, told
       logical :: is_format
 
       is_format = .false.
@@ -88,7 +88,12 @@ contains
       allocate(fields(n + 1))
       first = 1
       do i = 1, n + 1
-         fields(i) = trimmed_field(line, first, commas(i) - 1, image)
+         associate (part => line(first:commas(i) - 1))
+            start = first_text(part)
+            fields(i)%text = part(start:last_text(part))
+            if (len(fields(i)%text) == 0) start = 1
+            fields(i)%place = place_type(image, first + start - 1)
+         end associate
          if (opened >= first .and. opened < commas(i)) then
             fields(i)%text = ''
             fields(i)%undefined = .true.
@@ -96,19 +101,6 @@ contains
          first = commas(i) + 1
       end do
    end subroutine split_fields
-
-   !> The field between two positions of a line, without blanks around it.
-   pure function trimmed_field(line, first, last, image) result(field)
-      character(*), intent(in) :: line
-      integer, intent(in) :: first, last, image
-      type(field_type) :: field
-      integer :: start
-
-      start = first_text(line(first:last)) + first - 1
-      field%text = line(start:first - 1 + last_text(line(first:last)))
-      if (len(field%text) == 0) start = first
-      field%place = place_type(image, start)
-   end function trimmed_field
 
    !> Drops the empty fields at the end of a card.
    subroutine drop_empty_end(fields)
