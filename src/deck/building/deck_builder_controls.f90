@@ -94,47 +94,40 @@ contains
       type(thermal_scheme_type), parameter :: schemes(*) = [implicit_scheme, galerkin_scheme, &
          crank_nicolson_scheme, explicit_scheme, l_stable_scheme]
       character(:), allocatable :: kind
+      real(dp) :: given(8), sums(3)
       integer :: i
+      logical :: valid
 
       kind = needed_choice(card, 'TYPE', &
          'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', deck)
-      if (kind == 'FREE') then
-         if (size(card%data) == 0) then
-            call deck%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
-         else
-            call build_free_scheme(card%data(1), deck, scheme)
-         end if
-      else if (size(card%data) > 0 .and. kind /= '') then
-         call deck%error(card%data(1)%place(1), 'extra data card; *THERMAL SCHEME has one with '// &
-            'TYPE=FREE only')
-      end if
       i = findloc(schemes%name == kind, .true., dim=1)
       if (i > 0) scheme = schemes(i)
-   end subroutine build_thermal_scheme
-
-   !> Coefficients of eq. (3.4) as the card gives them; multiples of them are the same scheme.
-   subroutine build_free_scheme(data, deck, scheme)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      type(thermal_scheme_type), intent(inout) :: scheme
-      real(dp) :: given(8), sums(3)
-      logical :: valid
-
-      call read_row(data, 'a1 >0/a2 >=0/a3 >=0/b1/b2/b3/c1/c2', deck, given, valid)
-      if (.not. valid) return
-      sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
-      if (given(2) + given(3) <= 0.0_dp) then
-         call deck%error(data%place(2), 'a2 + a3 must be positive')
-      else if (sums(1) <= 0.0_dp) then
-         call deck%error(data%place(4), 'a1 + b1 must be positive')
-      else if (any(abs(sums - sums(1)) > consistent*sums(1))) then
-         call deck%error(data%place(1), 'a steady state would not stay: a1 + b1 = '// &
-            to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
-            to_text(sums(3))//' must be equal')
-      else
-         scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), given(7:8)/sums(1))
+      if (i > 0 .and. size(card%data) > 0) call deck%error(card%data(1)%place(1), 'extra data '// &
+         'card; *THERMAL SCHEME has one with TYPE=FREE only')
+      if (kind /= 'FREE') return
+      if (size(card%data) == 0) then
+         call deck%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
+         return
       end if
-   end subroutine build_free_scheme
+      ! Coefficients of eq. (3.4) as the card gives them; multiples of them are the same scheme.
+      associate (data => card%data(1))
+         call read_row(data, 'a1 >0/a2 >=0/a3 >=0/b1/b2/b3/c1/c2', deck, given, valid)
+         if (.not. valid) return
+         sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
+         if (given(2) + given(3) <= 0.0_dp) then
+            call deck%error(data%place(2), 'a2 + a3 must be positive')
+         else if (sums(1) <= 0.0_dp) then
+            call deck%error(data%place(4), 'a1 + b1 must be positive')
+         else if (any(abs(sums - sums(1)) > consistent*sums(1))) then
+            call deck%error(data%place(1), 'a steady state would not stay: a1 + b1 = '// &
+               to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
+               to_text(sums(3))//' must be equal')
+         else
+            scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), &
+               given(7:8)/sums(1))
+         end if
+      end associate
+   end subroutine build_thermal_scheme
 
    !> Reads one *CONTINUATION.
    subroutine build_continuation(card, deck, continuation)

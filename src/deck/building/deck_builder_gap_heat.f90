@@ -9,7 +9,6 @@ module deck_builder_gap_heat
    use element_kinds, only: axisymmetric
    use friction_laws, only: friction_heat_type, rough_coefficient
    use kinds, only: dp
-   use model, only: model_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
@@ -57,7 +56,15 @@ contains
          associate (card => deck%cards%keywords(k))
             if (card%name == 'SURFACE INTERACTION') n = n + 1
             if (card%name /= 'GAP HEAT GENERATION' .or. n == 0) cycle
-            largest = largest_friction(deck%model, n)
+            ! The largest coefficient that the interaction has in any step.
+            largest = deck%model%interactions(n)%friction%coefficient
+            do s = 1, size(deck%model%steps)
+               if (.not. allocated(deck%model%steps(s)%changes%frictions)) cycle
+               associate (changes => deck%model%steps(s)%changes%frictions)
+                  largest = max(largest, maxval([0.0_dp, pack(changes%friction%coefficient, &
+                     changes%interaction == n)]))
+               end associate
+            end do
             if (largest <= 0.0_dp) call deck%missing(card%place, 'interaction '// &
                deck%model%interactions(n)%name//' makes no heat of friction: it has no '// &
                '*FRICTION above 0', '*FRICTION')
@@ -74,24 +81,6 @@ contains
          end associate
       end do
    end subroutine check_friction_heat
-
-   !> Largest coefficient of friction that an interaction has in any step.
-   pure real(dp) function largest_friction(model, interaction) result(largest)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: interaction
-      integer :: i, s
-
-      largest = model%interactions(interaction)%friction%coefficient
-      do s = 1, size(model%steps)
-         if (.not. allocated(model%steps(s)%changes%frictions)) cycle
-         do i = 1, size(model%steps(s)%changes%frictions)
-            associate (change => model%steps(s)%changes%frictions(i))
-               if (change%interaction == interaction) largest = max(largest, &
-                  change%friction%coefficient)
-            end associate
-         end do
-      end do
-   end function largest_friction
 
    !> Reads one *GAP RADIATION: emissivities of both faces, then view factors over the clearance, 1
    !> at all clearances where there are none.

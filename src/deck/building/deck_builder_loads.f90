@@ -11,7 +11,7 @@ module deck_builder_loads
    use spelling, only: is_slip
    use steps, only: dof_temperature, load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
-      load_pressure, load_temperature, load_traction, step_type
+      load_pressure, load_temperature, load_traction
    use text, only: read_real, to_text, to_upper
    use transforms, only: axis_in_plane
    implicit none
@@ -98,17 +98,10 @@ contains
             card%name//' of a step')
          return
       end if
-      call end_loads(card%name, deck%model%steps(step))
-   end subroutine read_operation
-
-   pure subroutine end_loads(keyword, step)
-      character(*), intent(in) :: keyword
-      type(step_type), intent(inout) :: step
-
-      associate (ends => step%ends_loads)
-         select case (keyword)
+      associate (ends => deck%model%steps(step)%ends_loads)
+         select case (card%name)
          case ('BOUNDARY')
-            step%ends_boundaries = .true.
+            deck%model%steps(step)%ends_boundaries = .true.
          case ('CLOAD')
             ! In CalculiX it ends all that acts on nodes, while that of *CFLUX ends heat alone.
             ends([load_force, load_nodal_heat]) = .true.
@@ -131,7 +124,7 @@ contains
             return
          end select
       end associate
-   end subroutine end_loads
+   end subroutine read_operation
 
    !> Notes what coefficient and sink of a film do where one of them has no amplitude.
    subroutine note_film(card, ramped, deck)

@@ -223,8 +223,9 @@ contains
       second = repeated(numbers)
       second = pack(second, numbers(second) > 0)
       do k = 1, size(second)
-         call deck%twice(places_of(second(k)), 'element '//to_text(numbers(second(k))), places_of( &
-            findloc(numbers, numbers(second(k)), dim=1)))
+         call deck%error(places_of(second(k)), 'element '//to_text(numbers(second(k)))//' is '// &
+            'defined twice, first on '//deck%source%words_of(places_of(findloc(numbers, &
+            numbers(second(k)), dim=1))))
       end do
       ! One of the two may stand for one that is missing.
       if (size(second) > 0) call deck%lose('element')

@@ -25,12 +25,15 @@ module deck_builder_verify
 
 contains
 
-   !> Builds all checks.
+   !> Builds all checks: quantity, where, when, value, tolerance, REL|ABS.
    subroutine build_verifications(deck)
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: kind
       integer, allocatable :: places(:)
-      integer :: k, j, n
+      type(place_type) :: fields(2)
+      real(dp) :: values(6)
+      integer :: k, j, n, quantity
+      logical :: valid
 
       allocate(deck%model%verifications(data_count(deck%cards, cards_of(deck%cards, 'VERIFY'))))
       n = 0
@@ -40,9 +43,29 @@ contains
             kind = needed_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', deck)
             do j = 1, size(card%data)
                n = n + 1
-               deck%model%verifications(n)%kind = kind
-               deck%model%verifications(n)%source = card%text('SOURCE')
-               call build_check(card%data(j), deck, deck%model%verifications(n))
+               associate (data => card%data(j), check => deck%model%verifications(n))
+                  check%kind = kind
+                  check%source = card%text('SOURCE')
+                  check%line = data%end%image
+                  check%address = deck%source%address_of(data%end)
+                  check%quantity = ''
+                  check%where = data%text(2)
+                  fields = [data%place(1), data%place(2)]
+                  check%columns = fields%column
+                  call read_quantity(data, deck%verifiable, '', deck, quantity)
+                  if (quantity > 0) then
+                     check%quantity = trim(deck%verifiable(quantity)%name)
+                     call check_where(data, deck%verifiable(quantity)%kind, deck, check)
+                  end if
+                  if (deck%analyses_sound) call read_when(data, deck, check)
+                  call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', &
+                     deck, values, valid)
+                  check%value = values(4)
+                  check%tolerance = values(5)
+                  check%relative = is_relative(data, 6, deck)
+                  if (valid .and. check%relative .and. .not. abs(check%value) > 0.0_dp) call &
+                     deck%warning(data%place(4), 'relative to 0 only 0 itself passes; give ABS')
+               end associate
             end do
          end associate
       end do
@@ -70,37 +93,6 @@ contains
          end associate
       end do
    end subroutine check_heat_quantities
-
-   !> quantity, where, when, value, tolerance, REL|ABS.
-   subroutine build_check(data, deck, check)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      type(verify_type), intent(inout) :: check
-      type(place_type) :: places(2)
-      real(dp) :: values(6)
-      integer :: quantity
-      logical :: valid
-
-      check%line = data%end%image
-      check%address = deck%source%address_of(data%end)
-      check%quantity = ''
-      check%where = data%text(2)
-      places = [data%place(1), data%place(2)]
-      check%columns = places%column
-      call read_quantity(data, deck%verifiable, '', deck, quantity)
-      if (quantity > 0) then
-         check%quantity = trim(deck%verifiable(quantity)%name)
-         call check_where(data, deck%verifiable(quantity)%kind, deck, check)
-      end if
-      if (deck%analyses_sound) call read_when(data, deck, check)
-      call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', deck, values, &
-         valid)
-      check%value = values(4)
-      check%tolerance = values(5)
-      check%relative = is_relative(data, 6, deck)
-      if (valid .and. check%relative .and. .not. abs(check%value) > 0.0_dp) call deck%warning( &
-         data%place(4), 'relative to 0 only 0 itself passes; give ABS')
-   end subroutine build_check
 
    !> Whether a field is REL, which it is where it is missing, and not ABS.
    logical function is_relative(data, i, deck)

@@ -42,14 +42,32 @@ contains
       type(deck_type), intent(inout) :: deck
       type(element_sides_type) :: sides
       type(touch_type), allocatable :: touches(:)
-      integer, allocatable :: order(:), key(:, :)         ! (2, touches) as keys_of
-      integer :: first, k, last
+      !> (2, touches) touches share a message: hanging nodes, 0, or faces of the same two bodies
+      integer, allocatable :: key(:, :)
+      integer, allocatable :: order(:)
+      logical, allocatable :: shared(:, :)                ! (2, sides)
+      integer :: bodies(2), first, i, k, last
 
       sides = find_sides(deck%mesh)
       call find_touches(deck%mesh, sides, touches)
       if (size(touches) == 0) return
       call drop_related(deck%model, sides, touches)
-      key = keys_of(deck%mesh, sides, touches)
+      ! Nodes hang on a side if both its corners are nodes of the sides that lie on it.
+      allocate (shared(2, sides%count), source=.false.)
+      do i = 1, size(touches)
+         associate (touch => touches(i))
+            do k = 1, 2
+               shared(k, touch%side) = shared(k, touch%side) .or. &
+                  any(sides%ends(:, touch%other) == sides%ends(2*k - 1, touch%side))
+            end do
+         end associate
+      end do
+      allocate (key(2, size(touches)), source=0)
+      do i = 1, size(touches)
+         if (all(shared(:, touches(i)%side))) cycle
+         bodies = deck%mesh%element_body(sides%elements(1, [touches(i)%side, touches(i)%other]))
+         key(:, i) = [minval(bodies), maxval(bodies)]
+      end do
       order = sort_order(touches%node)
       do k = 1, 2
          order = order(sort_order(key(k, order)))
@@ -169,35 +187,6 @@ contains
          is_paired = .false.
       end function is_paired
    end subroutine drop_related
-
-   !> Keys by which touches share a message: hanging nodes, 0, or faces of the same two bodies.
-   !> Nodes hang on a side if both its corners are nodes of the sides that lie on it.
-   function keys_of(mesh, sides, touches) result(key)
-      type(mesh_type), intent(in) :: mesh
-      type(element_sides_type), intent(in) :: sides
-      type(touch_type), intent(in) :: touches(:)
-      integer, allocatable :: key(:, :)                   ! (2, touches)
-      logical :: shared(2, sides%count)
-      integer :: bodies(2), i, k
-
-      shared = .false.
-      do i = 1, size(touches)
-         associate (touch => touches(i))
-            do k = 1, 2
-               shared(k, touch%side) = shared(k, touch%side) .or. &
-                  any(sides%ends(:, touch%other) == sides%ends(2*k - 1, touch%side))
-            end do
-         end associate
-      end do
-      allocate (key(2, size(touches)), source=0)
-      do i = 1, size(touches)
-         associate (touch => touches(i))
-            if (all(shared(:, touch%side))) cycle
-            bodies = mesh%element_body(sides%elements(1, [touch%side, touch%other]))
-            key(:, i) = [minval(bodies), maxval(bodies)]
-         end associate
-      end do
-   end function keys_of
 
    !> Warns of the touches of one key.
    subroutine warn(deck, sides, touches, key)

@@ -144,7 +144,8 @@ contains
                if (cards(first)%name == cards(k)%name .and. to_upper(cards(first)%text('NAME')) == &
                   name) exit
             end do
-            call self%twice(cards(k)%place_of('NAME'), noun//' '//name, cards(first)%place)
+            call self%error(cards(k)%place_of('NAME'), noun//' '//name//' is defined twice, '// &
+               'first on '//self%source%words_of(cards(first)%place))
          end if
       end associate
       if (first < k .or. len(name) == 0) call self%lose(noun)

@@ -56,7 +56,6 @@ module deck_report
       procedure :: root_cause
       procedure :: possible_cause
       procedure :: confirm_cause
-      procedure :: twice
       procedure :: missing
       procedure :: warning
       procedure :: lose
@@ -85,16 +84,6 @@ contains
          call add(self, severity_error, place, message, group)
       end if
    end subroutine error
-
-   !> Reports what is defined a second time, and says where first.
-   subroutine twice(self, place, what, first)
-      class(deck_report_type), intent(inout) :: self
-      type(place_type), intent(in) :: place           !! where the second time
-      character(*), intent(in) :: what                !! such as material STEEL
-      type(place_type), intent(in) :: first           !! where the first time
-
-      call self%error(place, what//' is defined twice, first on '//self%source%words_of(first))
-   end subroutine twice
 
    !> Reports an error from which all others of its card image follow: it takes the place of those
    !> that are reported already, and those to come are dropped.
