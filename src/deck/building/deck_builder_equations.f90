@@ -109,30 +109,26 @@ contains
    subroutine check_terms(terms, deck, valid)
       type(term_type), intent(in) :: terms(:)
       type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
-      integer :: i, lengths(size(terms))
+      logical, intent(out) :: valid
+      integer :: errors, i, lengths(size(terms))
 
+      errors = deck%error_count()
       lengths = 1
       do i = 1, size(lengths)
          lengths(i) = size(terms(i)%members(deck%mesh%node_sets))
-         if (lengths(i) == 0) valid = .false.   ! its card has an error
          if (lengths(i) == 1 .or. maxval(lengths(:i - 1)) <= 1) cycle
-         if (lengths(i) == maxval(lengths(:i - 1))) cycle
-         call deck%error(terms(i)%place, 'the node sets of an equation must have the same '// &
-            'number of nodes, or one node: '//to_text(maxval(lengths(:i - 1)))//' and '// &
-            to_text(lengths(i)))
-         valid = .false.
+         if (lengths(i) /= maxval(lengths(:i - 1))) call deck%error(terms(i)%place, 'the node '// &
+            'sets of an equation must have the same number of nodes, or one node: '// &
+            to_text(maxval(lengths(:i - 1)))//' and '//to_text(lengths(i)))
       end do
       i = findloc((terms%dof == dof_temperature) .neqv. (terms(1)%dof == dof_temperature), &
          .true., dim=1)
-      if (i > 0) then
-         call deck%error(terms(i)%place, 'an equation relates displacements or temperatures, '// &
-            'not both')
-         valid = .false.
-      end if
-      if (abs(terms(1)%coefficient) > 0.0_dp) return
-      call deck%error(terms(1)%place, 'the coefficient of the first term must not be 0')
-      valid = .false.
+      if (i > 0) call deck%error(terms(i)%place, 'an equation relates displacements or '// &
+         'temperatures, not both')
+      if (abs(terms(1)%coefficient) <= 0.0_dp) call deck%error(terms(1)%place, 'the '// &
+         'coefficient of the first term must not be 0')
+      ! A set without nodes has an error on its card.
+      valid = all(lengths > 0) .and. deck%error_count() == errors
    end subroutine check_terms
 
    !> Adds the equation, or one for each member of its sets in the order of the node numbers.

@@ -3,7 +3,7 @@
 module deck_builder_gap_heat
    use card_parameters, only: take_parameter
    use card_values, only: check_ascending, read_row, read_rows
-   use cards, only: data_card_type, keyword_card_type
+   use cards, only: keyword_card_type
    use conductance_laws, only: conductance_law_type, law_gas, law_none
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric

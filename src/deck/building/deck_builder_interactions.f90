@@ -2,7 +2,7 @@
 module deck_builder_interactions
    use card_parameters, only: choice, take_parameter
    use card_values, only: check_ascending, check_unneeded, read_row, read_rows
-   use cards, only: cards_type, keyword_card_type
+   use cards, only: keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
@@ -16,8 +16,7 @@ module deck_builder_interactions
    use friction_laws, only: friction_law_type, rough_coefficient
    use kinds, only: dp
    use overlap_laws, only: overlap_law_type
-   use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
-      radiation_ends
+   use temperature_laws, only: face_temperatures_type, largest_jump, law_at, radiation_ends
    use text, only: to_text, to_upper
    implicit none
    private
@@ -81,9 +80,16 @@ contains
       character(*), parameter :: once(4) = [character(19) :: 'FRICTION', 'SURFACE BEHAVIOR', &
          'GAP HEAT GENERATION', 'GAP RADIATION']
       integer :: i, k, table, taken(0:size(once))
+      logical :: says_pressure
 
       taken = 0
       table = 0
+      says_pressure = .false.
+      do k = place + 1, size(deck%cards%keywords)
+         if (any(deck%cards%keywords(k)%name == ['SURFACE INTERACTION', 'STEP               '])) &
+            exit
+         says_pressure = says_pressure .or. deck%cards%keywords(k)%has('PRESSURE')
+      end do
       do k = place + 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
@@ -107,7 +113,7 @@ contains
             case ('GAP LAW')
                call build_gap_law(card, interaction%name, deck, interaction%law)
             case ('GAP CONDUCTANCE')
-               if (is_of_clearance(card, has_pressure(deck%cards, place))) then
+               if (is_of_clearance(card, says_pressure)) then
                   call build_gap_conductance(card, interaction%name, .true., deck, interaction%law)
                else
                   if (table > 0) then
@@ -128,19 +134,6 @@ contains
       if (taken(4) > 0) call build_gap_radiation(deck%cards%keywords(taken(4)), deck, &
          interaction%law)
    end subroutine build_laws
-
-   !> Whether the laws behind a *SURFACE INTERACTION have a *GAP CONDUCTANCE, PRESSURE.
-   pure logical function has_pressure(cards, place)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: place
-      integer :: k
-
-      has_pressure = .false.
-      do k = place + 1, size(cards%keywords)
-         if (any(cards%keywords(k)%name == ['SURFACE INTERACTION', 'STEP               '])) return
-         has_pressure = has_pressure .or. cards%keywords(k)%has('PRESSURE')
-      end do
-   end function has_pressure
 
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
    subroutine build_friction(card, deck, friction)

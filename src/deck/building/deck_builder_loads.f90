@@ -338,15 +338,17 @@ contains
       type(model_type), intent(in) :: model
       integer, allocatable :: nodes(:)
       integer :: i
+      logical :: turns
 
       allocate (nodes(0))
       associate (members => request%members(model%mesh%node_sets))
          do i = 1, size(model%couplings)
             associate (coupling => model%couplings(i))
                if (coupling%is_section()) cycle
-               if ((dof == dof_rotation .and. any(members == coupling%reference)) .or. (dof == &
-                  dof_turn .and. size(members) == 1 .and. any(members == coupling%rotation_node))) &
-                  nodes = [nodes, coupling%rotation]
+               turns = dof == dof_rotation .and. any(members == coupling%reference)
+               if (dof == dof_turn .and. size(members) == 1) turns = members(1) == &
+                  coupling%rotation_node
+               if (turns) nodes = [nodes, coupling%rotation]
             end associate
          end do
       end associate

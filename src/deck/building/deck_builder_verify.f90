@@ -3,7 +3,7 @@ module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
    use card_parameters, only: needed_choice, take_parameter
    use card_values, only: read_field, read_row
-   use cards, only: data_card_type, keyword_card_type
+   use cards, only: data_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_type
@@ -144,10 +144,14 @@ contains
       character(:), allocatable :: lack
 
       lack = ''
-      if (any(kind == [of_interface, of_contact_points]) .and. size(deck%model%contacts) == 0) &
-         lack = 'CONTACT PAIR'
-      if (kind == of_sections .and. .not. any(deck%model%couplings%is_section())) lack = &
-         'PRE-TENSION SECTION'
+      select case (kind)
+      case (of_interface, of_contact_points)
+         if (size(deck%model%contacts) == 0) lack = 'CONTACT PAIR'
+      case (of_sections)
+         if (.not. any(deck%model%couplings%is_section())) lack = 'PRE-TENSION SECTION'
+      case default
+         continue
+      end select
       if (kind == of_history) then
          if (data%has(2)) call deck%error(data%place(2), check%quantity//' has no location: '// &
             'leave this field empty')

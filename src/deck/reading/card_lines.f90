@@ -4,8 +4,7 @@ module card_lines
       is_keyword, last_text, split_fields, without_quotes
    use card_parameters, only: take_parameter
    use card_typos, only: check_commas, lacks_star
-   use cards, only: add_data, add_keyword, add_note, cards_type, field_type, &
-      keyword_card_type
+   use cards, only: add_data, add_keyword, add_note, cards_type, field_type, keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type

@@ -113,6 +113,8 @@ contains
          if (number <= 0.0_dp .or. number > 1.0_dp) fault = ' must be above 0 and at most 1'
       case ('>=0 <=1')
          if (number < 0.0_dp .or. number > 1.0_dp) fault = ' must be between 0 and 1'
+      case default
+         continue
       end select
       if (len(fault) == 0) value = number
       if (len(fault) > 0) fault = what//fault

@@ -163,9 +163,9 @@ contains
       class(deck_report_type), intent(inout) :: report
       integer :: k
 
+      if (size(cards_of(cards, 'STEP')) > 0 .or. has_stand_in(cards, 'STEP')) return
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
-            if (size(cards_of(cards, 'STEP')) > 0 .or. has_stand_in(cards, 'STEP')) return
             if (card%known == 0 .or. len(card%meant) > 0) cycle
             if (known_keywords(card%known)%section /= in_step) cycle
             call report%error(card%place, 'the deck has no *STEP before this card')
