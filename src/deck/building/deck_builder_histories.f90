@@ -44,7 +44,8 @@ contains
       do n = 1, size(places)
          call deck%take_name(places(n), 'amplitude', deck%model%amplitudes(n)%name)
          associate (card => deck%cards%keywords(places(n)), amplitude => deck%model%amplitudes(n))
-            amplitude%total_time = counts_total_time(card, deck)
+            amplitude%total_time = &
+               choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
             none = choice(card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
             errors = deck%error_count()
             kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
@@ -70,15 +71,6 @@ contains
       end do
    end subroutine build_amplitudes
 
-   !> Whether times are those since the start, and not those of a step.
-   logical function counts_total_time(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-
-      counts_total_time = &
-         choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
-   end function counts_total_time
-
    !> Builds all *TIME POINTS: times, any number of them a card, or start, end and interval.
    subroutine build_time_points(deck)
       type(deck_type), intent(inout) :: deck
@@ -92,7 +84,8 @@ contains
       do n = 1, size(places)
          call deck%take_name(places(n), 'time points', deck%time_points(n)%name)
          associate (card => deck%cards%keywords(places(n)), points => deck%time_points(n))
-            points%total_time = counts_total_time(card, deck)
+            points%total_time = &
+               choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
             allocate (points%times(0))
             do j = 1, size(card%data)
                valid = .true.

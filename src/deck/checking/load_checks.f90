@@ -46,7 +46,16 @@ contains
                call check_density(request, 'GRAV', deck)
             case (load_centrifugal)
                call check_density(request, 'CENTRIF', deck)
-               call check_axis(request, deck)
+               ! A body of revolution turns round its axis, and a plane round an axis along z.
+               associate (rings => deck%mesh%element_plane(request%members( &
+                  deck%mesh%element_sets)) == axisymmetric)
+                  if (request%component == centrifugal_round .and. .not. all(rings)) call &
+                     deck%error(request%place, 'plane elements turn round an axis along z: '// &
+                     'point x, y, 0, direction 0, 0, 1')
+                  if (request%component /= centrifugal_round .and. any(rings)) call &
+                     deck%error(request%place, 'axisymmetric elements turn round the y axis: '// &
+                     'point 0, 0, 0, direction 0, 1, 0')
+               end associate
             case (load_temperature)
                if (deck%analyses_sound .and. deck%model%steps(request%step)%analysis /= &
                   analysis_static) call deck%error(request%place, 'the step solves for '// &
@@ -137,22 +146,6 @@ contains
          return
       end do
    end subroutine check_density
-
-   !> CENTRIF turns a body of revolution round its axis, and a plane round an axis along z.
-   subroutine check_axis(request, deck)
-      type(request_type), intent(in) :: request
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: planes(:)
-
-      planes = deck%mesh%element_plane(request%members(deck%mesh%element_sets))
-      if (request%component == centrifugal_round) then
-         if (any(planes /= axisymmetric)) call deck%error(request%place, 'plane elements turn '// &
-            'round an axis along z: point x, y, 0, direction 0, 0, 1')
-      else if (any(planes == axisymmetric)) then
-         call deck%error(request%place, 'axisymmetric elements turn round the y axis: point 0, '// &
-            '0, 0, direction 0, 1, 0')
-      end if
-   end subroutine check_axis
 
    !> Warns of loads on sides between two elements.
    subroutine check_faces(request, uses, deck)
