@@ -79,6 +79,7 @@ contains
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
       character(*), parameter :: once(4) = [character(19) :: 'FRICTION', 'SURFACE BEHAVIOR', &
          'GAP HEAT GENERATION', 'GAP RADIATION']
+      character(*), parameter :: ends(2) = ['SURFACE INTERACTION', 'STEP               ']
       integer :: i, k, table, taken(0:size(once))
       logical :: says_pressure
 
@@ -86,13 +87,12 @@ contains
       table = 0
       says_pressure = .false.
       do k = place + 1, size(deck%cards%keywords)
-         if (any(deck%cards%keywords(k)%name == ['SURFACE INTERACTION', 'STEP               '])) &
-            exit
+         if (any(deck%cards%keywords(k)%name == ends)) exit
          says_pressure = says_pressure .or. deck%cards%keywords(k)%has('PRESSURE')
       end do
       do k = place + 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
-            if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
+            if (any(card%name == ends)) exit
             if (size(card%data) == 0 .and. all(card%name /= [character(19) :: 'FRICTION', &
                'GAP HEAT GENERATION', 'SURFACE BEHAVIOR'])) cycle
             if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then

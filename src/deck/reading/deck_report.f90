@@ -324,7 +324,7 @@ contains
       class(deck_report_type), intent(in) :: self
       type(printed_diagnostic_type), allocatable :: told(:)
       type(name_index_type) :: kinds
-      character(:), allocatable :: line
+      character(:), allocatable :: kind, line
       integer, allocatable :: first_of(:)          ! (kinds)
       integer :: first(self%count), card, cards(self%source%count), i, last
 
@@ -345,14 +345,13 @@ contains
             if (diagnostic%place%image == 0 .or. diagnostic%places > 1) cycle
             card = cards(diagnostic%place%image)
             if (card == 0) cycle
-            associate (kind => to_text(diagnostic%severity)//' '//to_text(card)//' '// &
-               without_numbers(diagnostic%message))
-               if (kinds%find(kind) == 0) then
-                  call kinds%add(kind)
-                  first_of = [first_of, i]
-               end if
-               first(i) = first_of(kinds%find(kind))
-            end associate
+            kind = to_text(diagnostic%severity)//' '//to_text(card)//' '// &
+               without_numbers(diagnostic%message)
+            if (kinds%find(kind) == 0) then
+               call kinds%add(kind)
+               first_of = [first_of, i]
+            end if
+            first(i) = first_of(kinds%find(kind))
          end associate
       end do
       do i = 1, self%count

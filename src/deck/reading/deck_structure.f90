@@ -61,7 +61,7 @@ contains
       class(deck_report_type), intent(inout) :: report    !! receives errors
       type(place_type) :: place
       logical :: step_open, after_step
-      integer :: k, step
+      integer :: k, section, step
 
       do k = 1, size(cards%keywords)
          call lose_definitions(cards%keywords(k), report)
@@ -83,15 +83,14 @@ contains
             end if
             after_step = after_step .or. step_open
             if (card%known == 0 .or. len(card%meant) > 0) cycle
-            associate (section => known_keywords(card%known)%section)
-               if (section == in_model .and. after_step) call report%error(card%place, '*'// &
-                  card%name//' must come before the first *STEP', 'late cards of the model')
-               if (section == in_step .and. .not. step_open .and. card%name /= 'END STEP') call &
-                  report%missing(card%place, '*'//card%name//' must be between *STEP and *END '// &
-                  'STEP', '*STEP')
-               if (card%name == 'BOUNDARY' .and. after_step .and. .not. step_open) call &
-                  report%error(card%place, '*BOUNDARY must be in a step or before the first')
-            end associate
+            section = known_keywords(card%known)%section
+            if (section == in_model .and. after_step) call report%error(card%place, '*'// &
+               card%name//' must come before the first *STEP', 'late cards of the model')
+            if (section == in_step .and. .not. step_open .and. card%name /= 'END STEP') call &
+               report%missing(card%place, '*'//card%name//' must be between *STEP and *END '// &
+               'STEP', '*STEP')
+            if (card%name == 'BOUNDARY' .and. after_step .and. .not. step_open) call &
+               report%error(card%place, '*BOUNDARY must be in a step or before the first')
          end associate
       end do
       if (step_open) call report%error(cards%keywords(step)%place, 'this step has no *END STEP')
