@@ -120,13 +120,12 @@ contains
       deck%dropped = corners(1, :) > 0
       errors = deck%error_count()
       call build_sets('element', deck)
-      deck%sets_sound = deck%error_count() == errors .and. .not. deck%has_lost('element')
+      if (deck%error_count() > errors .or. deck%has_lost('element')) call deck%lose('set')
       call build_surfaces(deck)
       errors = deck%error_count()
       call build_sets('node', deck)
       call build_node_surfaces(deck)
-      deck%sets_sound = deck%sets_sound .and. deck%error_count() == errors .and. &
-         .not. deck%has_lost('node set')
+      if (deck%error_count() > errors .or. deck%has_lost('node set')) call deck%lose('set')
    end subroutine build_mesh
 
    !> Puts the loads and supports of a sound deck on its mesh, and checks what that shows.

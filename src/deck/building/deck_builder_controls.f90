@@ -246,7 +246,7 @@ contains
       integer, intent(inout) :: set
       logical, intent(out) :: is_known
 
-      if (deck%sets_sound .or. deck%index_of(noun, card%text(parameter)) > 0) call &
+      if (.not. deck%has_lost('set') .or. deck%index_of(noun, card%text(parameter)) > 0) call &
          deck%take_named(card, parameter, noun, set)
       is_known = set > 0 .or. card%lacks(parameter)
    end subroutine take_set

@@ -76,9 +76,8 @@ contains
             call build_element_load(card%name, card%data(j), request, film_amplitude, deck)
          end select
       end do
-      if (card%name == 'BOUNDARY' .and. (card%flawed .or. deck%error_count() > errors)) then
-         deck%boundaries_sound = .false.
-      end if
+      if (card%name == 'BOUNDARY' .and. (card%flawed .or. deck%error_count() > errors)) call &
+         deck%lose('boundary')
    end subroutine build_load_card
 
    !> OP=NEW on the first card of its keyword in a step ends what former steps gave by it.

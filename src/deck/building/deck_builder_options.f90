@@ -171,16 +171,16 @@ contains
       deck%model%load_node = members(1)
       deck%model%load_dof = dof
       deck%model%load_label = trim(dof_names(min(dof, 3)))//' of '//name
-      if (.not. (deck%boundaries_sound .and. deck%sets_sound)) return
+      if (deck%has_lost('boundary') .or. deck%has_lost('*STEP') .or. deck%has_lost('set')) return
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
             if (request%component == dof .and. any(request%members(deck%mesh%node_sets) == &
                members(1))) return
          end associate
       end do
-      if (.not. deck%has_lost('*STEP')) call deck%error(deck%load_place, 'no *BOUNDARY '// &
-         'prescribes '//deck%model%load_label//', which LOAD= follows; give the value, as '// &
-         name//', '//to_text(dof)//', '//to_text(dof)//', value')
+      call deck%error(deck%load_place, 'no *BOUNDARY prescribes '//deck%model%load_label//', '// &
+         'which LOAD= follows; give the value, as '//name//', '//to_text(dof)//', '//to_text( &
+         dof)//', value')
    end subroutine build_load_axis
 
    !> Takes the *REFINE cards that name a surface or a set.

@@ -47,7 +47,6 @@ contains
 
       has_scheme = .false.
       deck%analyses_sound = .not. deck%has_lost('*STEP')
-      deck%boundaries_sound = deck%analyses_sound
       n = size(cards_of(deck%cards, 'STEP'))
       allocate(deck%model%steps(n), deck%step_place(n), deck%analysis_place(n))
       n = 0

@@ -44,10 +44,10 @@ contains
       if (len(fault) > 0) call deck%error(deck%levels_place, fault)
       e = findloc(deck%mesh%element_section, 0, dim=1)
       without = count(deck%mesh%element_section == 0)
-      if (size(deck%model%sections) > 0 .and. without > 0 .and. deck%sections_sound .and. &
-         deck%sets_sound) call deck%error(deck%element_place(e), 'no *SOLID SECTION for '// &
-         'element '//to_text(deck%mesh%element_number(e))//'; elements without one: '// &
-         to_text(without))
+      if (size(deck%model%sections) > 0 .and. without > 0 .and. deck%sections_sound .and. .not. &
+         deck%has_lost('set')) call deck%error(deck%element_place(e), 'no *SOLID SECTION for '// &
+         'element '//to_text(deck%mesh%element_number(e))//'; elements without one: '//to_text( &
+         without))
       call check_materials(deck)
       call check_planes(deck)
       call check_orientations(deck)

@@ -80,9 +80,7 @@ module deck_context
       integer :: load_cards = 0                           !! data cards of these loads
       integer :: load_step(known_count) = -1              !! last step with a card of each keyword
       type(request_list_type) :: temperatures             !! *INITIAL CONDITIONS
-      logical :: sets_sound = .true.         !! whether all *NSET and *ELSET are valid
       logical :: sections_sound = .true.     !! whether all elements of *SOLID SECTION are known
-      logical :: boundaries_sound = .true.   !! whether all *BOUNDARY are valid
       logical :: analyses_sound = .true.     !! whether it is known what all steps solve, and when
       type(string_type), allocatable :: notes(:)          !! lines for the listing
    contains
