@@ -4,13 +4,11 @@
 !> A point is found with the load factor as an unknown. It is then an increment like any other, with
 !> the load factor given and the conductances of the point as its start.
 module branch_steps
-   use branch_path, only: branch_point_type
-   use branch_trials, only: is_found, straight
-   use branch_turns, only: branch_turn_type, same, shortest, turns
+   use branch_trials, only: branch_type, is_found, straight
+   use branch_turns, only: find_fold, make_step, same, shortest, turns, within
    use errors, only: error_type, set_error, status_no_convergence
    use heat_reduction, only: heat_reduction_type
    use kinds, only: dp
-   use load_histories, only: step_clock_type
    use loads, only: loads_type
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
@@ -18,46 +16,21 @@ module branch_steps
    use text, only: to_text
    implicit none
    private
-   public :: branch_type
+   public :: accept_point, find_point, shorten_step
 
    integer, parameter :: fewest_of_closed = 3     !! points before the first one can be met again
    real(dp), parameter :: aside = 0.1_dp          !! distance over a step that may be none
 
-   !> The branch of a step.
-   type, extends(branch_turn_type) :: branch_type
-      logical :: is_followed = .false.    !! whether points are found by arc length
-      logical :: is_last = .false.        !! whether the branch ends there
-      character(:), allocatable :: ending !! why
-      integer :: points = 0               !! so far
-      type(branch_point_type), private :: first   !! first point
-      integer, allocatable, private :: direction(:)     !! (m) of slip, 0 where there was none
-   contains
-      procedure :: begin_step
-      procedure :: find_point
-      procedure :: shorten
-      procedure :: accept
-   end type branch_type
-
 contains
-
-   !> Begins a step of which a branch is followed.
-   subroutine begin_step(self, step, start)
-      class(branch_type), intent(out) :: self          !! a new branch
-      integer, intent(in) :: step                      !! number of the step
-      type(step_clock_type), intent(in) :: start       !! its start
-
-      self%step = step
-      self%start = start
-   end subroutine begin_step
 
    !> Finds the next point.
    !> Errors: the branch is lost, friction reverses, status_interrupted.
    subroutine find_point(self, model, bodies, heat, loads, state, error)
-      class(branch_type), intent(inout) :: self        !! after the first point of its step
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads         !! moved along
+      type(branch_type), intent(inout) :: self         !! after the first point of its step
+      type(model_type), intent(in), target :: model
+      type(reduced_bodies_type), intent(in), target :: bodies
+      type(heat_reduction_type), intent(in), target :: heat
+      type(loads_type), intent(inout), target :: loads   !! moved along
       type(solution_state_type), intent(in) :: state   !! at the last point
       type(error_type), allocatable, intent(out) :: error
 
@@ -66,60 +39,61 @@ contains
             'pressure, so states have no branch to follow; leave out *CONTINUATION')
          return
       end if
+      self%model => model
+      self%bodies => bodies
+      self%heat => heat
+      self%loads => loads
       call self%renew(state)
       self%is_last = .false.
       self%is_fold = .false.
       if (.not. self%is_followed) then
-         call self%begin(model, bodies, heat, loads, self%base%factor, error)
+         call self%begin(self%base%factor, error)
          if (allocated(error)) return
          self%is_followed = .true.
          self%base = self%point
          self%first = self%point
-         self%length = model%steps(self%step)%continuation%longest_step
+         self%length = self%asked%longest_step
          self%direction = state%contact%direction
       end if
       self%from = self%base
-      call close_branch(self, model, bodies, heat, loads, error)
+      call close_branch(self, error)
       do while (.not. (self%is_last .or. allocated(error)))
          self%from = self%base
          self%is_fold = .false.
-         call self%make_step(model, bodies, heat, loads, error)
+         call make_step(self, error)
          if (allocated(error)) return
-         if (.not. self%is_fold .and. turns(self%from, self%point)) call self%find_fold(model, &
-            bodies, heat, loads, error)
-         if (.not. allocated(error)) call stay_in_range(self, model, bodies, heat, loads, error)
+         if (.not. self%is_fold .and. turns(self%from, self%point)) call find_fold(self, error)
+         if (.not. allocated(error)) call stay_in_range(self, error)
          if (self%outcome == is_found) exit
          self%length = 0.5_dp*self%tried
       end do
       if (allocated(error)) return
       if (.not. self%is_last .and. self%points + 1 >= &
-         model%steps(self%step)%continuation%most_points) then
+         self%asked%most_points) then
          self%is_last = .true.
          self%ending = 'it has as many points as POINTS= allows'
       end if
-      call check_friction(self, bodies, error)
+      call check_friction(self, error)
    end subroutine find_point
 
    !> Slip that reverses depends on the way to a point.
    !> Error: a contact point slips against its slip before.
-   subroutine check_friction(self, bodies, error)
+   subroutine check_friction(self, error)
       type(branch_type), intent(in) :: self
-      type(reduced_bodies_type), intent(in) :: bodies
       type(error_type), allocatable, intent(out) :: error
       integer :: k
 
       k = findloc(self%contact%direction*self%direction < 0, .true., dim=1)
       if (k == 0) return
       call set_error(error, status_no_convergence, 'friction reverses in contact pair '// &
-         bodies%interfaces(count(bodies%points%interface_start <= k))%name//' at load factor '// &
-         to_text(self%point%factor)//', and a solution behind that depends on the way to it; '// &
+         self%bodies%interfaces(count(self%bodies%points%interface_start <= k))%name// &
+         ' at load factor '//to_text(self%point%factor)//', and a solution behind that depends on the way to it; '// &
          'end the branch before, by HIGHEST= or LOWEST= of *CONTINUATION, or leave out friction')
    end subroutine check_friction
 
    !> Takes the point as the last one of the branch; the first one by its load factor.
-   subroutine accept(self, model, factor)
-      class(branch_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
+   subroutine accept_point(self, factor)
+      type(branch_type), intent(inout) :: self
       real(dp), intent(in) :: factor         !! of the point
 
       self%points = self%points + 1
@@ -127,28 +101,24 @@ contains
          self%base = self%point
          where (self%contact%direction /= 0) self%direction = self%contact%direction
          if (.not. self%is_fold) self%length = min(2*self%tried, &
-            model%steps(self%step)%continuation%longest_step)
+            self%asked%longest_step)
       else
          self%base%factor = factor
       end if
-   end subroutine accept
+   end subroutine accept_point
 
    !> A shorter step, where the increment at the point failed, if there is one.
-   subroutine shorten(self, possible)
-      class(branch_type), intent(inout) :: self
+   subroutine shorten_step(self, possible)
+      type(branch_type), intent(inout) :: self
       logical, intent(out) :: possible
 
       self%length = 0.25_dp*min(self%tried, self%length)
       possible = self%length > shortest .and. .not. self%is_last
-   end subroutine shorten
+   end subroutine shorten_step
 
    !> Ends the branch where it comes back to its first point.
-   subroutine close_branch(self, model, bodies, heat, loads, error)
+   subroutine close_branch(self, error)
       type(branch_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: along, way(size(self%from%tangent))
 
@@ -157,7 +127,7 @@ contains
       along = dot_product(way, self%from%tangent)
       if (along <= 0.0_dp .or. along > self%length) return
       if (norm2(way) > 2*along) return
-      call self%try_step(model, bodies, heat, loads, along, error)
+      call self%try_step(along, error)
       if (allocated(error) .or. self%outcome /= is_found) return
       way = self%measure%way(self%point, self%first)
       way = way - dot_product(way, self%first%tangent)*self%first%tangent
@@ -170,25 +140,21 @@ contains
    end subroutine close_branch
 
    !> Ends the branch where the load factor leaves its range.
-   subroutine stay_in_range(self, model, bodies, heat, loads, error)
+   subroutine stay_in_range(self, error)
       type(branch_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: bound, reached
 
       if (self%outcome /= is_found) return
       reached = self%point%factor
-      bound = self%within(model)
-      self%is_last = any(abs(reached - model%steps(self%step)%continuation%range) <= same)
+      bound = within(self)
+      self%is_last = any(abs(reached - self%asked%range) <= same)
       if (abs(reached - bound) > same) then
          self%is_last = .true.
          self%is_fold = .false.
          self%fixed_coordinate = size(self%from%tangent)
          self%point%factor = bound
-         call self%try_step(model, bodies, heat, loads, self%tried*(bound - self%from%factor)/ &
+         call self%try_step(self%tried*(bound - self%from%factor)/ &
             (reached - self%from%factor), error)
          self%fixed_coordinate = 0
          self%is_last = self%outcome == is_found

@@ -4,17 +4,13 @@
 !> the coordinate of a contact point has the value of the kink that it passes.
 module branch_turns
    use branch_path, only: branch_point_type
-   use branch_trials, only: branch_trial_type, is_found, is_lost, is_sharp, straight
+   use branch_trials, only: branch_type, is_found, is_lost, is_sharp, straight
    use errors, only: error_type, set_error, status_no_convergence
-   use heat_reduction, only: heat_reduction_type
    use kinds, only: dp
-   use loads, only: loads_type
-   use model, only: model_type
-   use reduced_bodies, only: reduced_bodies_type
    use text, only: to_text
    implicit none
    private
-   public :: branch_turn_type, same, shortest, turns
+   public :: find_fold, make_step, same, shortest, turns, within
 
    real(dp), parameter :: corner = 2.0e-8_dp      !! length within which a corner is looked for
    real(dp), parameter :: few = 8.0_dp            !! such lengths from which it is turned
@@ -23,18 +19,6 @@ module branch_turns
    real(dp), parameter :: fold_width = 1.0e-7_dp  !! part of the load in which a fold is found
    real(dp), parameter :: least_load = 1.0e-2_dp  !! load factor of which that is a part at least
    real(dp), parameter :: same = 1.0e-12_dp       !! difference of load factors that is none
-
-   !> Steps from the last point of a branch.
-   type, extends(branch_trial_type) :: branch_turn_type
-      logical :: is_fold = .false.        !! whether the load factor turns at the point
-      real(dp) :: length = 0.0_dp         !! of the next step
-      real(dp) :: tried = 0.0_dp          !! of the one that led to the point
-      type(branch_point_type) :: base     !! last point
-   contains
-      procedure :: make_step
-      procedure :: find_fold
-      procedure :: within
-   end type branch_turn_type
 
 contains
 
@@ -48,12 +32,8 @@ contains
    !> The next point, no farther than the step of arc length. Before a corner the steps go on from
    !> points ever nearer to it: those of a long one end apart where the corner lies between them.
    !> Error: the branch is lost.
-   subroutine make_step(self, model, bodies, heat, loads, error)
-      class(branch_turn_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine make_step(self, error)
+      type(branch_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
       type(branch_point_type) :: behind, low
       real(dp) :: reach
@@ -61,17 +41,17 @@ contains
 
       self%tried = min(self%length, self%measure%longest(self%from%tangent))
       do i = 1, most_restarts
-         call bisect(self, model, bodies, heat, loads, low, error)
+         call bisect(self, low, error)
          if (allocated(error) .or. self%outcome == is_found) return
          if (self%outcome == is_lost) exit
          behind = self%point
          self%point = low
          self%outcome = is_found
-         if (turns(self%from, low) .or. abs(within(self, model) - low%factor) > same) return
+         if (turns(self%from, low) .or. abs(within(self) - low%factor) > same) return
          self%from = low
          reach = reach_of_kink(self)
          if (reach <= few*corner) then
-            call turn_corner(self, model, bodies, heat, loads, reach, error)
+            call turn_corner(self, reach, error)
             return
          else if (reach > self%length) then
             ! No law has a kink there, but a contact point begins to slip, or stops.
@@ -87,12 +67,8 @@ contains
 
    !> A step of at most the length tried; halved where it is lost. Where the branch turns too far
    !> even in the shortest one, the outcome says so, the point is the one behind the turn.
-   subroutine bisect(self, model, bodies, heat, loads, low, error)
-      class(branch_turn_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine bisect(self, low, error)
+      type(branch_type), intent(inout) :: self
       type(branch_point_type), intent(out) :: low   ! the last point before the turn
       type(error_type), allocatable, intent(out) :: error
       type(branch_point_type) :: behind
@@ -105,7 +81,7 @@ contains
       last = is_lost
       is_behind = .false.
       do
-         call self%try_step(model, bodies, heat, loads, self%tried, error)
+         call self%try_step(self%tried, error)
          if (allocated(error)) return
          if (self%outcome == is_found) then
             if (last == is_lost) return
@@ -131,7 +107,7 @@ contains
 
    !> How long a step is that passes a kink; beyond any length where none is near.
    real(dp) function reach_of_kink(self) result(reach)
-      class(branch_turn_type), intent(in) :: self
+      type(branch_type), intent(in) :: self
 
       reach = corner
       do while (reach <= self%length)
@@ -142,17 +118,14 @@ contains
    end function reach_of_kink
 
    !> The load factor of the point, within its range.
-   pure real(dp) function within(self, model)
-      class(branch_turn_type), intent(in) :: self
-      type(model_type), intent(in) :: model
+   pure real(dp) function within(self)
+      type(branch_type), intent(in) :: self
 
-      associate (range => model%steps(self%step)%continuation%range)
-         within = min(max(self%point%factor, range(1)), range(2))
-      end associate
+      within = min(max(self%point%factor, self%asked%range(1)), self%asked%range(2))
    end function within
 
    subroutine lose(self, error)
-      class(branch_turn_type), intent(in) :: self
+      type(branch_type), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error
 
       call set_error(error, status_no_convergence, 'the branch is lost at load factor '// &
@@ -164,32 +137,28 @@ contains
    !> the kink is held: from a guess in which all that pass one at once have done so, lest they part
    !> into a pattern.
    !> Error: the branch is lost.
-   subroutine turn_corner(self, model, bodies, heat, loads, reach, error)
-      class(branch_turn_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine turn_corner(self, reach, error)
+      type(branch_type), intent(inout) :: self
       real(dp), intent(in) :: reach         ! of the kink
       type(error_type), allocatable, intent(out) :: error
 
       self%point = self%measure%moved(self%from, 2*reach*self%from%tangent)
       self%fixed_coordinate = self%measure%kinked(self%from, self%point)
-      call self%try_step(model, bodies, heat, loads, 2*reach, error)
+      call self%try_step(2*reach, error)
       self%fixed_coordinate = 0
       if (allocated(error)) return
       self%tried = self%length
       if (self%has_converged) then
          self%is_fold = turns(self%from, self%point)
          if (self%is_fold) then
-            call meet_corner(self, model, bodies, heat, loads, self%point, error)
+            call meet_corner(self, self%point, error)
             self%from = self%base
             if (allocated(error) .or. self%outcome == is_found) return
          else
             self%from = self%point
             do while (self%tried > shortest)
                self%tried = 0.5_dp*self%tried
-               call self%try_step(model, bodies, heat, loads, self%tried, error)
+               call self%try_step(self%tried, error)
                if (allocated(error) .or. self%outcome == is_found) return
             end do
          end if
@@ -199,12 +168,8 @@ contains
 
    !> The corner between a point just before it and one behind it, where the coordinate that passes
    !> a kink has its value; the branch goes on from it as behind.
-   subroutine meet_corner(self, model, bodies, heat, loads, behind, error)
-      class(branch_turn_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine meet_corner(self, behind, error)
+      type(branch_type), intent(inout) :: self
       type(branch_point_type), intent(in) :: behind
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: tangent(size(behind%tangent))
@@ -212,7 +177,7 @@ contains
       tangent = behind%tangent
       self%fixed_coordinate = self%measure%kinked(self%from, behind)
       self%point = self%measure%at_kink(self%from, behind)
-      call self%try_step(model, bodies, heat, loads, 0.0_dp, error)
+      call self%try_step(0.0_dp, error)
       self%fixed_coordinate = 0
       self%outcome = merge(is_found, is_lost, self%has_converged)
       self%point%tangent = tangent
@@ -220,12 +185,8 @@ contains
 
    !> The fold between the start of the last step and its end; where the coordinate of a contact
    !> point passes a kink there, it is a corner.
-   subroutine find_fold(self, model, bodies, heat, loads, error)
-      class(branch_turn_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine find_fold(self, error)
+      type(branch_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
       type(branch_point_type) :: low, behind
       real(dp) :: ends(2), rates(2), reach
@@ -238,7 +199,7 @@ contains
       rates = abs([self%from%tangent(n), behind%tangent(n)])
       do while (sum(rates)*(ends(2) - ends(1)) > fold_width*max(abs(behind%factor), least_load) &
          .and. ends(2) - ends(1) > shortest)
-         call self%try_step(model, bodies, heat, loads, sum(ends)/2, error)
+         call self%try_step(sum(ends)/2, error)
          if (allocated(error) .or. self%outcome /= is_found) return
          if (turns(self%from, self%point)) then
             behind = self%point
@@ -254,7 +215,7 @@ contains
       if (self%measure%kinked(low, behind) > 0) then
          self%from = low
          reach = reach_of_kink(self)
-         if (reach <= self%length) call turn_corner(self, model, bodies, heat, loads, reach, error)
+         if (reach <= self%length) call turn_corner(self, reach, error)
       else
          self%point = behind
          self%outcome = is_found

@@ -1,6 +1,7 @@
 !> Increments, of which one call of advance solves one, and their acceptance.
 module increments
    use balances, only: sound_imbalance
+   use branch_steps, only: accept_point, find_point, shorten_step
    use due_output, only: stability_is_due
    use errors, only: error_type, set_error, status_no_convergence
    use increment_attempts, only: attempt_increment, attempt_type, begin_record
@@ -52,9 +53,8 @@ contains
          clock = run%control%next_instant(model)
          if (run%branch%points > 0) then
             call begin_record(run, model, clock, record)
-            call run%branch%find_point(model, run%bodies, run%heat_reductions(run%in_use), &
-               run%loads, &
-               run%state, error)
+            call find_point(run%branch, model, run%bodies, run%heat_reductions(run%in_use), &
+               run%loads, run%state, error)
             if (.not. allocated(error)) clock = run%branch%clock_at(run%branch%point%factor)
          end if
          if (touch%interface > 0) call run%control%end_at(touch%ending, clock)
@@ -81,7 +81,7 @@ contains
       call accept_attempt(attempt, model, record, run)
       call run%control%accept(model, clock, record)
       if (.not. model%steps(run%control%step)%continuation%is_on) return
-      call run%branch%accept(model, record%load_factor)
+      call accept_point(run%branch, record%load_factor)
       run%control%branch_ended = run%branch%is_last
       if (run%branch%is_last) call append(record%notes, 'the branch ends here: '// &
          run%branch%ending)
@@ -104,7 +104,7 @@ contains
             run%runaway_time = record%time
          end if
          if (run%branch%points > 0) then
-            call run%branch%shorten(can_shorten)
+            call shorten_step(run%branch, can_shorten)
          else
             can_shorten = run%control%can_cut_back(model, increment_size)
             if (can_shorten) call run%control%cut_back(model, increment_size)

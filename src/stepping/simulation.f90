@@ -1,6 +1,6 @@
 !> A run: its reduced bodies, loads and state, and where it is in its steps.
 module simulation
-   use branch_steps, only: branch_type
+   use branch_trials, only: branch_type
    use clock, only: wall_seconds
    use contact_operator, only: law_conductance
    use contact_system, only: contact_open
@@ -91,7 +91,8 @@ contains
       type(model_type), intent(in) :: model
 
       call self%control%enter_step(model)
-      call self%branch%begin_step(self%control%step, self%control%start_of_step(model))
+      self%branch = branch_type(self%control%step, self%control%start_of_step(model), &
+         model%steps(self%control%step)%continuation)
       call self%loads%begin_step(model%steps(self%control%step), self%state%displacement, &
          self%state%temperature)
       call self%bodies%enter_step(model, self%control%step, self%loads)
