@@ -34,7 +34,7 @@ module adaptive_rounds
    use variations, only: marked_elements_type, variation_type
    implicit none
    private
-   public :: adaptive_rounds_type, increment_taker_type, round_solver_type, round_indicators_type
+   public :: adaptive_rounds_type, increment_taker_type, round_indicators_type
 
    !> The rounds so far, and the variation of the present one.
    type :: adaptive_rounds_type
@@ -44,7 +44,7 @@ module adaptive_rounds
       real(dp), private :: cpu_start = 0.0_dp           !! CPU seconds of the process before it [s]
       real(dp), private :: start = 0.0_dp               !! when it began [s]
    contains
-      procedure :: solve
+      procedure :: begin_round
       procedure :: solve_increments
    end type adaptive_rounds_type
 
@@ -53,12 +53,6 @@ module adaptive_rounds
    contains
       procedure(take_increment), deferred :: take
    end type increment_taker_type
-
-   !> Solves a round, with `solve_increments`.
-   type, abstract, extends(increment_taker_type) :: round_solver_type
-   contains
-      procedure(solve_round), deferred :: solve_round
-   end type round_solver_type
 
    abstract interface
       !> Takes an increment, with the bounds of its errors where a step ends.
@@ -70,13 +64,6 @@ module adaptive_rounds
          !> In: why the increment failed; out: why none follows
          type(error_type), allocatable, intent(inout) :: error
       end subroutine take_increment
-
-      !> Solves the variation of the rounds; may find that no other round can follow.
-      subroutine solve_round(self, rounds)
-         import :: adaptive_rounds_type, round_solver_type
-         class(round_solver_type), intent(inout) :: self
-         type(adaptive_rounds_type), intent(inout) :: rounds
-      end subroutine solve_round
    end interface
 
    real(dp), parameter :: marked = 0.8_dp       !! part of the squared error that is marked
@@ -99,19 +86,15 @@ module adaptive_rounds
 
 contains
 
-   !> Solves round after round, until all targets are met or nothing more can be done.
-   subroutine solve(self, solver)
+   !> Begins a round, which is to prepare the model of the variation and to solve its increments;
+   !> another one follows where the accuracy then goes on.
+   subroutine begin_round(self)
       class(adaptive_rounds_type), intent(inout) :: self
-      class(round_solver_type), intent(inout) :: solver
 
-      do
-         call cpu_time(self%cpu_start)
-         self%start = wall_seconds()
-         self%accuracy%goes_on = .false.
-         call solver%solve_round(self)
-         if (.not. self%accuracy%goes_on) return
-      end do
-   end subroutine solve
+      call cpu_time(self%cpu_start)
+      self%start = wall_seconds()
+      self%accuracy%goes_on = .false.
+   end subroutine begin_round
 
    !> Solves the increments of a round and judges it.
    !> Errors: as simulation_type's advance, and those of the taker.

@@ -8,7 +8,6 @@ module hdf5_writer
    use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5close_f, h5dont_atexit_f, h5eset_auto_f, &
       h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, h5f_acc_rdwr_f, &
       h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5p_file_access_f, &
-      h5pset_buffer_f, h5p_dataset_xfer_f, &
       h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
       h5ldelete_f, h5lexists_f, &
       h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f, h5dcreate_f, h5dwrite_f, &
@@ -20,16 +19,13 @@ module hdf5_writer
    use text, only: string_type
    implicit none
    private
-   public :: hdf5_writer_type, start_hdf5, end_hdf5, write_values
+   public :: hdf5_writer_type, start_hdf5, end_hdf5, make_text_type
    public :: stored_type, as_real, as_integer, as_long, as_byte
 
    integer, parameter :: as_real = 1      !! stored as 64-bit real
    integer, parameter :: as_integer = 2   !! stored as 32-bit integer
    integer, parameter :: as_long = 3      !! stored as 64-bit integer
    integer, parameter :: as_byte = 4      !! stored as unsigned byte
-
-   !> Bytes of the buffer in which HDF5 converts types; its own default, 1 MB, is cleared each time.
-   integer(hsize_t), parameter :: conversion_bytes = 16384_hsize_t
 
    !> A file that is being written.
    type :: hdf5_writer_type
@@ -47,11 +43,10 @@ module hdf5_writer
       procedure :: link => link_dataset
       procedure :: has
       procedure :: remove
-      generic :: write => write_integers, write_reals, write_real_table, write_strings
+      procedure :: write => write_strings
       generic :: set => set_attribute, set_integers
       procedure :: set_fixed_text
       procedure :: describe
-      procedure, private :: write_integers, write_reals, write_real_table, write_strings
       procedure, private :: set_attribute, set_integers
    end type hdf5_writer_type
 
@@ -234,9 +229,10 @@ contains
       character(*), intent(in) :: description
       character(kind=c_char), allocatable, target :: characters(:)
       type(c_ptr), allocatable, target :: starts(:)
-      integer(hid_t) :: type
-      integer :: i, k, position, status
+      integer(hid_t) :: dataset, space, type
+      integer :: i, k, position, status(7)
 
+      if (self%has_failed()) return
       position = 0
       do i = 1, size(strings)
          position = position + len(strings(i)%value) + 1
@@ -251,84 +247,16 @@ contains
          position = position + len(strings(i)%value) + 1
          characters(position) = c_null_char
       end do
-      call make_text_type(type, status)
-      call write_whole(self, path, shape(starts, kind=hsize_t), stored_value_type(type, type, &
-         c_loc(starts)), description, '-')
-      call h5tclose_f(type, status)
-   end subroutine write_strings
-
-   !> Writes a dataset of integers, numbers without a unit.
-   subroutine write_integers(self, path, values, storage, description)
-      class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      integer, contiguous, target, intent(in) :: values(:)
-      integer, intent(in) :: storage                      !! as_integer, as_long or as_byte
-      character(*), intent(in) :: description
-
-      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_integer, stored_type(storage), c_loc(values)), description, '-')
-   end subroutine write_integers
-
-   !> Writes a dataset of reals.
-   subroutine write_reals(self, path, values, description, unit)
-      class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      real(dp), contiguous, target, intent(in) :: values(:)
-      character(*), intent(in) :: description, unit       !! as for describe
-
-      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_double, stored_type(as_real), c_loc(values)), description, unit)
-   end subroutine write_reals
-
-   !> Writes a dataset of rows of reals.
-   subroutine write_real_table(self, path, values, description, unit, components)
-      class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      real(dp), contiguous, target, intent(in) :: values(:, :)
-      character(*), intent(in) :: description, unit       !! as for describe
-      character(*), intent(in), optional :: components    !! as for describe
-
-      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_double, stored_type(as_real), c_loc(values)), description, unit, components)
-   end subroutine write_real_table
-
-   subroutine write_whole(self, path, dimensions, value, description, unit, components)
-      class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      integer(hsize_t), intent(in) :: dimensions(:)
-      type(stored_value_type), intent(in) :: value
-      character(*), intent(in) :: description, unit
-      character(*), intent(in), optional :: components
-      integer(hid_t) :: space, dataset
-      integer :: status(5)
-
-      if (self%has_failed()) return
-      call h5screate_simple_f(size(dimensions), dimensions, space, status(1))
-      call h5dcreate_f(self%id, path, value%file_type, space, dataset, status(2))
-      call write_values(dataset, value%memory_type, value%address, status(3))
-      call h5dclose_f(dataset, status(4))
-      call h5sclose_f(space, status(5))
+      call make_text_type(type, status(1))
+      call h5screate_simple_f(1, shape(starts, kind=hsize_t), space, status(2))
+      call h5dcreate_f(self%id, path, type, space, dataset, status(3))
+      call h5dwrite_f(dataset, type, c_loc(starts), status(4))
+      call h5dclose_f(dataset, status(5))
+      call h5sclose_f(space, status(6))
+      call h5tclose_f(type, status(7))
       call self%note(status, 'cannot write dataset '//path)
-      call self%describe(path, description, unit, components)
-   end subroutine write_whole
-
-   !> Writes values into an open dataset: all of it, or what the selections name.
-   subroutine write_values(dataset, memory_type, address, status, memory, space)
-      integer(hid_t), intent(in) :: dataset
-      integer(hid_t), intent(in) :: memory_type        !! type of the values
-      type(c_ptr), intent(in) :: address               !! the values
-      integer, intent(out) :: status                   !! negative for failure
-      integer(hid_t), intent(in), optional :: memory   !! selection in memory
-      integer(hid_t), intent(in), optional :: space    !! selection in the dataset
-      integer(hid_t) :: transfer
-      integer :: results(4)
-
-      call h5pcreate_f(h5p_dataset_xfer_f, transfer, results(1))
-      call h5pset_buffer_f(transfer, conversion_bytes, results(2))
-      call h5dwrite_f(dataset, memory_type, address, results(3), memory, space, transfer)
-      call h5pclose_f(transfer, results(4))
-      status = minval(results)
-   end subroutine write_values
+      call self%describe(path, description, '-', '')
+   end subroutine write_strings
 
    !> Says what a dataset is: `description`, `unit`, and `components` where there are such.
    subroutine describe(self, path, description, unit, components)
@@ -336,21 +264,11 @@ contains
       character(*), intent(in) :: path
       character(*), intent(in) :: description
       character(*), intent(in) :: unit                    !! '-' for a pure number
-      character(*), intent(in), optional :: components    !! their names; empty or absent: none
+      character(*), intent(in) :: components              !! their names; empty: none
 
-      integer(hid_t) :: object
-      integer :: status(2)
-
-      if (self%has_failed()) return
-      call h5oopen_f(self%id, path, object, status(1))
-      call set_text(self, path, 'description', trim(description), object)
-      call set_text(self, path, 'unit', trim(unit), object)
-      if (present(components)) then
-         if (len_trim(components) > 0) call set_text(self, path, 'components', trim(components), &
-            object)
-      end if
-      call h5oclose_f(object, status(2))
-      call self%note(status, 'cannot describe '//path)
+      call self%set(path, 'description', trim(description))
+      call self%set(path, 'unit', trim(unit))
+      if (components /= '') call self%set(path, 'components', trim(components))
    end subroutine describe
 
    !> Writes an attribute of a group or dataset, over one of the same name: an integer of either
@@ -402,10 +320,9 @@ contains
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_fixed_text
 
-   subroutine set_text(self, path, name, value, opened)
+   subroutine set_text(self, path, name, value)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, name, value
-      integer(hid_t), intent(in), optional :: opened   ! the object at the path
       character(len(value) + 1, kind=c_char), target :: copy
       type(c_ptr), target :: start
       integer(hid_t) :: type
@@ -415,16 +332,15 @@ contains
       copy = value//c_null_char
       start = c_loc(copy)
       call make_text_type(type, status(1))
-      call set_value(self, path, name, stored_value_type(type, type, c_loc(start)), opened)
+      call set_value(self, path, name, stored_value_type(type, type, c_loc(start)))
       call h5tclose_f(type, status(2))
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_text
 
-   subroutine set_value(self, path, name, value, opened)
+   subroutine set_value(self, path, name, value)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, name
       type(stored_value_type), intent(in) :: value
-      integer(hid_t), intent(in), optional :: opened   ! the object at the path
       integer(hid_t) :: attribute, object, space
       integer :: status(8)
       logical :: exists
@@ -433,8 +349,7 @@ contains
       status = 0
       exists = .false.
       ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
-      if (present(opened)) object = opened
-      if (.not. present(opened)) call h5oopen_f(self%id, path, object, status(1))
+      call h5oopen_f(self%id, path, object, status(1))
       call h5aexists_f(object, name, exists, status(2))
       if (exists) then
          call h5aopen_f(object, name, attribute, status(3))
@@ -449,7 +364,7 @@ contains
       end if
       call h5awrite_f(attribute, value%memory_type, value%address, status(6))
       call h5aclose_f(attribute, status(7))
-      if (.not. present(opened)) call h5oclose_f(object, status(8))
+      call h5oclose_f(object, status(8))
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_value
 

@@ -5,7 +5,7 @@ module restart_results
    use kinds, only: dp
    use model, only: unit_labels_type
    use records, only: increment_record_type
-   use result_tables, only: flush_sets, growing_dataset, growing_dataset_type
+   use growing_datasets, only: flush_sets, growing_dataset, growing_dataset_type
    use state_tables, only: state_table_type
    use text, only: string_type
    use unit_labels, only: unit_in_words

@@ -19,8 +19,9 @@ module result_fields
    use quantity_types, only: of_contact_points, of_elements, of_points, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets
-   use result_tables, only: flush_sets, growing_dataset, growing_dataset_type, quantity_dataset, &
-      write_geometry
+   use growing_datasets, only: flush_sets, growing_dataset, growing_dataset_type, &
+      quantity_dataset, write_integers, write_once
+   use result_tables, only: write_geometry
    use unit_labels, only: unit_in_words
    implicit none
    private
@@ -246,13 +247,13 @@ contains
          end do
          call write_grid(file, points, cell_points, offsets, vtk_types(mesh%element_kind), &
             model%units)
-         call file%write(point_group//node_sets(1), mesh%node_number(self%point_node), as_integer, &
+         call write_integers(file, point_group//node_sets(1), mesh%node_number(self%point_node), as_integer, &
             'number of the node in the deck')
-         call file%write(cell_group//trim(cell_sets(1)), mesh%element_number, as_integer, &
+         call write_integers(file, cell_group//trim(cell_sets(1)), mesh%element_number, as_integer, &
             'number of the element in the deck')
-         call file%write(cell_group//trim(cell_sets(2)), mesh%element_body, as_integer, &
+         call write_integers(file, cell_group//trim(cell_sets(2)), mesh%element_body, as_integer, &
             'number of the body, from 1')
-         call file%write(cell_group//trim(cell_sets(3)), &
+         call write_integers(file, cell_group//trim(cell_sets(3)), &
             model%sections(mesh%element_section)%material, as_integer, &
             'number of the *MATERIAL in the deck, from 1')
       end associate
@@ -301,7 +302,7 @@ contains
       call write_grid(file, points, ends, [(2*k, k=0, size(interface_of))], &
          [(vtk_line, k=1, size(interface_of))], labels)
       call write_geometry(file, point_group, interfaces, node_number, labels)
-      call file%write(cell_group//interface_sets(1), interface_of, as_integer, &
+      call write_integers(file, cell_group//interface_sets(1), interface_of, as_integer, &
          'number of the *CONTACT PAIR, from 1')
    end subroutine write_contact_head
 
@@ -317,19 +318,19 @@ contains
       call file%create_group(grid_group)
       call file%set_fixed_text(grid_group, 'Type', 'UnstructuredGrid')
       call file%set(grid_group, 'Version', [2, 0])
-      call file%write(grid_group//'/NumberOfPoints', [size(points, 2)], as_long, 'points')
-      call file%write(grid_group//'/NumberOfCells', [size(types)], as_long, 'cells')
-      call file%write(grid_group//'/NumberOfConnectivityIds', [size(cell_points)], as_long, &
+      call write_integers(file, grid_group//'/NumberOfPoints', [size(points, 2)], as_long, 'points')
+      call write_integers(file, grid_group//'/NumberOfCells', [size(types)], as_long, 'cells')
+      call write_integers(file, grid_group//'/NumberOfConnectivityIds', [size(cell_points)], as_long, &
          'entries of Connectivity')
       ! VTK counts from 0.
-      call file%write(grid_group//'/Connectivity', cell_points - 1, as_long, &
+      call write_integers(file, grid_group//'/Connectivity', cell_points - 1, as_long, &
          'points of every cell, from 0')
-      call file%write(grid_group//'/Offsets', offsets, as_long, &
+      call write_integers(file, grid_group//'/Offsets', offsets, as_long, &
          'first entry of every cell in Connectivity')
-      call file%write(grid_group//'/Types', types, as_byte, &
+      call write_integers(file, grid_group//'/Types', types, as_byte, &
          'VTK cell types: 3 line, 5, 22 triangle, 9, 23 four-sided')
-      call file%write(grid_group//'/Points', points, 'coordinates before deformation', &
-         unit_in_words('length', labels))
+      call write_once(file, growing_dataset(grid_group//'/Points', as_real, 3, 1, 1, &
+         'coordinates before deformation', unit_in_words('length', labels)), [points])
       call file%create_group(point_group)
       call file%create_group(cell_group)
       call file%create_group(steps_group)

@@ -14,8 +14,8 @@ module results
    use errors, only: error_type
    use field_quantities, only: maxima
    use file_calls, only: identity_of, remove_file, rename_file
-   use result_tables, only: bounded, bytes_in, flush_sets, result_table_type, &
-      write_geometry
+   use growing_datasets, only: bytes_in, flush_sets
+   use result_tables, only: bounded, result_table_type, write_geometry
    use equations, only: section_nodes
    use hdf5_writer, only: end_hdf5, hdf5_writer_type, start_hdf5
    use kinds, only: dp, long
@@ -312,10 +312,7 @@ contains
       else if (waiting_bytes(self) > memory_limit) then
          call flush_all(self, model, interfaces)
          call self%file%check(error)
-         if (self%has_contact .and. .not. allocated(error)) then
-            call flush_contact(self, model, interfaces)
-            call self%contact_file%check(error)
-         end if
+         if (.not. allocated(error)) call self%contact_file%check(error)
          call self%file%charge(since, ended=.false.)
       end if
       if (allocated(error)) call self%give_up()
@@ -421,7 +418,6 @@ contains
       call self%file%close(error)
       if (allocated(error)) return
       if (self%has_contact) then
-         call flush_contact(self, model, interfaces)
          call self%contact_file%close(error)
          if (.not. allocated(error)) call self%contact_file%put_in_place(error)
       else
@@ -443,19 +439,6 @@ contains
       call self%file%charge(since, ended=.true.)
    end subroutine publish
 
-   subroutine flush_contact(self, model, interfaces)
-      class(results_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(contact_points_type), intent(in) :: interfaces(:)
-      logical :: is_new
-
-      call self%contact_file%open(is_new)
-      if (is_new) call self%contact_grid%write_head(self%contact_file%content, interfaces, &
-         model%mesh%node_number, model%units)
-      call self%contact_grid%flush_grid(self%contact_file%content, .not. &
-         self%contact_file%in_place, geometry%name, interface_sets)
-   end subroutine flush_contact
-
    subroutine flush_all(self, model, interfaces)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -471,11 +454,20 @@ contains
          do i = 1, size(self%tables)
             call flush_sets(self%tables(i)%sets, file)
          end do
-         if (.not. is_new) return
-         call file%set('/history/load', 'label', or_blank(model%load_label))
-         call file%set('/history/load', 'unit', unit_in_words(trim(merge( &
-            'time       ', merge('temperature', 'length     ', model%load_dof == dof_temperature), &
-            model%load_dof == 0)), model%units))
+         if (is_new) then
+            call file%set('/history/load', 'label', or_blank(model%load_label))
+            call file%set('/history/load', 'unit', unit_in_words(trim(merge('time       ', &
+               merge('temperature', 'length     ', model%load_dof == dof_temperature), &
+               model%load_dof == 0)), model%units))
+         end if
+      end associate
+      if (.not. self%has_contact) return
+      call self%contact_file%open(is_new)
+      associate (file => self%contact_file%content)
+         if (is_new) call self%contact_grid%write_head(file, interfaces, model%mesh%node_number, &
+            model%units)
+         call self%contact_grid%flush_grid(file, .not. self%contact_file%in_place, &
+            geometry%name, interface_sets)
       end associate
    end subroutine flush_all
 

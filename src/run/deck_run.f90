@@ -2,7 +2,7 @@
 !> of memory.
 module deck_run
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use adaptive_rounds, only: adaptive_rounds_type, round_solver_type
+   use adaptive_rounds, only: adaptive_rounds_type, increment_taker_type
    use blas_lapack, only: reserve_blas_memory
    use clock, only: wall_seconds
    use command_line, only: command_type, settings_in_words
@@ -35,7 +35,7 @@ module deck_run
 
    !> The run of a deck, round by round. Held by value, the copying and freeing of all that it
    !> points to, which nothing calls, would be most of the code of this module.
-   type, extends(round_solver_type) :: deck_run_type
+   type, extends(increment_taker_type) :: deck_run_type
       character(:), allocatable :: path       !! the deck as given
       type(command_type) :: command           !! options of the command line
       type(read_deck_type), pointer :: deck => null()
@@ -49,7 +49,6 @@ module deck_run
       real(dp) :: since = 0.0_dp              !! when the run began [s]
       real(dp) :: deadline = huge(1.0_dp)     !! when a later round ends [s]
    contains
-      procedure :: solve_round
       procedure :: take
    end type deck_run_type
 
@@ -78,7 +77,11 @@ contains
       self%since = since
       if (command%limit > 0.0_dp) self%deadline = since + command%limit
       rounds%deadline = self%deadline
-      call rounds%solve(self)
+      do
+         call rounds%begin_round()
+         call solve_round(self, rounds)
+         if (.not. rounds%accuracy%goes_on) exit
+      end do
       if (size(outcome%failed_checks) > 0) then
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
          call outcome%fail(error)
@@ -89,7 +92,7 @@ contains
    !> Solves a deck as it is written, or as the variation of a later round has it. The files of the
    !> round before stay until a later one is whole.
    subroutine solve_round(self, rounds)
-      class(deck_run_type), intent(inout) :: self
+      type(deck_run_type), intent(inout) :: self
       type(adaptive_rounds_type), intent(inout) :: rounds
       type(error_type), allocatable :: error
       real(dp) :: since

@@ -7,7 +7,7 @@
 !> on the bodies themselves (fastest_motion), where the growing ones are counted again: the one
 !> checks the other.
 module growing_modes
-   use due_output, only: stability_is_due
+   use due_output, only: is_nth
    use errors, only: error_type
    use fastest_motion, only: find_fastest
    use kinds, only: dp
@@ -40,7 +40,7 @@ contains
       type(increment_record_type), intent(inout) :: record
       type(error_type), allocatable :: error
 
-      if (.not. stability_is_due(record, model)) return
+      if (.not. is_nth(model%steps(record%step)%stability_frequency, record)) return
       allocate (record%stability)
       associate (found => record%stability)
          if (.not. any(heat_capacity(model%materials(model%sections%material)) > 0.0_dp)) then

@@ -2,7 +2,7 @@
 module increments
    use balances, only: sound_imbalance
    use branch_steps, only: accept_point, find_point, shorten_step
-   use due_output, only: stability_is_due
+   use due_output, only: is_nth
    use errors, only: error_type, set_error, status_no_convergence
    use increment_attempts, only: attempt_increment, attempt_type, begin_record
    use kinds, only: dp
@@ -158,7 +158,8 @@ contains
       call accept_increment(attempt%next, model, run%state, record)
       call move_alloc(attempt%known, run%known)
       call move_alloc(attempt%undecided, run%undecided)
-      if (stability_is_due(record, model)) run%solved = attempt%workspace%of_motions()
+      if (is_nth(model%steps(record%step)%stability_frequency, record)) run%solved = &
+         attempt%workspace%of_motions()
    end subroutine accept_attempt
 
    !> Makes the end of an increment the state of a run, the only place where that changes. A

@@ -350,7 +350,7 @@ contains
 
       rounds%variation = self%variation
       do
-         rounds%accuracy%goes_on = .false.
+         call rounds%begin_round()
          call solve_round(self, rounds, error)
          if (allocated(error) .or. .not. rounds%accuracy%goes_on) exit
       end do
