@@ -140,7 +140,7 @@ contains
 
       associate (bodies => simulation%bodies)
          columns = reshape(bodies%capacity%multiply(vector), [size(vector), 1])
-         columns = response%conduction%solve(bodies, columns)
+         columns = response%solve(bodies, columns)
          changes = motion%answers(columns, response%sigma)
          if (motion%takes_rates) changes = changes - transposed_product( &
             motion%reads_rate, reshape(vector, [size(vector), 1]))
