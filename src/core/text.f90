@@ -291,28 +291,13 @@ contains
    pure function has_form_of_real(string) result(valid)
       character(*), intent(in) :: string
       logical :: valid
-      integer :: mark, before, after
+      integer :: mark, point
 
-      valid = .false.
-      mark = scan(string, 'eEdD')
-      if (mark > 0) then
-         if (.not. is_whole(string(mark + 1:))) return
-      else
-         mark = len(string) + 1
-      end if
-      before = scan(string(:mark - 1), '.')
-      if (before == 0) then
-         valid = is_whole(string(:mark - 1))
-         return
-      end if
-      after = mark - before - 1
-      if (verify(string(before + 1:mark - 1), '0123456789') /= 0) return
-      select case (string(:before - 1))
-      case ('', '+', '-')
-         valid = after > 0
-      case default
-         valid = is_whole(string(:before - 1))
-      end select
+      mark = scan(string//'E', 'eEdD')
+      point = scan(string(:mark - 1)//'.', '.')
+      valid = is_whole(string(:point - 1)//string(point + 1:mark - 1)) .and. &
+         verify(string(point + 1:mark - 1), '0123456789') == 0
+      if (mark <= len(string)) valid = valid .and. is_whole(string(mark + 1:))
    end function has_form_of_real
 
    !> Whether a text is an optional sign and at least one digit.

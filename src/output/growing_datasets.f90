@@ -205,7 +205,7 @@ contains
       integer(hid_t) :: dataset, memory, space, transfer
       integer :: rank, status(12)
 
-      if (file%has_failed()) return
+      if (allocated(file%error)) return
       if (self%used == 0 .and. self%in_file .and. .not. self%is_cut) return
       status = 0
       rank = merge(1, 2, self%width == 0)

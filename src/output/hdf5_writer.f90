@@ -30,15 +30,12 @@ module hdf5_writer
    !> A file that is being written.
    type :: hdf5_writer_type
       integer(hid_t) :: id = -1                          !! HDF5's handle while the file is open
-      type(error_type), allocatable, private :: error    !! the first one since it was opened
+      type(error_type), allocatable :: error             !! the first one since it was opened
    contains
       procedure :: create => create_file
       procedure :: open => open_file
       procedure :: close => close_file
-      procedure :: fail
       procedure :: note
-      procedure :: check
-      procedure :: has_failed
       procedure :: create_group
       procedure :: link => link_dataset
       procedure :: has
@@ -121,14 +118,6 @@ contains
       call move_alloc(self%error, error)
    end subroutine close_file
 
-   !> Keeps an error, unless there was one before.
-   subroutine fail(self, error)
-      class(hdf5_writer_type), intent(inout) :: self
-      type(error_type), intent(in) :: error
-
-      if (.not. allocated(self%error)) self%error = error
-   end subroutine fail
-
    !> Keeps an error of status_internal where a call of HDF5 failed.
    subroutine note(self, status, message)
       class(hdf5_writer_type), intent(inout) :: self
@@ -139,21 +128,6 @@ contains
       if (any(status < 0)) call set_error(self%error, status_internal, message)
    end subroutine note
 
-   !> Error: the first one so far.
-   subroutine check(self, error)
-      class(hdf5_writer_type), intent(in) :: self
-      type(error_type), allocatable, intent(out) :: error
-
-      if (allocated(self%error)) error = self%error
-   end subroutine check
-
-   !> Whether there was an error, so that nothing more is written.
-   pure logical function has_failed(self)
-      class(hdf5_writer_type), intent(in) :: self
-
-      has_failed = allocated(self%error)
-   end function has_failed
-
    !> Creates a group; its parent exists.
    subroutine create_group(self, path)
       class(hdf5_writer_type), intent(inout) :: self
@@ -161,7 +135,7 @@ contains
       integer(hid_t) :: group
       integer :: status(2)
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       call h5gcreate_f(self%id, path, group, status(1))
       call h5gclose_f(group, status(2))
       call self%note(status, 'cannot create group '//path)
@@ -174,7 +148,7 @@ contains
       integer :: status
 
       has = .false.
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       call h5lexists_f(self%id, path, has, status)
       call self%note([status], 'cannot look for '//path)
    end function has
@@ -185,7 +159,7 @@ contains
       character(*), intent(in) :: path
       integer :: status
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       call h5ldelete_f(self%id, path, status)
       call self%note([status], 'cannot remove '//path)
    end subroutine remove
@@ -196,7 +170,7 @@ contains
       character(*), intent(in) :: path, second_path
       integer :: status
 
-      if (self%has(second_path) .or. self%has_failed()) return
+      if (self%has(second_path) .or. allocated(self%error)) return
       call h5lcreate_hard_f(self%id, path, self%id, second_path, status)
       call self%note([status], 'cannot link '//second_path)
    end subroutine link_dataset
@@ -232,7 +206,7 @@ contains
       integer(hid_t) :: dataset, space, type
       integer :: i, k, position, status(7)
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       position = 0
       do i = 1, size(strings)
          position = position + len(strings(i)%value) + 1
@@ -311,7 +285,7 @@ contains
       integer(hid_t) :: type
       integer :: status(3)
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       copy = value
       call h5tcopy_f(h5t_native_character, type, status(1))
       call h5tset_size_f(type, len(value, kind=size_t), status(2))
@@ -328,7 +302,7 @@ contains
       integer(hid_t) :: type
       integer :: status(2)
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       copy = value//c_null_char
       start = c_loc(copy)
       call make_text_type(type, status(1))
@@ -345,7 +319,7 @@ contains
       integer :: status(8)
       logical :: exists
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       status = 0
       exists = .false.
       ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.

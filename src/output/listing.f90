@@ -37,7 +37,6 @@ module listing
       type(page_type) :: page                                  !! what is not yet in the file
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
-      type(string_type), allocatable :: warnings(:)            !! of the run
       type(summary_type), public :: summary                    !! what the run comes to
       integer :: summary_start = 0                             !! bytes before it
    contains
@@ -47,7 +46,6 @@ module listing
       procedure :: add
       procedure :: end_early
       procedure :: break_off
-      procedure :: warn
       procedure :: finish
       procedure :: close => close_listing
    end type listing_type
@@ -84,7 +82,7 @@ contains
       self%is_draft = is_draft
       if (.not. is_draft) call empty_file(self%descriptor, self%path, error)
       if (allocated(error)) return
-      allocate(self%diagrams(size(interfaces)), self%warnings(0))
+      allocate(self%diagrams(size(interfaces)))
       call print_heading(self%page, model, run)
       call self%page%title('SUMMARY')
       self%summary_start = self%page%length
@@ -102,7 +100,7 @@ contains
    pure logical function is_begun(self)
       class(listing_type), intent(in) :: self
 
-      is_begun = allocated(self%warnings)
+      is_begun = allocated(self%diagrams)
    end function is_begun
 
    !> Writes what waits; of a draft all goes on waiting.
@@ -189,17 +187,6 @@ contains
       call write_text(self, ignored)
    end subroutine break_off
 
-   !> Takes the warnings of the run as a whole.
-   subroutine warn(self, warnings)
-      class(listing_type), intent(inout) :: self
-      type(string_type), intent(in) :: warnings(:)
-      integer :: i
-
-      do i = 1, size(warnings)
-         call append(self%warnings, warnings(i)%value)
-      end do
-   end subroutine warn
-
    !> Ends the listing that is open: verdicts, zone diagrams, all warnings again, times, the deck;
    !> then the summary in the room that was left for it.
    !> Error: status_internal, when its end cannot be written.
@@ -227,10 +214,7 @@ contains
          call self%page%line('  '//run%accuracy%rounds(i)%value)
       end do
       call print_unapproached(self%page, model%mesh%node_number, interfaces, self%summary)
-      warnings = model%warnings
-      do i = 1, size(self%warnings)
-         call append(warnings, self%warnings(i)%value)
-      end do
+      warnings = [model%warnings, run%warnings]
       call self%page%list('WARNINGS', warnings)
       if (size(warnings) == 0) then
          call self%page%line('')

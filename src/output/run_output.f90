@@ -195,7 +195,6 @@ contains
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(accuracy_rounds_type), intent(in) :: accuracy  !! rounds of a requested accuracy
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(string_type), allocatable :: warnings(:)
       real(dp) :: since
       integer :: counts(3)
 
@@ -217,10 +216,9 @@ contains
       self%kept_round = 0
       self%is_finished = .true.
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
-      warnings = self%judgement%warnings(model, interfaces)
-      call self%listing%warn(warnings)
+      self%run%warnings = self%judgement%warnings(model, interfaces)
       call self%listing%finish(model, interfaces, cards, self%verifier, self%run, error)
-      if (self%run%accuracy%later_round == 0) call print_warnings(self, warnings)
+      if (self%run%accuracy%later_round == 0) call print_warnings(self, self%run%warnings)
    end subroutine finish
 
    !> Ends the listing with the reason why the other files could not be written.

@@ -55,6 +55,7 @@ module run_summaries
       integer :: verify_passed = 0               !! *VERIFY checks that passed
       integer :: verify_failed = 0               !! *VERIFY checks that failed
       type(accuracy_words_type) :: accuracy      !! a requested accuracy, once a round ended
+      type(string_type), allocatable :: warnings(:)   !! on the run as a whole, once it has ended
    end type run_summary_type
 
    !> A fact about a run.

@@ -93,7 +93,7 @@ contains
          if (.not. allocated(error)) call copy_file(self%source, self%working_path, error)
       end if
       if (allocated(error)) then
-         call self%content%fail(error)
+         call move_alloc(error, self%content%error)
       else if (is_new) then
          call self%content%create(self%working_path)
       else
@@ -106,7 +106,7 @@ contains
       class(working_file_type), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
-      call self%content%check(error)
+      if (allocated(self%content%error)) error = self%content%error
       call explain(self, error)
    end subroutine check
 

@@ -9,7 +9,7 @@ module increment_attempts
    use errors, only: error_type, set_error, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, strain_rate
-   use increment_checks, only: check_heat, check_record, warn_of_choices
+   use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices
    use increment_data, only: stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
@@ -18,7 +18,6 @@ module increment_attempts
    use load_histories, only: step_clock_type
    use model, only: model_type
    use records, only: add_attempts, increment_record_type
-   use shock_checks, only: note_shock
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
