@@ -29,18 +29,14 @@ int file_rename(const char *from, const char *to)
 }
 
 /* Waits until a file is on its disk, where the system can tell. */
-void file_sync(const char *path)
+int file_sync(const char *path)
 {
    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
-   if (descriptor < 0)
-      return;
-   fsync(descriptor);
-   close(descriptor);
-}
+   int number = descriptor >= 0 && fsync(descriptor) == 0 ? 0 : errno;
 
-int file_remove(const char *path)
-{
-   return unlink(path) == 0 ? 0 : errno;
+   if (descriptor >= 0)
+      close(descriptor);
+   return number;
 }
 
 int file_make_folder(const char *path)
@@ -52,11 +48,6 @@ int file_make_folder(const char *path)
 int file_check_folder(const char *path)
 {
    return access(path, W_OK | X_OK) == 0 ? 0 : errno;
-}
-
-int file_is_terminal(int descriptor)
-{
-   return isatty(descriptor);
 }
 
 /* Writes all of the bytes. */
@@ -158,7 +149,7 @@ static int may_be_result(int folder, const char *name)
 }
 
 /* Removes the results `stem.<number>.tmp`, which runs left that were killed. */
-void file_remove_working(const char *stem)
+int file_remove_working(const char *stem)
 {
    const char *slash = strrchr(stem, '/');
    const char *name = slash ? slash + 1 : stem;
@@ -179,6 +170,7 @@ void file_remove_working(const char *stem)
    if (entries)
       closedir(entries);
    free(folder);
+   return 0;
 }
 
 /* Device and inode of a regular file; zeros where there is none. */
@@ -251,11 +243,6 @@ int file_empty(int descriptor)
    return ftruncate(descriptor, 0) == 0 || errno == EINVAL ? 0 : errno;
 }
 
-int file_close(int descriptor)
-{
-   return close(descriptor) == 0 ? 0 : errno;
-}
-
 /* Copies a file over another one. */
 int file_copy(const char *from, const char *to, int *is_source)
 {
@@ -319,11 +306,6 @@ int file_read(const char *path, long most, char **contents, long *count)
       *contents = NULL;
    }
    return number;
-}
-
-void file_free(char *contents)
-{
-   free(contents);
 }
 
 /* A file that would grow past the limit of the process is an error like others, no reason to die. */

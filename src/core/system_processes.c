@@ -90,14 +90,6 @@ int thercon_collect_child(int child, int waits, struct process_end *end)
 /* Passes the signal that came on to a child, or ends it at once. */
 void thercon_signal_child(int child, int kills) { kill(child, kills ? SIGKILL : caught); }
 
-/* Reads a part of a file; returns the number of bytes. */
-int thercon_read(int file, long offset, int length, char *bytes)
-{
-   const ssize_t count = pread(file, bytes, (size_t)length, offset);
-
-   return count < 0 ? 0 : (int)count;
-}
-
 /* A child files its report over the one before; in the first process nothing is done. */
 void thercon_file_report(const struct report *report)
 {

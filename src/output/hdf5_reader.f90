@@ -6,7 +6,7 @@ module hdf5_reader
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_loc, c_ptr, &
       c_size_t
    use errors, only: error_type, set_error, status_deck
-   use file_calls, only: check_seal
+   use file_calls, only: c_free, check_seal
    use hdf5, only: h5aclose_f, h5aexists_f, h5aopen_f, h5aread_f, h5dclose_f, h5dget_space_f, &
       h5dopen_f, h5dread_f, h5f_acc_rdonly_f, h5fclose_f, h5fopen_f, h5lexists_f, h5oclose_f, &
       h5oopen_f, h5s_select_set_f, h5sclose_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
@@ -41,11 +41,6 @@ module hdf5_reader
          import :: c_ptr, c_size_t
          type(c_ptr), value :: string
       end function c_length
-
-      subroutine c_free(address) bind(c, name='free')
-         import :: c_ptr
-         type(c_ptr), value :: address
-      end subroutine c_free
    end interface
 
 contains
