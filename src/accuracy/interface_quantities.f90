@@ -62,7 +62,7 @@ contains
       integer :: q
 
       do q = 1, size(estimated)
-         values(q:q) = contact_values(estimated(q)%name, points, contact)
+         values(q:q) = contact_values(estimated(q)%name, contact)
       end do
    end function quantities_of
 

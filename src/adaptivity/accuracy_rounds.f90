@@ -135,7 +135,7 @@ contains
          associate (points => interfaces(self%demands(d)%interface), &
             contact => record%contacts(self%demands(d)%interface))
             ! A relative target refers to the value, or of an edge to the width of the contact.
-            value = contact_values(quantity%name, points, contact)
+            value = contact_values(quantity%name, contact)
             scale = abs(value(1))
             if (quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(scale)) scale = &
                contact_width(points, contact)

@@ -57,7 +57,7 @@ contains
          if (columns(i)%is_geometry) then
             values(:, i) = geometry_values(columns(i)%name, points, node_number)
          else
-            values(:, i) = contact_values(columns(i)%name, points, contact)
+            values(:, i) = contact_values(columns(i)%name, contact)
          end if
       end do
       rows(0)%value = ' no.'//table_heads(columns)

@@ -202,7 +202,7 @@ contains
       values = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, self%points)
       do i = 1, size(interfaces)
          associate (at_nodes => interfaces(i)%at_face_nodes, &
-            of_points => contact_values(name, interfaces(i), record%contacts(i)))
+            of_points => contact_values(name, record%contacts(i)))
             if (name == 'status') then
                ! Not interpolated: that of the nearest contact point.
                face = [(nearest_value(at_nodes%coefficients_of(k), &
@@ -260,16 +260,14 @@ contains
    end subroutine write_head
 
    !> Adds the contact points of an increment.
-   subroutine append_contact(self, record, interfaces)
+   subroutine append_contact(self, record)
       class(contact_grid_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
-      type(contact_points_type), intent(in) :: interfaces(:)
       integer :: i, k
 
       do k = 1, size(self%sets)
-         do i = 1, size(interfaces)
-            call self%sets(k)%append(contact_values(self%point_data(k)%name, interfaces(i), &
-               record%contacts(i)))
+         do i = 1, size(record%contacts)
+            call self%sets(k)%append(contact_values(self%point_data(k)%name, record%contacts(i)))
          end do
       end do
       call self%append_time(record%time)

@@ -77,14 +77,13 @@ contains
    end subroutine append_passes
 
    !> Adds the contact points of an increment.
-   subroutine append_contact(self, points, contact)
+   subroutine append_contact(self, contact)
       class(result_table_type), intent(inout) :: self     !! `/contact/<name>`
-      type(contact_points_type), intent(in) :: points     !! contact points of the interface
-      type(contact_record_type), intent(in) :: contact    !! their state
+      type(contact_record_type), intent(in) :: contact    !! state of the interface
       integer :: i
 
       do i = 1, size(self%sets)
-         call self%sets(i)%append(contact_values(self%quantities(i)%name, points, contact))
+         call self%sets(i)%append(contact_values(self%quantities(i)%name, contact))
       end do
    end subroutine append_contact
 

@@ -290,9 +290,9 @@ contains
          call self%passes%add_iterations(record%iterations)
       end if
       do i = 1, size(interfaces)
-         call self%tables(3 + i)%append(interfaces(i), record%contacts(i))
+         call self%tables(3 + i)%append(record%contacts(i))
       end do
-      if (self%has_contact) call self%contact_grid%append(record, interfaces)
+      if (self%has_contact) call self%contact_grid%append(record)
       if (allocated(record%errors)) then
          n = size(interfaces)
          call self%tables(4 + n)%append(record)

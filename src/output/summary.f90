@@ -113,7 +113,7 @@ contains
 
       columns(1) = to_text(record%time)
       do k = 1, size(step_quantities)
-         value = contact_values(step_quantities(k), points, contact)
+         value = contact_values(step_quantities(k), contact)
          columns(k + 1) = to_text(value(1))
          if (ieee_is_nan(value(1)) .or. (step_quantities(k) == 'heat_rate' .and. &
             .not. allocated(contact%heat_flux))) columns(k + 1) = '-'
@@ -285,7 +285,7 @@ contains
 
       do q = 1, size(estimated)
          if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
-         values = contact_values(estimated(q)%name, points, self%contacts(i))
+         values = contact_values(estimated(q)%name, self%contacts(i))
          zone = zone_words(estimated(q)%name, self%contacts(i))
          name = words_of(estimated(q)%name)
          if (ieee_is_nan(values(1))) then

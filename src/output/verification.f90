@@ -314,7 +314,7 @@ contains
       if (quantity%is_geometry) then
          values = geometry_values(quantity%name, points, mesh%node_number)
       else
-         values = contact_values(quantity%name, points, contact)
+         values = contact_values(quantity%name, contact)
       end if
       if (quantity%values == 1) return
       values = pack(values, .not. ieee_is_nan(values))
