@@ -9,7 +9,7 @@ module deck_run
    use contact_points, only: contact_points_type
    use deck_files, only: input_files_type, outputs_of, results_of
    use deck_outcomes, only: deck_outcome_type
-   use deck_preparation, only: prepare_deck, read_deck_type, reason_to_skip
+   use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
@@ -159,8 +159,9 @@ contains
          if (.not. (allocated(error) .or. is_later)) call reserve_files(self, error)
          if (.not. allocated(error)) then
             call self%output%progress%start(self%command%quiet)
-            if (allocated(self%model%accuracy%targets)) call self%output%progress%of_round( &
-               self%output%kept_round + 1, self%since)
+            self%output%progress%since = self%since
+            if (allocated(self%model%accuracy%targets)) self%output%progress%round = &
+               self%output%kept_round + 1
             call self%output%progress%say('assembling')
             call self%simulation%assemble(self%model)
             call self%output%progress%say('reducing')
@@ -183,7 +184,7 @@ contains
       type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable :: error
 
-      call set_reason(self%outcome%report, reason_to_skip(self%deck))
+      call set_reason(self%outcome%report, self%deck%why_skipped)
       if (.not. allocated(self%deck%finished)) return
       associate (outcome => self%outcome, finished => self%deck%finished, &
          failed => self%deck%finished%failed_checks)
@@ -221,6 +222,7 @@ contains
       type(error_type), allocatable :: output_error
       type(contact_points_type), allocatable :: interfaces(:)
       type(increment_record_type) :: record
+      logical :: moved
 
       associate (model => self%model, output => self%output, outcome => self%outcome, &
          cards => self%deck%cards%images)
@@ -261,7 +263,9 @@ contains
                error%status = status_no_convergence
             end if
             call output%fail(error%message, record)
-            call tell_of_earlier(self)
+            call output%results%set_aside(results_of(self%path, self%command), moved)
+            if (moved) call print_line(error_unit, self%path//': note: the results of an '// &
+               'earlier run are in "'//results_of(self%path, self%command)//'.earlier.vtkhdf"')
             call outcome%note(record, output%results%accepted, output%written())
             if (output%kept_round > 0) return
          end if
@@ -414,18 +418,6 @@ contains
             '; the results are those of round '//to_text(kept_round)
       end associate
    end function kept_words
-
-   !> Sets results of an earlier run aside and says so.
-   subroutine tell_of_earlier(self)
-      type(deck_run_type), intent(inout) :: self
-      character(:), allocatable :: path
-      logical :: moved
-
-      path = results_of(self%path, self%command)
-      call self%output%results%set_aside(path, moved)
-      if (moved) call print_line(error_unit, self%path//': note: the results of an earlier run '// &
-         'are in "'//path//'.earlier.vtkhdf"')
-   end subroutine tell_of_earlier
 
    !> Prints why a run ended early. That a later round did is no mistake of the deck.
    subroutine report_failure(self, error, is_told)
