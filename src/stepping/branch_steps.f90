@@ -1,11 +1,16 @@
 !> Continuation: the points of a branch of steady solutions over the load factor, through its
-!> turning points (branch_turns).
+!> turning points.
 !>
 !> A point is found with the load factor as an unknown. It is then an increment like any other, with
 !> the load factor given and the conductances of the point as its start.
+!>
+!> A branch has folds, where the load factor turns, and corners, where the tangent turns too far
+!> however short a step is. A step is halved where its corrections fail, or the tangent turns too
+!> far. Folds and corners are found by bisection; a fold in a corner is where the coordinate of a
+!> contact point has the value of the kink that it passes.
 module branch_steps
-   use branch_trials, only: branch_type, is_found, straight
-   use branch_turns, only: find_fold, make_step, same, shortest, turns, within
+   use branch_path, only: branch_point_type
+   use branch_trials, only: branch_type, is_found, is_lost, is_sharp, straight
    use errors, only: error_type, set_error, status_no_convergence
    use heat_reduction, only: heat_reduction_type
    use kinds, only: dp
@@ -20,6 +25,13 @@ module branch_steps
 
    integer, parameter :: fewest_of_closed = 3     !! points before the first one can be met again
    real(dp), parameter :: aside = 0.1_dp          !! distance over a step that may be none
+   real(dp), parameter :: corner = 2.0e-8_dp      !! length within which a corner is looked for
+   real(dp), parameter :: few = 8.0_dp            !! such lengths from which it is turned
+   real(dp), parameter :: shortest = 1.0e-9_dp    !! step that is tried
+   integer, parameter :: most_restarts = 40       !! of a step, before a corner
+   real(dp), parameter :: fold_width = 1.0e-7_dp  !! part of the load in which a fold is found
+   real(dp), parameter :: least_load = 1.0e-2_dp  !! load factor of which that is a part at least
+   real(dp), parameter :: same = 1.0e-12_dp       !! difference of load factors that is none
 
 contains
 
@@ -161,5 +173,206 @@ contains
       end if
       if (self%is_last) self%ending = 'the load factor is '//to_text(bound)
    end subroutine stay_in_range
+
+   !> Whether the load factor turns between two points.
+   pure logical function turns(from, to)
+      type(branch_point_type), intent(in) :: from, to
+
+      turns = from%tangent(size(from%tangent))*to%tangent(size(to%tangent)) < 0.0_dp
+   end function turns
+
+   !> The next point, no farther than the step of arc length. Before a corner the steps go on from
+   !> points ever nearer to it: those of a long one end apart where the corner lies between them.
+   !> Error: the branch is lost.
+   subroutine make_step(self, error)
+      type(branch_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      type(branch_point_type) :: behind, low
+      real(dp) :: reach
+      integer :: i
+
+      self%tried = min(self%length, self%measure%longest(self%from%tangent))
+      do i = 1, most_restarts
+         call bisect(self, low, error)
+         if (allocated(error) .or. self%outcome == is_found) return
+         if (self%outcome == is_lost) exit
+         behind = self%point
+         self%point = low
+         self%outcome = is_found
+         if (turns(self%from, low) .or. abs(within(self) - low%factor) > same) return
+         self%from = low
+         reach = reach_of_kink(self)
+         if (reach <= few*corner) then
+            call turn_corner(self, reach, error)
+            return
+         else if (reach > self%length) then
+            ! No law has a kink there, but a contact point begins to slip, or stops.
+            if (.not. self%has_converged) exit
+            self%point = behind
+            self%tried = corner
+            return
+         end if
+         self%tried = 2*reach
+      end do
+      call lose(self, error)
+   end subroutine make_step
+
+   !> A step of at most the length tried; halved where it is lost. Where the branch turns too far
+   !> even in the shortest one, the outcome says so, the point is the one behind the turn.
+   subroutine bisect(self, low, error)
+      type(branch_type), intent(inout) :: self
+      type(branch_point_type), intent(out) :: low   ! the last point before the turn
+      type(error_type), allocatable, intent(out) :: error
+      type(branch_point_type) :: behind
+      real(dp) :: ends(2)             ! longest step that was found, shortest one that was not
+      integer :: last                 ! outcome of the latter
+      logical :: is_behind            ! whether it led to the branch
+
+      low = self%from
+      ends = [0.0_dp, huge(1.0_dp)]
+      last = is_lost
+      is_behind = .false.
+      do
+         call self%try_step(self%tried, error)
+         if (allocated(error)) return
+         if (self%outcome == is_found) then
+            if (last == is_lost) return
+            if (is_behind) then
+               if (dot_product(self%point%tangent, behind%tangent) >= straight) return
+            end if
+            low = self%point
+            ends(1) = self%tried
+         else
+            last = self%outcome
+            is_behind = self%has_converged
+            behind = self%point
+            ends(2) = self%tried
+         end if
+         if (ends(2) - ends(1) <= merge(corner, shortest, last == is_sharp)) exit
+         self%tried = sum(ends)/2
+      end do
+      self%outcome = last
+      self%has_converged = is_behind
+      self%point = behind
+      self%tried = ends(1)
+   end subroutine bisect
+
+   !> How long a step is that passes a kink; beyond any length where none is near.
+   real(dp) function reach_of_kink(self) result(reach)
+      type(branch_type), intent(in) :: self
+
+      reach = corner
+      do while (reach <= self%length)
+         if (self%measure%kinked(self%from, self%measure%moved(self%from, &
+            reach*self%from%tangent)) > 0) return
+         reach = 2*reach
+      end do
+   end function reach_of_kink
+
+   !> The load factor of the point, within its range.
+   pure real(dp) function within(self)
+      type(branch_type), intent(in) :: self
+
+      within = min(max(self%point%factor, self%asked%range(1)), self%asked%range(2))
+   end function within
+
+   subroutine lose(self, error)
+      type(branch_type), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      call set_error(error, status_no_convergence, 'the branch is lost at load factor '// &
+         to_text(self%base%factor)//': no step along it converges')
+   end subroutine lose
+
+   !> The first point behind a corner, from a point just before it; the corner itself, where the
+   !> load factor turns there. The way round it leads over a point where the coordinate that passes
+   !> the kink is held: from a guess in which all that pass one at once have done so, lest they part
+   !> into a pattern.
+   !> Error: the branch is lost.
+   subroutine turn_corner(self, reach, error)
+      type(branch_type), intent(inout) :: self
+      real(dp), intent(in) :: reach         ! of the kink
+      type(error_type), allocatable, intent(out) :: error
+
+      self%point = self%measure%moved(self%from, 2*reach*self%from%tangent)
+      self%fixed_coordinate = self%measure%kinked(self%from, self%point)
+      call self%try_step(2*reach, error)
+      self%fixed_coordinate = 0
+      if (allocated(error)) return
+      self%tried = self%length
+      if (self%has_converged) then
+         self%is_fold = turns(self%from, self%point)
+         if (self%is_fold) then
+            call meet_corner(self, self%point, error)
+            self%from = self%base
+            if (allocated(error) .or. self%outcome == is_found) return
+         else
+            self%from = self%point
+            do while (self%tried > shortest)
+               self%tried = 0.5_dp*self%tried
+               call self%try_step(self%tried, error)
+               if (allocated(error) .or. self%outcome == is_found) return
+            end do
+         end if
+      end if
+      call lose(self, error)
+   end subroutine turn_corner
+
+   !> The corner between a point just before it and one behind it, where the coordinate that passes
+   !> a kink has its value; the branch goes on from it as behind.
+   subroutine meet_corner(self, behind, error)
+      type(branch_type), intent(inout) :: self
+      type(branch_point_type), intent(in) :: behind
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: tangent(size(behind%tangent))
+
+      tangent = behind%tangent
+      self%fixed_coordinate = self%measure%kinked(self%from, behind)
+      self%point = self%measure%at_kink(self%from, behind)
+      call self%try_step(0.0_dp, error)
+      self%fixed_coordinate = 0
+      self%outcome = merge(is_found, is_lost, self%has_converged)
+      self%point%tangent = tangent
+   end subroutine meet_corner
+
+   !> The fold between the start of the last step and its end; where the coordinate of a contact
+   !> point passes a kink there, it is a corner.
+   subroutine find_fold(self, error)
+      type(branch_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      type(branch_point_type) :: low, behind
+      real(dp) :: ends(2), rates(2), reach
+      integer :: n
+
+      n = size(self%from%tangent)
+      low = self%from
+      behind = self%point
+      ends = [0.0_dp, self%tried]
+      rates = abs([self%from%tangent(n), behind%tangent(n)])
+      do while (sum(rates)*(ends(2) - ends(1)) > fold_width*max(abs(behind%factor), least_load) &
+         .and. ends(2) - ends(1) > shortest)
+         call self%try_step(sum(ends)/2, error)
+         if (allocated(error) .or. self%outcome /= is_found) return
+         if (turns(self%from, self%point)) then
+            behind = self%point
+            ends(2) = sum(ends)/2
+            rates(2) = abs(behind%tangent(n))
+         else
+            low = self%point
+            ends(1) = sum(ends)/2
+            rates(1) = abs(low%tangent(n))
+         end if
+      end do
+      self%outcome = is_lost
+      if (self%measure%kinked(low, behind) > 0) then
+         self%from = low
+         reach = reach_of_kink(self)
+         if (reach <= self%length) call turn_corner(self, reach, error)
+      else
+         self%point = behind
+         self%outcome = is_found
+         self%is_fold = .true.
+      end if
+   end subroutine find_fold
 
 end module branch_steps

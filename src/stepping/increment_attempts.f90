@@ -9,7 +9,8 @@ module increment_attempts
    use errors, only: error_type, set_error, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, strain_rate
-   use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices
+   use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, &
+      warn_of_tables
    use increment_data, only: stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
@@ -21,7 +22,6 @@ module increment_attempts
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
-   use table_checks, only: warn_of_tables
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
