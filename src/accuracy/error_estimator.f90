@@ -130,7 +130,7 @@ contains
       do i = 1, size(record%contacts)
          call simulation%bodies%view(i, points)
          associate (contact => record%contacts(i))
-            values(:, i) = quantities_of(points, contact)
+            values(:, i) = quantities_of(contact)
             self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact, &
                self%has_triangles(i)))
             if (regime_of(contact) /= self%regime(i)) call self%histories%begin_anew(i)
@@ -180,7 +180,7 @@ contains
       do i = 1, size(record%errors)
          call simulation%bodies%view(i, points)
          associate (errors => record%errors(i))
-            errors%value = quantities_of(points, record%contacts(i))
+            errors%value = quantities_of(record%contacts(i))
             errors%bound = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(estimated))
             errors%mesh = errors%bound
             errors%increment = errors%bound
