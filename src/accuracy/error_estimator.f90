@@ -118,7 +118,7 @@ contains
       integer :: i
 
       if (.not. self%is_on) then
-         if (record%last_of_step) call go_without(model, simulation, record)
+         if (record%last_of_step) call go_without(model, record)
          return
       end if
       if (record%step /= self%step) then
@@ -169,16 +169,13 @@ contains
    end subroutine end_increment
 
    !> The quantities at the end of a step in a run that bounds nothing, and why.
-   subroutine go_without(model, simulation, record)
+   subroutine go_without(model, record)
       type(model_type), intent(in) :: model
-      type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
-      type(contact_points_type) :: points
       integer :: i
 
       allocate (record%errors(size(record%contacts)), record%body_errors(0))
       do i = 1, size(record%errors)
-         call simulation%bodies%view(i, points)
          associate (errors => record%errors(i))
             errors%value = quantities_of(record%contacts(i))
             errors%bound = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(estimated))

@@ -25,6 +25,7 @@ module result_tables
       type(growing_dataset_type), allocatable :: sets(:)           !! one for each of them
    contains
       procedure :: start => start_table
+      procedure :: rows
       generic :: append => append_increment, append_passes, append_contact, append_errors
       procedure, private :: append_increment, append_passes, append_contact, append_errors
    end type result_table_type
@@ -48,6 +49,14 @@ contains
          self%sets(i) = quantity_dataset(group//'/', reported(i), labels, 1, expected, places)
       end do
    end subroutine start_table
+
+   !> Rows so far.
+   pure integer function rows(self)
+      class(result_table_type), intent(in) :: self
+
+      rows = 0
+      if (size(self%sets) > 0) rows = self%sets(1)%rows()
+   end function rows
 
    !> Adds an increment.
    subroutine append_increment(self, record)

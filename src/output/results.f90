@@ -211,10 +211,10 @@ contains
             ! Steps that are new may be the first to have such rows.
             if (.not. file%has(self%tables(i)%group)) call file%create_group(self%tables(i)%group)
             do k = 1, size(self%tables(i)%sets)
-               call self%tables(i)%sets(k)%go_on(file, rows(row_of(self, i)))
+               call self%tables(i)%sets(k)%go_on(file, rows(2 + i))
             end do
          end do
-         call self%fields%go_on(file, rows(3))
+         call self%fields%go_on(file, rows(2))
          call self%restarts%go_on(file, restart, counts, model%units)
          call file%remove('/errors/reasons')
          call write_reasons(file, model)
@@ -233,18 +233,6 @@ contains
       if (allocated(error)) call self%give_up()
    end subroutine go_on
 
-   !> Which number of rows is that of a table: of the increments, the passes, the ends of steps, or
-   !> the analyses of stability.
-   pure integer function row_of(self, i)
-      class(results_type), intent(in) :: self
-      integer, intent(in) :: i                            ! index of the table
-
-      row_of = 1
-      if (i == convergence) row_of = 2
-      if (index(self%tables(i)%group, '/errors') == 1) row_of = 4
-      if (i == stability) row_of = 5
-   end function row_of
-
    !> Adds a restart, with the rows of all datasets at its increment.
    subroutine add_restart(self, record, model, restart)
       class(results_type), intent(inout) :: self
@@ -252,12 +240,10 @@ contains
       type(model_type), intent(in) :: model
       type(state_table_type), intent(inout) :: restart
       integer, allocatable :: rows(:)
+      integer :: i
 
-      associate (last => self%tables(size(self%tables)))
-         rows = [self%accepted, self%tables(convergence)%sets(1)%rows(), self%fields%increments, &
-            last%sets(1)%rows(), 0]
-         if (size(self%tables(stability)%sets) > 0) rows(5) = self%tables(stability)%sets(1)%rows()
-      end associate
+      rows = [self%accepted, self%fields%increments, (self%tables(i)%rows(), &
+         i=1, size(self%tables))]
       call integers(restart, 'rows', rows)
       call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts, &
          model%units)

@@ -119,6 +119,7 @@ contains
       do i = 1, size(runs)
          runs(i)%task%path = path
          runs(i)%task%command = command
+         if (command%limit <= 0.0_dp) runs(i)%task%command%limit = usual_limit
          runs(i)%task%deck => deck
       end do
       if (.not. allocated(error)) call measure(model, &
@@ -189,7 +190,7 @@ contains
       do contact_level = 0, merge(most, 0, size(model%contacts) > 0)
          do level = 0, most - contact_level
             call mesh_rows(model, highest, level, contact_level, rows)
-            call leave_out_expensive(limit_of(runs(1)%task%command), trade, rows)
+            call leave_out_expensive(runs(1)%task%command%limit, trade, rows)
             call measure_rows(runs, progress, rows, error)
             trade%rows = [trade%rows, rows]
             if (allocated(error)) return
@@ -200,13 +201,6 @@ contains
       trade%rows = [trade%rows, rows]
       call progress%clear()
    end subroutine measure
-
-   !> CPU seconds that a row may take [s].
-   pure real(dp) function limit_of(command)
-      type(command_type), intent(in) :: command
-
-      limit_of = merge(command%limit, usual_limit, command%limit > 0.0_dp)
-   end function limit_of
 
    !> Leaves out the rows that would cost too much, but never the deck as written; rows on meshes
    !> even finer than those are not named.
@@ -293,7 +287,7 @@ contains
       integer :: i
 
       associate (figures => self%task%found%figures)
-         longest = max(patience*limit_of(self%task%command), least_patience)
+         longest = max(patience*self%task%command%limit, least_patience)
          if (self%child%has_ended()) then
             report = self%child%report()
             call self%child%drop_files()
@@ -320,10 +314,11 @@ contains
          i=1, size(row%cpu))])
    end subroutine collect
 
-   !> Solves the row as often as its time asks for.
+   !> Solves the row as often as its time asks for: in a round, or in those of a requested accuracy.
    subroutine execute(self, report)
       class(row_task_type), intent(inout) :: self
       type(report_type), intent(inout) :: report    !! how it ended
+      type(adaptive_rounds_type) :: rounds
       type(error_type), allocatable :: error
       real(dp) :: ended, began
       integer :: run
@@ -331,7 +326,16 @@ contains
       do run = 1, runs_within(1)
          if (run > runs_within(count(self%found%figures(1, 1) > moments) + 1)) exit
          call cpu_time(began)
-         call solve_once(self, error)
+         rounds = adaptive_rounds_type(variation=self%variation)
+         do
+            call rounds%begin_round()
+            call solve_round(self, rounds, error)
+            if (allocated(error) .or. .not. rounds%accuracy%goes_on) exit
+         end do
+         if (.not. allocated(error) .and. rounds%accuracy%is_on) then
+            if (.not. rounds%accuracy%is_reached()) call set_error(error, status_verify, &
+               'accuracy not reached: '//rounds%accuracy%reason)
+         end if
          if (allocated(error)) exit
          call cpu_time(ended)
          self%found%figures(run, 1) = max(ended - began, tiny(ended))
@@ -340,24 +344,6 @@ contains
       report%status = int(error%status, c_int)
       call set_reason(report, error%message)
    end subroutine execute
-
-   !> A round, or the rounds of a requested accuracy.
-   !> Errors: as solve_round; status_verify, where the accuracy is not reached.
-   subroutine solve_once(self, error)
-      class(row_task_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: error
-      type(adaptive_rounds_type) :: rounds
-
-      rounds%variation = self%variation
-      do
-         call rounds%begin_round()
-         call solve_round(self, rounds, error)
-         if (allocated(error) .or. .not. rounds%accuracy%goes_on) exit
-      end do
-      if (allocated(error) .or. .not. rounds%accuracy%is_on) return
-      if (.not. rounds%accuracy%is_reached()) call set_error(error, status_verify, &
-         'accuracy not reached: '//rounds%accuracy%reason)
-   end subroutine solve_once
 
    !> A round, without estimates where no accuracy is requested.
    !> Errors: as prepare_deck and solve_increments.
