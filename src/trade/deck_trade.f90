@@ -326,7 +326,8 @@ contains
       do run = 1, runs_within(1)
          if (run > runs_within(count(self%found%figures(1, 1) > moments) + 1)) exit
          call cpu_time(began)
-         rounds = adaptive_rounds_type(variation=self%variation)
+         rounds = adaptive_rounds_type()
+         rounds%variation = self%variation
          do
             call rounds%begin_round()
             call solve_round(self, rounds, error)
