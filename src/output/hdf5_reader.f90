@@ -224,13 +224,9 @@ contains
       type(c_ptr), intent(in) :: start
       character(:), allocatable :: string
       character(kind=c_char), pointer :: characters(:)
-      integer :: i
 
       call c_f_pointer(start, characters, [c_length(start)])
-      allocate (character(size(characters)) :: string)
-      do i = 1, size(characters)
-         string(i:i) = characters(i)
-      end do
+      string = transfer(characters, repeat(' ', size(characters)))
       call c_free(start)
    end function taken
 

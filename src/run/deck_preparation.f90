@@ -175,7 +175,8 @@ contains
       integer :: step
 
       loads = simulation%loads
-      begins = step_cards(cards)
+      begins = pack([(step, step=1, size(cards%keywords))], [(cards%keywords(step)%name == &
+         'STEP', step=1, size(cards%keywords))])
       do step = 1, size(model%steps)
          call loads%begin_step(model%steps(step), simulation%state%displacement, &
             simulation%state%temperature)
@@ -187,16 +188,6 @@ contains
          if (report%has_errors()) return
       end do
    end subroutine check_supports
-
-   !> Which of the keyword cards begin steps.
-   pure function step_cards(cards) result(list)
-      type(cards_type), intent(in) :: cards
-      integer, allocatable :: list(:)
-      integer :: k
-
-      list = pack([(k, k=1, size(cards%keywords))], [(cards%keywords(k)%name == 'STEP', &
-         k=1, size(cards%keywords))])
-   end function step_cards
 
    subroutine check_step(place, model, simulation, laws, loads, step, report)
       type(place_type), intent(in) :: place

@@ -197,9 +197,12 @@ contains
       complex(dp), allocatable :: rates(:)
       logical, allocatable :: is_sharp(:)
       logical :: singular
-      integer :: fastest, growing
+      integer :: fastest, growing, i
 
-      call coupling%factor(unit_matrix(size(response%answer, 1)) - response%gain(), singular)
+      associate (n => size(response%answer, 1))
+         call coupling%factor(reshape([1.0_dp, (spread(0.0_dp, 1, n), 1.0_dp, i=2, n)], [n, n]) - &
+            response%gain(), singular)
+      end associate
       call modes%begin(size(simulation%state%temperature), 0.0_dp, most_products)
       rates = [complex(dp) ::]
       is_sharp = [logical ::]
@@ -234,17 +237,6 @@ contains
          end if
       end associate
    end subroutine find_fastest
-
-   pure function unit_matrix(n) result(matrix)
-      integer, intent(in) :: n
-      real(dp) :: matrix(n, n)
-      integer :: i
-
-      matrix = 0.0_dp
-      do i = 1, n
-         matrix(i, i) = 1.0_dp
-      end do
-   end function unit_matrix
 
    !> Rates of eigenvalues; those that are none decay at once.
    pure function rates_of(values, sigma) result(rates)

@@ -54,8 +54,7 @@ contains
       if (stage%is_last) return
       stage%duration = stage_part*stage%size
       stage%size = stage%duration
-      stage%clock%step_time = run%control%step_time + stage%size
-      stage%clock%total_time = run%control%step_start + stage%clock%step_time
+      stage%clock = run%control%instant_at(model, run%control%step_time + stage%size)
    end subroutine begin_first_stage
 
    !> The second stage of an increment: C (T_i+1 - T_i)/dt is (1 - gamma) of the first stage's rate
@@ -104,7 +103,7 @@ contains
       logical :: stores(size(state%temperature))
       integer :: i
 
-      call run%loads%move_to(run%control%start_of_step(model), model)
+      call run%loads%move_to(run%control%instant_at(model, 0.0_dp), model)
       associate (bodies => run%bodies, loads => run%loads, &
          by => run%bodies%thermal%map%by_unknowns)
          temperature = bodies%thermal%map%carried_along(state%temperature, merge( &

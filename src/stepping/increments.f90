@@ -57,7 +57,7 @@ contains
                run%loads, run%state, error)
             if (.not. allocated(error)) clock = run%branch%clock_at(run%branch%point%factor)
          end if
-         if (touch%interface > 0) call run%control%end_at(touch%ending, clock)
+         if (touch%interface > 0) clock = run%control%instant_at(model, touch%ending)
          increment_size = clock%step_time - run%control%step_time
          if (.not. allocated(error)) then
             call attempt_increment(run, model, clock, attempt, error)

@@ -52,8 +52,9 @@ contains
       end do
       if (allocated(error)) return
       call exchange(simulation, table)
-      associate (loads => simulation%loads, state => simulation%state)
-         call loads%move_to(simulation%control%present_instant(model), model)
+      associate (loads => simulation%loads, state => simulation%state, &
+         control => simulation%control)
+         call loads%move_to(control%instant_at(model, control%step_time), model)
          if (any(solves_heat(model%steps%analysis))) then
             state%sources%load = loads%heat_load()
             state%sources%film = loads%film_matrix()

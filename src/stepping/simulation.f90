@@ -91,7 +91,7 @@ contains
       type(model_type), intent(in) :: model
 
       call self%control%enter_step(model)
-      self%branch = branch_type(self%control%step, self%control%start_of_step(model), &
+      self%branch = branch_type(self%control%step, self%control%instant_at(model, 0.0_dp), &
          model%steps(self%control%step)%continuation)
       call self%loads%begin_step(model%steps(self%control%step), self%state%displacement, &
          self%state%temperature)
@@ -127,11 +127,11 @@ contains
          film = heat%added
          if (solves_heat(analysis) .and. (heat%numbering /= bodies%thermal%numbering .or. &
             .not. allocated(heat%solver))) then
-            call self%loads%move_to(self%control%next_instant(model), model)
+            clock = self%control%next_instant(model)
+            call self%loads%move_to(clock, model)
             equation = heat_equation_type(model%steps(self%control%step)%scheme, &
                self%state%sources)
             equation%new%film = self%loads%film_matrix()
-            clock = self%control%next_instant(model)
             associate (step => model%steps(self%control%step))
                if (step%is_transient) equation%duration = equation%scheme%a(1)* &
                   self%control%size_to(clock)*merge(stage_part, 1.0_dp, step%scheme%stages == 2)
@@ -165,7 +165,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: at(:)                      ! (nodes) [temperature]
 
-      call self%loads%move_to(self%control%present_instant(model), model)
+      call self%loads%move_to(self%control%instant_at(model, self%control%step_time), model)
       if (.not. allocated(self%bodies%operators_at)) return
       at = model%initial_temperature
       if (allocated(self%state%operators_at)) at = self%state%operators_at
