@@ -88,8 +88,7 @@ contains
       self%summary_start = self%page%length
       allocate (running(0))
       call append(running, 'not finished: the run is still in progress, or was killed')
-      call self%page%append(summary_block(running, size(interfaces), size(model%steps), &
-         merge(model%mesh%body_count, 0, model%estimates_errors)))
+      call self%page%append(summary_block(running, model))
       call self%page%list('DEFAULTS AND IGNORED CARDS', model%notes)
       call print_model(self%page, model, interfaces, run)
       call self%page%title('INCREMENTS')
@@ -242,15 +241,13 @@ contains
       call write_text(self, error)
       if (allocated(error)) return
       allocate (lines(0))
-      call append(lines, ending(allocated(self%failure), self%summary%increment, &
-         run%verify_failed, run%accuracy%missed /= '', run%accuracy%later_round))
+      call append(lines, ending(run, allocated(self%failure), self%summary%increment))
       call append(lines, checks(verifier, run))
       if (size(warnings) == 0) call append(lines, 'no warnings')
       if (size(warnings) > 0) call append(lines, counted(size(warnings), 'warning')// &
          ', see WARNINGS below')
       call self%summary%add_lines(model, interfaces, lines)
-      block = summary_block(lines, size(interfaces), size(model%steps), &
-         merge(model%mesh%body_count, 0, model%estimates_errors))
+      block = summary_block(lines, model)
       if (self%is_draft) then
          call self%page%take(whole)
          whole(self%summary_start + 1:self%summary_start + len(block)) = block

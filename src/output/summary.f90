@@ -126,15 +126,17 @@ contains
    end function step_line
 
    !> Most lines that there can be.
-   pure integer function most_lines(interfaces, steps, bodies)
-      integer, intent(in) :: interfaces, steps   !! number of each
-      integer, intent(in) :: bodies              !! those with bounds
+   pure integer function most_lines(model)
+      type(model_type), intent(in) :: model
 
-      most_lines = 2 + interfaces*(1 + size(estimated))
-      if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
-      if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
+      associate (interfaces => size(model%contacts), steps => size(model%steps))
+         most_lines = 2 + interfaces*(1 + size(estimated))
+         if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
+         if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
+      end associate
       ! Some of a body's lines are wrapped.
-      most_lines = most_lines + bodies*2*(1 + size(maxima))
+      if (model%estimates_errors) most_lines = most_lines + &
+         model%mesh%body_count*2*(1 + size(maxima))
    end function most_lines
 
    !> Adds when that increment was and where a branch turned, then each interface with a line for
