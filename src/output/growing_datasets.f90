@@ -231,10 +231,11 @@ contains
          call h5sclose_f(space, status(8))
          call h5pclose_f(transfer, status(12))
       end if
+      call file%note(status, 'cannot write dataset '//self%path)
+      if (.not. self%in_file) call file%describe(dataset, self%path, self%description, self%unit, &
+         self%components)
       if (status(1) >= 0) call h5dclose_f(dataset, status(9))
       call file%note(status, 'cannot write dataset '//self%path)
-      if (.not. self%in_file) call file%describe(self%path, self%description, self%unit, &
-         self%components)
       self%in_file = .true.
       self%is_cut = .false.
       self%rows_in_file = whole(2)

@@ -225,24 +225,25 @@ contains
       call h5screate_simple_f(1, shape(starts, kind=hsize_t), space, status(2))
       call h5dcreate_f(self%id, path, type, space, dataset, status(3))
       call h5dwrite_f(dataset, type, c_loc(starts), status(4))
+      call self%describe(dataset, path, description, '-', '')
       call h5dclose_f(dataset, status(5))
       call h5sclose_f(space, status(6))
       call h5tclose_f(type, status(7))
       call self%note(status, 'cannot write dataset '//path)
-      call self%describe(path, description, '-', '')
    end subroutine write_strings
 
-   !> Says what a dataset is: `description`, `unit`, and `components` where there are such.
-   subroutine describe(self, path, description, unit, components)
+   !> Says what an open dataset is: `description`, `unit`, and `components` where there are such.
+   subroutine describe(self, dataset, path, description, unit, components)
       class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
+      integer(hid_t), intent(in) :: dataset
+      character(*), intent(in) :: path                    !! its path
       character(*), intent(in) :: description
       character(*), intent(in) :: unit                    !! '-' for a pure number
       character(*), intent(in) :: components              !! their names; empty: none
 
-      call self%set(path, 'description', trim(description))
-      call self%set(path, 'unit', trim(unit))
-      if (components /= '') call self%set(path, 'components', trim(components))
+      call set_text(self, path, 'description', trim(description), dataset)
+      call set_text(self, path, 'unit', trim(unit), dataset)
+      if (components /= '') call set_text(self, path, 'components', trim(components), dataset)
    end subroutine describe
 
    !> Writes an attribute of a group or dataset, over one of the same name: an integer of either
@@ -294,9 +295,10 @@ contains
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_fixed_text
 
-   subroutine set_text(self, path, name, value)
+   subroutine set_text(self, path, name, value, opened)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, name, value
+      integer(hid_t), intent(in), optional :: opened   ! the object at the path
       character(len(value) + 1, kind=c_char), target :: copy
       type(c_ptr), target :: start
       integer(hid_t) :: type
@@ -306,15 +308,16 @@ contains
       copy = value//c_null_char
       start = c_loc(copy)
       call make_text_type(type, status(1))
-      call set_value(self, path, name, stored_value_type(type, type, c_loc(start)))
+      call set_value(self, path, name, stored_value_type(type, type, c_loc(start)), opened)
       call h5tclose_f(type, status(2))
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_text
 
-   subroutine set_value(self, path, name, value)
+   subroutine set_value(self, path, name, value, opened)
       class(hdf5_writer_type), intent(inout) :: self
       character(*), intent(in) :: path, name
       type(stored_value_type), intent(in) :: value
+      integer(hid_t), intent(in), optional :: opened   ! the object at the path
       integer(hid_t) :: attribute, object, space
       integer :: status(8)
       logical :: exists
@@ -323,7 +326,8 @@ contains
       status = 0
       exists = .false.
       ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.
-      call h5oopen_f(self%id, path, object, status(1))
+      if (present(opened)) object = opened
+      if (.not. present(opened)) call h5oopen_f(self%id, path, object, status(1))
       call h5aexists_f(object, name, exists, status(2))
       if (exists) then
          call h5aopen_f(object, name, attribute, status(3))
@@ -338,7 +342,7 @@ contains
       end if
       call h5awrite_f(attribute, value%memory_type, value%address, status(6))
       call h5aclose_f(attribute, status(7))
-      call h5oclose_f(object, status(8))
+      if (.not. present(opened)) call h5oclose_f(object, status(8))
       call self%note(status, 'cannot write attribute '//path//'@'//name)
    end subroutine set_value
 
