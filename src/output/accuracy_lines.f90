@@ -258,8 +258,10 @@ contains
             'CPU seconds of the round', 's'), rounds%cpu_seconds)
          call write_integers(file, group//'/unknowns', rounds%unknowns, as_integer, &
             'unknown temperatures, displacements and contact unknowns')
-         call write_integers(file, group//'/elements', rounds%elements, as_integer, 'elements of the mesh')
-         call write_integers(file, group//'/increments', rounds%increments, as_integer, 'accepted increments')
+         call write_integers(file, group//'/elements', rounds%elements, as_integer, &
+            'elements of the mesh')
+         call write_integers(file, group//'/increments', rounds%increments, as_integer, &
+            'accepted increments')
       end associate
       call file%set(group, 'reached', merge(1, 0, accuracy%is_reached()))
       call file%set(group, 'later_round_begun', merge(1, 0, accuracy%goes_on))

@@ -247,10 +247,10 @@ contains
          end do
          call write_grid(file, points, cell_points, offsets, vtk_types(mesh%element_kind), &
             model%units)
-         call write_integers(file, point_group//node_sets(1), mesh%node_number(self%point_node), as_integer, &
-            'number of the node in the deck')
-         call write_integers(file, cell_group//trim(cell_sets(1)), mesh%element_number, as_integer, &
-            'number of the element in the deck')
+         call write_integers(file, point_group//node_sets(1), mesh%node_number(self%point_node), &
+            as_integer, 'number of the node in the deck')
+         call write_integers(file, cell_group//trim(cell_sets(1)), mesh%element_number, &
+            as_integer, 'number of the element in the deck')
          call write_integers(file, cell_group//trim(cell_sets(2)), mesh%element_body, as_integer, &
             'number of the body, from 1')
          call write_integers(file, cell_group//trim(cell_sets(3)), &
@@ -318,8 +318,8 @@ contains
       call file%set(grid_group, 'Version', [2, 0])
       call write_integers(file, grid_group//'/NumberOfPoints', [size(points, 2)], as_long, 'points')
       call write_integers(file, grid_group//'/NumberOfCells', [size(types)], as_long, 'cells')
-      call write_integers(file, grid_group//'/NumberOfConnectivityIds', [size(cell_points)], as_long, &
-         'entries of Connectivity')
+      call write_integers(file, grid_group//'/NumberOfConnectivityIds', [size(cell_points)], &
+         as_long, 'entries of Connectivity')
       ! VTK counts from 0.
       call write_integers(file, grid_group//'/Connectivity', cell_points - 1, as_long, &
          'points of every cell, from 0')

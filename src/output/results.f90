@@ -262,11 +262,9 @@ contains
       type(run_summary_type), intent(in) :: run           !! the run so far
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(state_table_type), intent(inout), optional :: restart   !! of the run, where one is due
-      real(dp) :: since
       logical :: is_due, ends_run
       integer :: i, n
 
-      since = wall_seconds()
       self%accepted = self%accepted + 1
       call self%tables(history)%append(record)
       call self%increments%add_increment(record)
@@ -299,7 +297,6 @@ contains
          call flush_all(self, model, interfaces)
          call self%file%check(error)
          if (.not. allocated(error)) call self%contact_file%check(error)
-         call self%file%charge(since, ended=.false.)
       end if
       if (allocated(error)) call self%give_up()
    end subroutine append
@@ -422,7 +419,7 @@ contains
       call self%passes%write_waiting(error)
       if (allocated(error)) return
       call self%increments%write_waiting(error)
-      call self%file%charge(since, ended=.true.)
+      call self%file%note_publishing(since)
    end subroutine publish
 
    subroutine flush_all(self, model, interfaces)

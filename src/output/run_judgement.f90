@@ -177,7 +177,7 @@ contains
       class(warning_summary_type), intent(inout) :: self
       integer, intent(in) :: increment               !! its running number
       type(warning_type), intent(in) :: warnings(:)
-      type(kind_type), allocatable :: more(:)
+      type(kind_type) :: kind
       integer :: i, k
 
       if (.not. allocated(self%kinds)) allocate (self%kinds(0))
@@ -186,12 +186,10 @@ contains
             if (self%kinds(k)%worst%is_like(warnings(i))) exit
          end do
          if (k > size(self%kinds)) then
-            allocate (more(k))
-            more(:k - 1) = self%kinds
-            more(k)%first = increment
-            more(k)%at = increment
-            more(k)%worst = warnings(i)
-            call move_alloc(more, self%kinds)
+            kind%first = increment
+            kind%at = increment
+            kind%worst = warnings(i)
+            self%kinds = [self%kinds, kind]
          end if
          associate (kind => self%kinds(k))
             if (kind%last < increment) kind%count = kind%count + 1

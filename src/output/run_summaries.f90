@@ -178,34 +178,30 @@ contains
       character(*), intent(in) :: label
       class(*), intent(in) :: value
       character(*), intent(in), optional :: attribute, behind
-      type(run_entry_type), allocatable :: more(:)
+      type(run_entry_type) :: entry
 
-      allocate (more(size(entries) + 1))
-      more(:size(entries)) = entries
-      associate (entry => more(size(more)))
-         entry%told = told
-         entry%label = label
-         entry%attribute = ''
-         if (present(attribute)) entry%attribute = attribute
-         select type (value)
-         type is (character(*))
-            entry%words = value
-         type is (integer)
-            entry%kind = 'integer'
-            entry%number = value
-            entry%words = to_text(value)
-         type is (integer(long))
-            entry%kind = 'long'
-            entry%number = value
-            entry%words = to_text(entry%number)
-         type is (real(dp))
-            entry%kind = 'real'
-            entry%number = value
-            entry%words = to_text(value)
-         end select
-         if (present(behind)) entry%words = entry%words//behind
-      end associate
-      call move_alloc(more, entries)
+      entry%told = told
+      entry%label = label
+      entry%attribute = ''
+      if (present(attribute)) entry%attribute = attribute
+      select type (value)
+      type is (character(*))
+         entry%words = value
+      type is (integer)
+         entry%kind = 'integer'
+         entry%number = value
+         entry%words = to_text(value)
+      type is (integer(long))
+         entry%kind = 'long'
+         entry%number = value
+         entry%words = to_text(entry%number)
+      type is (real(dp))
+         entry%kind = 'real'
+         entry%number = value
+         entry%words = to_text(value)
+      end select
+      if (present(behind)) entry%words = entry%words//behind
+      entries = [entries, entry]
    end subroutine add
 
    !> Writes the attributes of `/run`, over those of an earlier publishing.

@@ -176,8 +176,8 @@ contains
       do i = 1, size(which)
          bodies%heats(n*(i - 1) + 1:n*i, :) = self%exchange(:, :, which(i))
          do j = 1, size(which)
-            associate (h => self%exchange(:, :, which([i, j])), sigma => self%sigma(which([i, j])), &
-               rows => n*(i - 1), columns => n*(j - 1))
+            associate (h => self%exchange(:, :, which([i, j])), &
+               sigma => self%sigma(which([i, j])), rows => n*(i - 1), columns => n*(j - 1))
                block = self%stored(:, :, which(i))   ! W_i^T C W_j
                if (i /= j) block = (h(:, :, 1) - h(:, :, 2))/(sigma(2) - sigma(1))
                bodies%capacity(rows + 1:rows + n, columns + 1:columns + n) = block

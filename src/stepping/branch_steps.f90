@@ -99,8 +99,9 @@ contains
       if (k == 0) return
       call set_error(error, status_no_convergence, 'friction reverses in contact pair '// &
          self%bodies%interfaces(count(self%bodies%points%interface_start <= k))%name// &
-         ' at load factor '//to_text(self%point%factor)//', and a solution behind that depends on the way to it; '// &
-         'end the branch before, by HIGHEST= or LOWEST= of *CONTINUATION, or leave out friction')
+         ' at load factor '//to_text(self%point%factor)//', and a solution behind that depends '// &
+         'on the way to it; end the branch before, by HIGHEST= or LOWEST= of *CONTINUATION, or '// &
+         'leave out friction')
    end subroutine check_friction
 
    !> Takes the point as the last one of the branch; the first one by its load factor.

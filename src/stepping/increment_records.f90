@@ -83,8 +83,8 @@ contains
          end if
          ! The last places of the displacements change omega by more than the tolerance.
          if (allocated(record%iterations) .and. record%residual_floor > &
-            step%fixed_point%tolerance) call record%warn('the contact conductance is accurate to ', &
-            record%residual_floor, ' only, not TOL='//to_text(step%fixed_point%tolerance)// &
+            step%fixed_point%tolerance) call record%warn('the contact conductance is accurate '// &
+            'to ', record%residual_floor, ' only, not TOL='//to_text(step%fixed_point%tolerance)// &
             ': gaps are differences of far larger displacements, whose rounding changes it')
          call warn_of_slides(model, bodies, record)
          do i = 1, size(record%contacts)

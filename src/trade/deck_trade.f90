@@ -395,7 +395,8 @@ contains
       call simulation%bodies%views(interfaces)
       allocate (values(0))
       do i = 1, size(interfaces)
-         values = [values, (contact_values(traded(q)%name, record%contacts(i)), q=1, figure_count), &
+         values = [values, (contact_values(traded(q)%name, record%contacts(i)), &
+            q=1, figure_count), &
             closed_length(interfaces(i), record%contacts(i))]
       end do
       if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
