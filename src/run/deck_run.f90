@@ -26,6 +26,7 @@ module deck_run
    use run_output, only: run_output_type
    use run_summaries, only: or_blank
    use simulation, only: simulation_type
+   use state_tables, only: state_table_type
    use text, only: append, counted, string_type, to_text
    use utf8, only: printable
    use variations, only: variation_type
@@ -222,6 +223,7 @@ contains
       type(error_type), allocatable :: output_error
       type(contact_points_type), allocatable :: interfaces(:)
       type(increment_record_type) :: record
+      type(state_table_type), pointer :: restart   ! disassociated for none
       logical :: moved
 
       associate (model => self%model, output => self%output, outcome => self%outcome, &
@@ -235,7 +237,9 @@ contains
          if (allocated(error)) return
          if (allocated(self%deck%origin)) then
             associate (origin => self%deck%origin)
-               call output%go_on(origin%path, origin%table, origin%counts, model, error)
+               call output%verifier%exchange(origin%table)
+               call output%judgement%exchange(origin%table)
+               call output%results%go_on(origin%path, origin%table, origin%counts, model, error)
             end associate
             if (allocated(error)) return
          end if
@@ -243,12 +247,9 @@ contains
          call may_end(self, end_at_once)
          self%is_written = .true.
          call begin_increment(self, error)
-         if (allocated(self%deck%origin)) then
-            call rounds%solve_increments(model, self%simulation, self, record, error, &
-               self%deck%origin%table)
-         else
-            call rounds%solve_increments(model, self%simulation, self, record, error)
-         end if
+         nullify (restart)
+         if (allocated(self%deck%origin)) restart => self%deck%origin%table
+         call rounds%solve_increments(model, self%simulation, self, record, error, restart)
          ! From here on, output is not cut short.
          call may_end(self, end_by_increments)
          if (.not. self%is_written) then

@@ -55,7 +55,8 @@ contains
       self%bodies => bodies
       self%heat => heat
       self%loads => loads
-      call self%renew(state)
+      self%before = state
+      self%contact = state%contact
       self%is_last = .false.
       self%is_fold = .false.
       if (.not. self%is_followed) then

@@ -60,7 +60,7 @@ module branch_trials
       type(reduced_bodies_type), pointer :: bodies => null()
       type(heat_reduction_type), pointer :: heat => null()
       type(loads_type), pointer :: loads => null()   !! moved along
-      type(solution_state_type), private :: before   !! state at the last point of the branch
+      type(solution_state_type) :: before   !! state at the last point of the branch
       type(load_rate_type), private :: rate
       type(solved_loads_type), allocatable, private :: known(:)
       type(pass_type), private :: pass
@@ -69,7 +69,6 @@ module branch_trials
    contains
       procedure :: clock_at
       procedure :: begin
-      procedure :: renew
       procedure :: try_step
    end type branch_type
 
@@ -85,15 +84,6 @@ contains
       clock%step_time = factor*clock%period
       clock%total_time = clock%total_time + clock%step_time
    end function clock_at
-
-   !> Steps begin at another solution.
-   subroutine renew(self, state)
-      class(branch_type), intent(inout) :: self
-      type(solution_state_type), intent(in) :: state   !! the solution
-
-      self%before = state
-      self%contact = state%contact
-   end subroutine renew
 
    !> Begins at a solution, the first point: measures lengths and finds the way of the branch.
    !> Errors: as a pass; there is no way.
