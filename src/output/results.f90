@@ -13,7 +13,7 @@ module results
    use due_output, only: fields_are_due
    use errors, only: error_type
    use field_quantities, only: maxima
-   use file_calls, only: identity_of, remove_file, rename_file
+   use file_calls, only: identity_of, remove_file, rename_file, try_file
    use growing_datasets, only: bytes_in, flush_sets
    use result_tables, only: bounded, result_table_type, write_geometry
    use equations, only: section_nodes
@@ -97,9 +97,9 @@ contains
       call self%contact_file%start(path//contact_end)
       call self%increments%start_increments(path//'.sta')
       call self%passes%start_iterations(path//'.cvg')
-      call self%increments%reserve(error)
+      call try_file(path//'.sta', error)
       if (allocated(error)) return
-      call self%passes%reserve(error)
+      call try_file(path//'.cvg', error)
       if (allocated(error)) return
       call self%file%reserve(has_lock, error)
       if (allocated(error)) return

@@ -48,12 +48,12 @@ module run_judgement
       real(dp) :: largest(2) = 0.0_dp              !! strain and rotation so far [-], [radian]
       integer :: element(2) = 0                    !! elements that have them
       integer :: increment(2) = 0                  !! increments that have them
-      logical, public :: ended_early = .false.     !! whether the run failed
+      !> Whether the run failed, so that what never happened might still have done
+      logical, public :: ended_early = .false.
       type(warning_summary_type) :: repeated       !! warnings of its increments
    contains
       procedure :: take
       procedure :: exchange
-      procedure :: fail
       procedure :: warnings
    end type run_judgement_type
 
@@ -118,13 +118,6 @@ contains
       self%element = places(:2)
       self%increment = places(3:)
    end subroutine exchange
-
-   !> Notes that the run ended early, so that what never happened might still have done.
-   pure subroutine fail(self)
-      class(run_judgement_type), intent(inout) :: self    !! what was seen
-
-      self%ended_early = .true.
-   end subroutine fail
 
    !> The warnings on the run.
    pure function warnings(self, model, interfaces) result(lines)

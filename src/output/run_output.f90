@@ -151,7 +151,7 @@ contains
          return
       end if
       if (allocated(record%iterations)) self%failed = record%iterations
-      call self%judgement%fail()
+      self%judgement%ended_early = .true.
       call self%listing%end_early(reason, record, words_of_kept(self%results%accepted))
    end subroutine fail
 
