@@ -6,7 +6,7 @@ module text
    private
    public :: string_type
    public :: others, counted, to_text, few_digits, rounded, digits_above, with_decimals
-   public :: percent
+   public :: or_blank, percent
    public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
    public :: is_whole, integer_fault, real_fault, largest_magnitude, split_words, quoted
 
@@ -358,6 +358,15 @@ contains
 
       words = to_text(n)//' '//noun//trim(merge(' ', 's', n == 1))
    end function counted
+
+   !> Text that may not have been given.
+   pure function or_blank(text) result(string)
+      character(:), allocatable, intent(in) :: text   !! the text, or unallocated
+      character(:), allocatable :: string             !! the text, or nothing
+
+      string = ''
+      if (allocated(text)) string = text
+   end function or_blank
 
    !> The ending of a message that names one of several: their number, if it is more than one.
    pure function others(n, words) result(ending)

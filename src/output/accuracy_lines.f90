@@ -14,7 +14,7 @@ module accuracy_lines
    use run_summaries, only: accuracy_words_type
    use summary, only: words_of
    use text, only: append, counted, digits_above, few_digits, percent, to_text
-   use unit_labels, only: unit_in_words, unit_label
+   use unit_labels, only: unit_label
    implicit none
    private
    public :: told_of_rounds, write_accuracy
@@ -243,11 +243,10 @@ contains
    end function round_words
 
    !> Writes the rounds, where an accuracy is requested and the first one came to its end.
-   subroutine write_accuracy(file, accuracy, interfaces, labels)
+   subroutine write_accuracy(file, accuracy, interfaces)
       type(hdf5_writer_type), intent(inout) :: file          !! the open file
       type(accuracy_rounds_type), intent(in) :: accuracy
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      type(unit_labels_type), intent(in) :: labels           !! units of the deck
       integer :: d, i
 
       if (.not. accuracy%is_on) return
@@ -271,19 +270,18 @@ contains
          call file%create_group(group//'/bounds/'//interfaces(i)%name)
          do d = 1, size(accuracy%demands)
             if (accuracy%demands(d)%interface == i) call write_demand(file, accuracy, d, &
-               group//'/bounds/'//interfaces(i)%name, labels)
+               group//'/bounds/'//interfaces(i)%name)
          end do
       end do
    end subroutine write_accuracy
 
    !> A row for each round: step, value, bound and what the target allows, at the end of the step
    !> that is furthest from the target; zeros where no step has the quantity.
-   subroutine write_demand(file, accuracy, d, path, labels)
+   subroutine write_demand(file, accuracy, d, path)
       type(hdf5_writer_type), intent(inout) :: file
       type(accuracy_rounds_type), intent(in) :: accuracy
       integer, intent(in) :: d
       character(*), intent(in) :: path
-      type(unit_labels_type), intent(in) :: labels
       real(dp) :: rows(columns, size(accuracy%rounds))
       integer :: i, step
       type(growing_dataset_type) :: dataset
@@ -300,7 +298,7 @@ contains
       quantity = estimated(accuracy%demands(d)%quantity)
       dataset = growing_dataset(path//'/'//trim(quantity%name), as_real, columns, 1, 1, &
          'rounds of the requested accuracy: '//trim(quantity%description), &
-         unit_in_words(quantity%unit, labels))
+         quantity%unit)
       dataset%components = 'step value bound target'
       call write_once(file, dataset, [rows])
    end subroutine write_demand

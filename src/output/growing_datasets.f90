@@ -9,9 +9,7 @@ module growing_datasets
       h5screate_simple_f, h5sselect_hyperslab_f, h5t_native_double, hid_t, hsize_t
    use hdf5_writer, only: as_integer, as_real, hdf5_writer_type, stored_type
    use kinds, only: dp, long
-   use model, only: unit_labels_type
    use quantity_types, only: of_bodies, of_contact_points, quantity_type
-   use unit_labels, only: unit_in_words
    implicit none
    private
    public :: growing_dataset_type, growing_dataset, quantity_dataset, bytes_in, flush_sets, &
@@ -75,11 +73,10 @@ contains
 
    !> A dataset of a quantity, described by its entry; one column for each place where the quantity
    !> is of bodies or contact points and places are given.
-   pure function quantity_dataset(group, quantity, labels, rows_at_once, times, places) &
+   pure function quantity_dataset(group, quantity, rows_at_once, times, places) &
       result(dataset)
       character(*), intent(in) :: group             !! path of its group, with a slash at the end
       type(quantity_type), intent(in) :: quantity
-      type(unit_labels_type), intent(in) :: labels  !! units of the deck
       integer, intent(in) :: rows_at_once, times    !! as for growing_dataset
       integer, intent(in), optional :: places       !! bodies or contact points
       type(growing_dataset_type) :: dataset
@@ -91,7 +88,7 @@ contains
       end if
       dataset = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
          quantity%is_integer), width, rows_at_once, times, quantity%description, &
-         unit_in_words(quantity%unit, labels))
+         quantity%unit)
       dataset%components = quantity%components
    end function quantity_dataset
 

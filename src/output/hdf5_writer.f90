@@ -16,7 +16,9 @@ module hdf5_writer
       h5t_string, h5t_native_character, h5t_native_double, h5t_native_integer, h5kind_to_type, &
       h5_integer_kind, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5t_ieee_f64le
    use kinds, only: dp, long
+   use model, only: unit_labels_type
    use text, only: string_type
+   use unit_labels, only: unit_in_words
    implicit none
    private
    public :: hdf5_writer_type, start_hdf5, end_hdf5, make_text_type
@@ -31,6 +33,7 @@ module hdf5_writer
    type :: hdf5_writer_type
       integer(hid_t) :: id = -1                          !! HDF5's handle while the file is open
       type(error_type), allocatable :: error             !! the first one since it was opened
+      type(unit_labels_type) :: labels                   !! units of the deck
    contains
       procedure :: create => create_file
       procedure :: open => open_file
@@ -238,11 +241,11 @@ contains
       integer(hid_t), intent(in) :: dataset
       character(*), intent(in) :: path                    !! its path
       character(*), intent(in) :: description
-      character(*), intent(in) :: unit                    !! '-' for a pure number
+      character(*), intent(in) :: unit                    !! as of quantity_type; '-': pure number
       character(*), intent(in) :: components              !! their names; empty: none
 
       call set_text(self, path, 'description', trim(description), dataset)
-      call set_text(self, path, 'unit', trim(unit), dataset)
+      call set_text(self, path, 'unit', unit_in_words(trim(unit), self%labels), dataset)
       if (components /= '') call set_text(self, path, 'components', trim(components), dataset)
    end subroutine describe
 

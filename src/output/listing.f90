@@ -19,9 +19,9 @@ module listing
    use open_files, only: empty_file, lock_file, unlock_file, write_to_file
    use records, only: increment_record_type
    use run_sizes, only: run_size_type
-   use run_summaries, only: in_times, or_blank, run_entries, run_entry_type, run_summary_type
+   use run_summaries, only: in_times, run_entries, run_entry_type, run_summary_type
    use summary, only: summary_type
-   use text, only: append, counted, string_type, to_text, with_decimals
+   use text, only: append, counted, or_blank, string_type, to_text, with_decimals
    use verification, only: verifier_type
    use zone_diagram, only: zone_diagram_type
    implicit none

@@ -8,10 +8,10 @@ module listing_head
    use model, only: model_type
    use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
       open_law_words, open_words, overlap_words, pairing_words, points_words
-   use run_summaries, only: in_listing, or_blank, run_entries, run_entry_type, run_summary_type
+   use run_summaries, only: in_listing, run_entries, run_entry_type, run_summary_type
    use steps, only: solves_heat
    use summary, only: summary_type
-   use text, only: append, counted, string_type, to_text
+   use text, only: append, counted, or_blank, string_type, to_text
    use verification, only: verifier_type
    implicit none
    private

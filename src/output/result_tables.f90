@@ -7,7 +7,6 @@ module result_tables
    use hdf5_writer, only: hdf5_writer_type
    use increment_quantities, only: part_values, history_value, pass_value
    use kinds, only: dp
-   use model, only: unit_labels_type
    use quantity_types, only: of_bodies, of_history, of_sections, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: geometry
@@ -33,20 +32,19 @@ module result_tables
 contains
 
    !> Prepares the datasets of a group.
-   subroutine start_table(self, group, reported, places, expected, labels)
+   subroutine start_table(self, group, reported, places, expected)
       class(result_table_type), intent(inout) :: self
       character(*), intent(in) :: group                   !! its path
       type(quantity_type), intent(in) :: reported(:)
       integer, intent(in) :: places                       !! bodies or contact points
       integer, intent(in) :: expected                     !! rows that are expected
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       integer :: i
 
       self%group = group
       self%quantities = reported
       allocate(self%sets(size(reported)))
       do i = 1, size(reported)
-         self%sets(i) = quantity_dataset(group//'/', reported(i), labels, 1, expected, places)
+         self%sets(i) = quantity_dataset(group//'/', reported(i), 1, expected, places)
       end do
    end subroutine start_table
 
@@ -133,12 +131,11 @@ contains
    end function bounded
 
    !> Writes the geometry of contact points, those of some interfaces one behind the other.
-   subroutine write_geometry(file, group, interfaces, node_number, labels)
+   subroutine write_geometry(file, group, interfaces, node_number)
       type(hdf5_writer_type), intent(inout) :: file       !! the open file
       character(*), intent(in) :: group                   !! its path, with a slash at the end
       type(contact_points_type), intent(in) :: interfaces(:)
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       real(dp), allocatable :: values(:)
       integer :: i, k
 
@@ -147,7 +144,7 @@ contains
          do i = 1, size(interfaces)
             values = [values, geometry_values(geometry(k)%name, interfaces(i), node_number)]
          end do
-         call write_once(file, quantity_dataset(group, geometry(k), labels, 1, 1), values)
+         call write_once(file, quantity_dataset(group, geometry(k), 1, 1), values)
       end do
    end subroutine write_geometry
 

@@ -31,13 +31,13 @@ module results
    use restart_results, only: restart_results_type
    use result_fields, only: cell_sets, contact_grid_type, field_results_type, interface_sets, &
       node_sets
-   use run_summaries, only: or_blank, run_summary_type, write_run
+   use run_summaries, only: run_summary_type, write_run
    use solution_report, only: iteration_record_type
    use state_tables, only: integers, state_table_type
    use status_files, only: status_file_type
    use steps, only: dof_temperature, planned_increments, solves_heat, solves_mechanics
    use clock, only: wall_seconds
-   use text, only: string_type, to_text
+   use text, only: or_blank, string_type, to_text
    use unit_labels, only: unit_in_words
    use working_files, only: working_file_type
    implicit none
@@ -143,6 +143,8 @@ contains
 
       call start_hdf5(error)
       if (allocated(error)) return
+      self%file%content%labels = model%units
+      self%contact_file%content%labels = model%units
       self%element_points = element_points
       self%cards = cards
       has = what_is_solved(model, size(interfaces) > 0)
@@ -152,34 +154,31 @@ contains
       call self%fields%start(model, interfaces, point_node, has, expected)
       self%has_contact = n > 0
       if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
-         [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected, &
-         model%units)
+         [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected)
       allocate (self%tables(4 + 2*n + merge(model%mesh%body_count, 0, model%estimates_errors)))
-      associate (tables => self%tables, units => model%units, steps => size(model%steps))
+      associate (tables => self%tables, steps => size(model%steps))
          of_stability = datasets(of_history, has)
          of_history_alone = pack(of_stability, of_stability%needs /= needs_stability)
          of_stability = pack(of_stability, of_stability%needs == needs_stability)
          if (size(of_stability) > 0) of_stability = [of_history_alone(1), of_stability]
-         call tables(stability)%start('/stability', of_stability, 0, expected, units)
+         call tables(stability)%start('/stability', of_stability, 0, expected)
          of_cuts = datasets(of_sections, has)
          of_cuts%values = size(section_nodes(model%couplings))
          call tables(history)%start('/history', [of_history_alone, of_cuts, &
-            datasets(of_bodies, has)], model%mesh%body_count, expected, units)
-         call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected, &
-            units)
+            datasets(of_bodies, has)], model%mesh%body_count, expected)
+         call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected)
          do i = 1, n
             call tables(3 + i)%start('/contact/'//interfaces(i)%name, &
                [datasets(of_contact_points, has), datasets(of_interface, has)], &
-               size(interfaces(i)%slave), expected, units)
+               size(interfaces(i)%slave), expected)
          end do
-         call tables(4 + n)%start('/errors', [step_time], 0, steps, units)
+         call tables(4 + n)%start('/errors', [step_time], 0, steps)
          do i = 1, n
             call tables(4 + n + i)%start('/errors/'//interfaces(i)%name, bounded(estimated), 0, &
-               steps, units)
+               steps)
          end do
          do i = 1, size(tables) - (4 + 2*n)
-            call tables(4 + 2*n + i)%start('/errors/body '//to_text(i), bounded(maxima), 0, steps, &
-               units)
+            call tables(4 + 2*n + i)%start('/errors/body '//to_text(i), bounded(maxima), 0, steps)
          end do
       end associate
    end subroutine open_results
@@ -215,7 +214,7 @@ contains
             end do
          end do
          call self%fields%go_on(file, rows(2))
-         call self%restarts%go_on(file, restart, counts, model%units)
+         call self%restarts%go_on(file, restart, counts)
          call file%remove('/errors/reasons')
          call write_reasons(file, model)
          call file%remove('/deck')
@@ -245,8 +244,7 @@ contains
       rows = [self%accepted, self%fields%increments, (self%tables(i)%rows(), &
          i=1, size(self%tables))]
       call integers(restart, 'rows', rows)
-      call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts, &
-         model%units)
+      call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts)
       self%file%is_synced = .true.
       self%contact_file%is_synced = .true.
    end subroutine add_restart
@@ -396,8 +394,7 @@ contains
       until_now = run
       until_now%seconds_write = run%seconds_write + (wall_seconds() - since)
       call write_run(self%file%content, until_now, model)
-      if (present(accuracy)) call write_accuracy(self%file%content, accuracy, interfaces, &
-         model%units)
+      if (present(accuracy)) call write_accuracy(self%file%content, accuracy, interfaces)
       call self%file%close(error)
       if (allocated(error)) return
       if (self%has_contact) then
@@ -447,8 +444,7 @@ contains
       if (.not. self%has_contact) return
       call self%contact_file%open(is_new)
       associate (file => self%contact_file%content)
-         if (is_new) call self%contact_grid%write_head(file, interfaces, model%mesh%node_number, &
-            model%units)
+         if (is_new) call self%contact_grid%write_head(file, interfaces, model%mesh%node_number)
          call self%contact_grid%flush_grid(file, .not. self%contact_file%in_place, &
             geometry%name, interface_sets)
       end associate
@@ -471,8 +467,7 @@ contains
                call file%set(group, 'friction', &
                   model%interactions(model%contacts(i)%interaction)%friction%coefficient)
                call file%set(group, 'pairing', pairing_name(interfaces(i)%pairing))
-               call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number, &
-                  model%units)
+               call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number)
             end associate
          end do
          call write_reasons(file, model)

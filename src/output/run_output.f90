@@ -17,11 +17,11 @@ module run_output
    use records, only: increment_record_type
    use results, only: results_type
    use run_judgement, only: run_judgement_type
-   use run_summaries, only: or_blank, run_summary_type
+   use run_summaries, only: run_summary_type
    use clock, only: wall_seconds
    use solution_report, only: iteration_record_type
    use state_tables, only: state_table_type
-   use text, only: append, counted, string_type, to_text
+   use text, only: append, counted, or_blank, string_type, to_text
    use verification, only: failure_words, verifier_type
    implicit none
    private

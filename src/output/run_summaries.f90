@@ -7,10 +7,10 @@ module run_summaries
    use model, only: model_type
    use model_words, only: expansion_words, from_to, material_words, section_words, step_words
    use run_sizes, only: run_seconds_type, run_size_type
-   use text, only: string_type, to_text
+   use text, only: or_blank, string_type, to_text
    implicit none
    private
-   public :: run_summary_type, accuracy_words_type, run_entry_type, run_entries, write_run, or_blank
+   public :: run_summary_type, accuracy_words_type, run_entry_type, run_entries, write_run
    public :: in_listing, in_check, in_times, stages
 
    ! Where an entry is told.
@@ -71,15 +71,6 @@ module run_summaries
    end type run_entry_type
 
 contains
-
-   !> Text that may not have been given.
-   pure function or_blank(text) result(string)
-      character(:), allocatable, intent(in) :: text   !! the text, or unallocated
-      character(:), allocatable :: string             !! the text, or nothing
-
-      string = ''
-      if (allocated(text)) string = text
-   end function or_blank
 
    !> Whether an entry is told somewhere.
    pure logical function is_told(self, where)

@@ -15,8 +15,7 @@ module summary
    use quantity_types, only: needs_heat, quantity_type
    use records, only: body_errors_type, contact_record_type, increment_record_type, &
       interface_errors_type
-   use run_summaries, only: or_blank
-   use text, only: append, few_digits, percent, string_type, to_text
+   use text, only: append, few_digits, or_blank, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private

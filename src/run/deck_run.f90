@@ -24,10 +24,9 @@ module deck_run
    use restarts, only: go_on
    use run_description, only: describe_run
    use run_output, only: run_output_type
-   use run_summaries, only: or_blank
    use simulation, only: simulation_type
    use state_tables, only: state_table_type
-   use text, only: append, counted, string_type, to_text
+   use text, only: append, counted, or_blank, string_type, to_text
    use utf8, only: printable
    use variations, only: variation_type
    implicit none
