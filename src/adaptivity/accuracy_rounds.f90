@@ -148,8 +148,9 @@ contains
                finding = found(self%demands(d), points, &
                   record%errors(self%demands(d)%interface), scale)
                finding%instead = '0 at the end of each step'
-               if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) &
+               if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) then
                   finding%instead = 'no heat'
+               end if
                if (quantity%resolution > 0.0_dp) finding%instead = end_words(quantity%name, contact)
                if (quantity%name == 'peak_pressure') then
                   finding%is_at_end = any(peak_is_at_end(points, contact))

@@ -214,6 +214,26 @@ contains
       call may_end(self, end_at_once)
    end subroutine reserve_files
 
+   !> Begins the output of a round, behind an earlier result where it goes on from one.
+   !> Errors: as run_output_type's start and results_type's go_on.
+   subroutine begin_output(self, error)
+      type(deck_run_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_points_type), allocatable :: interfaces(:)
+
+      call self%simulation%bodies%views(interfaces)
+      associate (output => self%output, points => self%simulation%recovery%points)
+         call output%start(self%model, interfaces, points%node, points%element_points, &
+            self%deck%cards%images, error)
+         if (allocated(error) .or. .not. allocated(self%deck%origin)) return
+         associate (origin => self%deck%origin)
+            call output%verifier%exchange(origin%table)
+            call output%judgement%exchange(origin%table)
+            call output%results%go_on(origin%path, origin%table, origin%counts, self%model, error)
+         end associate
+      end associate
+   end subroutine begin_output
+
    !> All increments, with their output.
    subroutine solve_deck(self, rounds, error)
       type(deck_run_type), intent(inout) :: self
@@ -228,20 +248,8 @@ contains
       associate (model => self%model, output => self%output, outcome => self%outcome, &
          cards => self%deck%cards%images)
          call may_end(self, end_by_increments)
-         call self%simulation%bodies%views(interfaces)
-         associate (points => self%simulation%recovery%points)
-            call output%start(model, interfaces, points%node, points%element_points, cards, error)
-         end associate
-         deallocate (interfaces)
+         call begin_output(self, error)
          if (allocated(error)) return
-         if (allocated(self%deck%origin)) then
-            associate (origin => self%deck%origin)
-               call output%verifier%exchange(origin%table)
-               call output%judgement%exchange(origin%table)
-               call output%results%go_on(origin%path, origin%table, origin%counts, model, error)
-            end associate
-            if (allocated(error)) return
-         end if
          call outcome%note_files(output%written())
          call may_end(self, end_at_once)
          self%is_written = .true.
