@@ -32,10 +32,9 @@ module deck_trade
    use steps, only: solves_heat
    use text, only: counted, few_digits, string_type, to_text
    use trade_reference, only: state_errors
-   use trade_study, only: absent, factors, figure_count, item_quantities, &
-      judge_rows, mesh_rows, most_levels, single_rows, trade_row_type, trade_type
+   use trade_study, only: absent, common_instants, factors, figure_count, instant_at, &
+      item_quantities, judge_rows, mesh_rows, most_levels, single_rows, trade_row_type, trade_type
    use trade_table, only: imbalanced_rows, print_trade, write_trade
-   use variation_instants, only: common_instants, instant_at
    use variations, only: variation_type
    implicit none
    private
