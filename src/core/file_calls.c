@@ -50,8 +50,8 @@ int file_check_folder(const char *path)
    return access(path, W_OK | X_OK) == 0 ? 0 : errno;
 }
 
-/* Writes all of the bytes. */
-static int write_all(int descriptor, const char *bytes, size_t count)
+/* Writes all of the bytes; signal handlers may call it. */
+int file_write_all(int descriptor, const char *bytes, size_t count)
 {
    while (count > 0) {
       ssize_t written = write(descriptor, bytes, count);
@@ -69,7 +69,7 @@ static int write_all(int descriptor, const char *bytes, size_t count)
  * it any more is not. */
 void file_print(const char *text, long count)
 {
-   int number = write_all(STDOUT_FILENO, text, (size_t)count);
+   int number = file_write_all(STDOUT_FILENO, text, (size_t)count);
 
    if (standard_output_error == 0 && number != EPIPE)
       standard_output_error = number;
@@ -112,7 +112,7 @@ int file_try_growth(const char *path, long count)
    if (descriptor < 0 || !bytes)
       number = errno;
    else
-      number = write_all(descriptor, bytes, (size_t)count);
+      number = file_write_all(descriptor, bytes, (size_t)count);
    if (descriptor >= 0 && close(descriptor) != 0 && number == 0)
       number = errno;
    free(bytes);
@@ -234,7 +234,7 @@ int file_write(int descriptor, long position, const char *text, long count)
 
    if (lseek(descriptor, position < 0 ? 0 : position, from) < 0 && errno != ESPIPE)
       return errno;
-   return write_all(descriptor, text, (size_t)count);
+   return file_write_all(descriptor, text, (size_t)count);
 }
 
 int file_empty(int descriptor)
@@ -255,7 +255,7 @@ int file_copy(const char *from, const char *to, int *is_source)
    if (*is_source || target < 0)
       number = errno;
    while (number == 0 && (count = read(source, block, block_size)) > 0)
-      number = write_all(target, block, (size_t)count);
+      number = file_write_all(target, block, (size_t)count);
    if (count < 0) {
       number = errno;
       *is_source = 1;
