@@ -1,7 +1,7 @@
 !> Several decks, some of them at a time. Each has a process of its own, so that what becomes of one
 !> leaves the others alone.
 module batch
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use batch_table, only: print_batch, table_name, write_batch
    use clock, only: wall_seconds
    use command_line, only: command_type
@@ -115,7 +115,7 @@ contains
          call print_error('thercon', error%message)
          status = max(status, error%status)
       end if
-      if (.not. command%quiet) call print_batch(output_unit, self%outcomes, wall_seconds() - since)
+      if (.not. command%quiet) call print_batch(self%outcomes, wall_seconds() - since)
    end subroutine run_batch
 
    !> Two decks with the same results are an error before anything runs.

@@ -1,7 +1,7 @@
-!> A trade-off study: the instants and numbers by which its rows are compared; its rows: the grid over
-!> mesh, increments and elements, meshes that are finer at the contact faces, one thing at a time
-!> around the deck as written; which of them are worth their cost: the Pareto-optimal ones, and the
-!> cheapest for each target.
+!> A trade-off study: the instants and numbers by which its rows are compared; its rows: the grid
+!> over mesh, increments and elements, meshes that are finer at the contact faces, one thing at a
+!> time around the deck as written; which of them are worth their cost: the Pareto-optimal ones, and
+!> the cheapest for each target.
 module trade_study
    use contact_definitions, only: pairing_name, pairing_nodes, pairing_surfaces
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
