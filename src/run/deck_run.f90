@@ -323,7 +323,12 @@ contains
             if (error%status == status_interrupted) call check_signals(self, error)
          else
             call may_end(self, end_by_increments)
-            if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
+            if (outcome%report%status == status_ok .and. record%residual_floor > &
+               max(tolerance, outcome%known_to)) then
+               outcome%known_to = record%residual_floor
+               call set_reason(outcome%report, 'the contact conductance is accurate to '// &
+                  to_text(outcome%known_to)//' only')
+            end if
             call simulation%bodies%views(interfaces)
             call output%accept(record, self%model, interfaces, error)
             call outcome%note(record, output%results%accepted, output%written())
