@@ -228,6 +228,7 @@ contains
       call h5screate_simple_f(1, shape(starts, kind=hsize_t), space, status(2))
       call h5dcreate_f(self%id, path, type, space, dataset, status(3))
       call h5dwrite_f(dataset, type, c_loc(starts), status(4))
+      call self%note(status(:4), 'cannot write dataset '//path)
       call self%describe(dataset, path, description, '-', '')
       call h5dclose_f(dataset, status(5))
       call h5sclose_f(space, status(6))

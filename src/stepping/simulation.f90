@@ -89,10 +89,13 @@ contains
    subroutine enter_step(self, model)
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
+      type(branch_type) :: branch                         ! a new one
 
       call self%control%enter_step(model)
-      self%branch = branch_type(self%control%step, self%control%instant_at(model, 0.0_dp), &
-         model%steps(self%control%step)%continuation)
+      branch%step = self%control%step
+      branch%start = self%control%instant_at(model, 0.0_dp)
+      branch%asked = model%steps(branch%step)%continuation
+      self%branch = branch
       call self%loads%begin_step(model%steps(self%control%step), self%state%displacement, &
          self%state%temperature)
       call self%bodies%enter_step(model, self%control%step, self%loads)

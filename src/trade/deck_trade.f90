@@ -317,7 +317,7 @@ contains
    subroutine execute(self, report)
       class(row_task_type), intent(inout) :: self
       type(report_type), intent(inout) :: report    !! how it ended
-      type(adaptive_rounds_type) :: rounds
+      type(adaptive_rounds_type) :: fresh, rounds
       type(error_type), allocatable :: error
       real(dp) :: ended, began
       integer :: run
@@ -325,7 +325,7 @@ contains
       do run = 1, runs_within(1)
          if (run > runs_within(count(self%found%figures(1, 1) > moments) + 1)) exit
          call cpu_time(began)
-         rounds = adaptive_rounds_type()
+         rounds = fresh
          rounds%variation = self%variation
          do
             call rounds%begin_round()
