@@ -201,7 +201,7 @@ contains
 
       associate (n => size(response%answer, 1))
          call coupling%factor(reshape([1.0_dp, (spread(0.0_dp, 1, n), 1.0_dp, i=2, n)], [n, n]) - &
-            response%gain(), singular)
+            (response%answer + response%sigma*response%by_rate), singular)
       end associate
       call modes%begin(size(simulation%state%temperature), 0.0_dp, most_products)
       rates = [complex(dp) ::]

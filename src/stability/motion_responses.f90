@@ -31,7 +31,6 @@ module motion_responses
    contains
       procedure :: make
       procedure :: solve
-      procedure :: gain
       procedure :: gain_bound
       procedure :: stored
    end type motion_response_type
@@ -112,14 +111,6 @@ contains
       call self%tail%solve_columns(on_tail)
       temperature = temperature + self%heat%extended(bodies%thermal, on_tail)
    end function solve
-
-   !> U'(sigma).
-   pure function gain(self)
-      class(motion_response_type), intent(in) :: self
-      real(dp) :: gain(size(self%answer, 1), size(self%answer, 2))   !! (n, n)
-
-      gain = self%answer + self%sigma*self%by_rate
-   end function gain
 
    !> Bound of the moduli of the eigenvalues of U'(s) for all s of this modulus on the right of the
    !> imaginary axis, and, unless the contact takes rates, of all larger moduli. A decay rate l of

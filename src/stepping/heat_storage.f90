@@ -23,7 +23,7 @@ module heat_storage
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: begin_first_stage, begin_second_stage, begin_storage, measure_changes, strain_rate
+   public :: begin_first_stage, begin_second_stage, begin_storage, measure_changes
 
    real(dp), parameter :: own = 2.0_dp   !! growth of the range that an increment makes itself
    !> Part of the largest temperature below which a range is that of rounding.
@@ -79,17 +79,6 @@ contains
       stage%clock = stage%of_increment
       stage%is_last = .true.
    end subroutine begin_second_stage
-
-   !> Rate of the heat that strains take up, T0 beta:eps' over all bodies, over the stage. Loads
-   !> that act at once strain bodies within the first one.
-   pure real(dp) function strain_rate(bodies, stage, before, next)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(stage_type), intent(in) :: stage
-      type(solution_state_type), intent(in) :: before, next  !! states at both ends
-
-      strain_rate = sum(bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
-         before%displacement))/stage%size
-   end function strain_rate
 
    !> The state as its first increment finds it: temperatures that the step prescribes, with those
    !> that ties, equations and hanging nodes give by them, its loads and its films act as at its

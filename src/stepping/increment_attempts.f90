@@ -8,7 +8,7 @@ module increment_attempts
    use coupled_increment, only: differ, judge_solution
    use errors, only: error_type, set_error, status_no_convergence
    use friction_heating, only: nodal_friction_heat
-   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, strain_rate
+   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes
    use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, &
       warn_of_tables
    use increment_data, only: stage_type, trial_type
@@ -110,8 +110,11 @@ contains
          if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call warn_of_choices(run, model, &
             attempt%workspace%contact, next, attempt%undecided, record)
-         if (step%dilates) next%dilatation = strain_rate(bodies, attempt%stage, attempt%before, &
-            next)
+         ! Heat that strains take up, T0 beta:eps' over all bodies. Loads that act at once strain
+         ! bodies within the first stage.
+         if (step%dilates) next%dilatation = sum(bodies%dilatation%of_strains( &
+            bodies%thermal_load, next%displacement - attempt%before%displacement))/ &
+            attempt%stage%size
          if (attempt%stage%is_last) then
             since = wall_seconds()
             call complete_record(bodies, model, run%recovery, run%loads, attempt%data, next, record)

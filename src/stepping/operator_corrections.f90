@@ -260,7 +260,7 @@ contains
 
       heat = 0.0_dp
       if (size(self%elements) == 0 .or. .not. allocated(bodies%thermal%matrix%value)) return
-      call set_points(self, model, temperature)
+      call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       heat = bodies%thermal%matrix%multiply(temperature)
       flux = 0.0_dp
       do i = 1, size(self%elements)
@@ -290,7 +290,7 @@ contains
       forces = 0.0_dp
       if (allocated(self%initial_force)) forces = self%initial_force
       if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
-      call set_points(self, model, temperature)
+      call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       warming = temperature - model%initial_temperature
       u = reshape(displacement, shape(u))
       balance = reshape(of_operators(), shape(balance))
@@ -330,7 +330,7 @@ contains
 
       if (.not. allocated(self%history%before)) return
       u = reshape(at%displacement, shape(u))
-      call set_points(self, model, at%temperature)
+      call self%points%set_temperature(model%mesh, at%temperature, model%initial_temperature)
       allocate (tangent(16*size(self%points%materials)), source=0.0_dp)
       do i = 1, size(self%elements)
          associate (e => self%elements(i))
@@ -345,15 +345,6 @@ contains
          end associate
       end do
    end subroutine find_tangents
-
-   !> Gives the integration points the properties at temperatures.
-   subroutine set_points(self, model, temperature)
-      type(corrections_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      real(dp), intent(in) :: temperature(:)
-
-      call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
-   end subroutine set_points
 
    !> Heat contents of the bodies whose materials vary, on the nodes.
    pure function true_contents(self, model, temperature) result(contents)
