@@ -232,23 +232,6 @@ contains
       if (allocated(error)) call self%give_up()
    end subroutine go_on
 
-   !> Adds a restart, with the rows of all datasets at its increment.
-   subroutine add_restart(self, record, model, restart)
-      class(results_type), intent(inout) :: self
-      type(increment_record_type), intent(in) :: record
-      type(model_type), intent(in) :: model
-      type(state_table_type), intent(inout) :: restart
-      integer, allocatable :: rows(:)
-      integer :: i
-
-      rows = [self%accepted, self%fields%increments, (self%tables(i)%rows(), &
-         i=1, size(self%tables))]
-      call integers(restart, 'rows', rows)
-      call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts)
-      self%file%is_synced = .true.
-      self%contact_file%is_synced = .true.
-   end subroutine add_restart
-
    !> Adds an accepted increment; publishes where that is due. The last increment of the last step
    !> waits for `finish`.
    !> Error: status_internal, when a file cannot be written.
@@ -259,7 +242,9 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run           !! the run so far
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(state_table_type), intent(inout), optional :: restart   !! of the run, where one is due
+      !> Of the run, where one is due; receives the rows of all datasets
+      type(state_table_type), intent(inout), optional :: restart
+      integer, allocatable :: rows(:)
       logical :: is_due, ends_run
       integer :: i, n
 
@@ -286,7 +271,14 @@ contains
          end do
       end if
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
-      if (present(restart)) call add_restart(self, record, model, restart)
+      if (present(restart)) then
+         rows = [self%accepted, self%fields%increments, (self%tables(i)%rows(), &
+            i=1, size(self%tables))]
+         call integers(restart, 'rows', rows)
+         call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts)
+         self%file%is_synced = .true.
+         self%contact_file%is_synced = .true.
+      end if
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
       if ((record%last_of_step .or. is_due) .and. .not. (ends_run .or. self%is_draft)) then

@@ -297,7 +297,13 @@ contains
          end do
          if (.not. is_extreme) reason = 'there is no contact pair "'//name//'"'
       end select
-      if (is_extreme .and. reason == '') values = [extreme(values, to_upper(check%where))]
+      if (.not. is_extreme .or. reason /= '') return
+      values = pack(values, .not. ieee_is_nan(values))
+      if (size(values) == 0) then
+         values = [ieee_value(1.0_dp, ieee_quiet_nan)]
+      else
+         values = [merge(minval(values), maxval(values), to_upper(check%where) == 'MIN')]
+      end if
    end subroutine values_asked_for
 
    !> Values of an interface; of positions in a list that is padded with NaN those that there are.
@@ -387,16 +393,5 @@ contains
       values = pack(values, wanted(point_node))
       if (size(values) == 0) reason = 'there is no node or node set "'//where//'"'
    end subroutine select_points
-
-   function extreme(values, which) result(value)
-      real(dp), intent(in) :: values(:)
-      character(*), intent(in) :: which
-      real(dp) :: value
-      real(dp), allocatable :: numbers(:)
-
-      numbers = pack(values, .not. ieee_is_nan(values))
-      value = ieee_value(value, ieee_quiet_nan)
-      if (size(numbers) > 0) value = merge(minval(numbers), maxval(numbers), which == 'MIN')
-   end function extreme
 
 end module verification
