@@ -51,11 +51,11 @@ contains
          'ABCDEFGHIJKLMNOPQRSTUVWXYZ') > 0) return
       name = line(first_text(line):index(line//',', ',') - 1)
       name = name(:last_text(name))
-      advice = find_advice(name)
-      if (find_keyword(name) == 0 .and. advice%kind == no_advice) return
       if (title .and. index(line, '=') == 0) return
-      lacks_star = names_keyword(line)
-      if (lacks_star) lacks_star = .not. is_defined(cards, name)
+      if (.not. names_keyword(line)) return
+      if (is_defined(cards, name)) return
+      advice = find_advice(name)   ! last, since this takes longest
+      lacks_star = find_keyword(name) > 0 .or. advice%kind /= no_advice
    end function lacks_star
 
    !> Whether a line is a keyword, without its asterisk, and parameters of it.
