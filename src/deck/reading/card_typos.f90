@@ -53,8 +53,6 @@ contains
          'ABCDEFGHIJKLMNOPQRSTUVWXYZ') > 0) return
       name = line(first_text(line):index(line//',', ',') - 1)
       name = name(:last_text(name))
-      advice = find_advice(name)
-      if (find_keyword(name) == 0 .and. advice%kind == no_advice) return
       if (title .and. index(line, '=') == 0) return
       known = find_keyword(name)
       comma = index(line//',', ',')
@@ -70,6 +68,9 @@ contains
          lacks_star = len(parameter%name) > 0
       end do
       if (lacks_star) lacks_star = .not. is_defined(cards, name)
+      if (known > 0 .or. .not. lacks_star) return
+      advice = find_advice(name)   ! last, since this takes longest
+      lacks_star = advice%kind /= no_advice
    end function lacks_star
 
    !> Whether a keyword card that is read defines or uses a name.
