@@ -163,8 +163,8 @@ contains
          step = 0
          increment = 0
          associate (read_card => cards%keywords(first_card(cards)))
-            call take_from(1, read_card, 'STEP', ignored, step)
-            call take_from(1, read_card, 'INC', ignored, increment)
+            call take_parameter(read_card, 'STEP', ignored, step, '>=1')
+            call take_parameter(read_card, 'INC', ignored, increment, '>=1')
          end associate
          if (step > 0 .and. allocated(command%restart_time)) then
             call set_error(error, status_deck, 'STEP= and --restart RESULT@TIME both say where '// &
