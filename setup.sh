@@ -13,7 +13,6 @@ build_packages=(gcc libc6-dev gfortran cmake ninja-build libopenblas-serial-dev 
    libmetis-dev libhdf5-dev python3 python3-venv)
 test_packages=(valgrind calculix-ccx flang-19 chromium chromium-driver debootstrap file dpkg-dev)
 bench_packages=(calculix-ccx)
-requirements=("$root/post/requirements.txt" "$root/tests/requirements.txt")
 sweep_requirements=("$root/input/sweep/requirements.txt")
 
 usage() {
@@ -129,34 +128,44 @@ install_test_packages() {
    install_packages "${missing[@]}"
 }
 
-# What an environment was made of. It does not survive a move to another path.
-venv_contents() {
+# What an environment was made for. It does not survive a move to another path.
+venv_identity() {
    printf '%s\n' "$1"
    /usr/bin/python3 --version
-   cat "${@:2}"
 }
 
-# Makes an environment of the packages that some files list.
+# Makes an environment, anew where it has packages of a file that has changed since, and installs into
+# it the packages of those files that it does not have. Python compiles what is imported when it is.
 make_venv() {
-   local folder=$1
+   local folder=$1 file installed arguments=()
    shift
    unset PYTHONHOME PYTHONPATH
-   if [[ -f $folder/contents ]] && venv_contents "$folder" "$@" | cmp -s - "$folder/contents"; then
-      return
-   fi
-   say "installing Python packages into ${folder#"$root"/}"
-   rm -rf "$folder"
-   quietly /usr/bin/python3 -m venv "$folder" || fail "no Python environment could be made"
-   local arguments=() file
+   venv_identity "$folder" | cmp -s - "$folder/identity" || rm -rf "$folder"
    for file in "$@"; do
-      arguments+=(--requirement "$file")
+      installed=$folder/installed${file#"$root"}
+      [[ ! -f $installed ]] || cmp -s "$file" "$installed" || rm -rf "$folder"
    done
-   patiently "$folder/bin/python" -m pip install --disable-pip-version-check --no-input \
+   for file in "$@"; do
+      [[ -f $folder/installed${file#"$root"} ]] || arguments+=(--requirement "$file")
+   done
+   ((${#arguments[@]})) || return 0
+   say "installing Python packages into ${folder#"$root"/}"
+   if [[ ! -d $folder ]]; then
+      quietly /usr/bin/python3 -m venv "$folder" || fail "no Python environment could be made"
+      venv_identity "$folder" >"$folder/identity"
+   fi
+   patiently "$folder/bin/python" -m pip install --disable-pip-version-check --no-input --no-compile \
       "${arguments[@]}" || fail "pip could not install the Python packages"
-   venv_contents "$folder" "$@" >"$folder/contents"
+   for file in "$@"; do
+      mkdir -p "$folder/installed$(dirname "${file#"$root"}")"
+      cp "$file" "$folder/installed${file#"$root"}"
+   done
 }
 
-install_python_packages() { make_venv "$venv" "${requirements[@]}"; }
+# Those of the tests too, which take longer than those that draw.
+install_python_packages() {
+   make_venv "$venv" "$root/post/requirements.txt" "$root/tests/requirements.txt"
+}
 
 # Configures (once) and builds the preset named, all of it or the target named.
 build_preset() {
@@ -177,7 +186,7 @@ build_preset() {
 
 run_build() {
    install_packages "${build_packages[@]}"
-   install_python_packages
+   make_venv "$venv" "$root/post/requirements.txt"
    build_preset release thercon
 }
 
@@ -325,6 +334,7 @@ run_performance() {
 # Without an argument half an hour, most of it CalculiX.
 run_bench() {
    run_build
+   install_python_packages
    if [[ ${1-} == performance ]]; then
       run_performance "${@:2}"
       return
@@ -339,6 +349,7 @@ run_bench() {
 # A few minutes. It fails where a row of the manual does.
 run_verify() {
    run_build
+   install_python_packages
    say "running the verification manual"
    THERCON=$program "$venv/bin/python" "$root/tests/verification/manual.py"
    say "the manual is docs/verification.md"

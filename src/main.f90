@@ -44,7 +44,7 @@ program thercon
          call print_line(output_unit, trim(usage(i)))
       end do
    case (command_version)
-      call print_versions(output_unit)
+      call print_versions()
    case (command_check)
       do i = 1, size(command%decks)
          call check_deck(command%decks(i)%value, command, deck_status)

@@ -1,4 +1,4 @@
-"""Print which packages of a requirements file this Python does not have; fail if there are any."""
+"""Print which packages of requirements files this Python does not have; fail if there are any."""
 
 import sys
 from importlib.metadata import PackageNotFoundError, version
@@ -15,7 +15,7 @@ def is_missing(package):
 
 if sys.version_info < (3, 11):
     sys.exit(f"this is Python {sys.version.split()[0]}")
-packages = [line.split("==")[0] for line in Path(sys.argv[1]).read_text().splitlines()
+packages = [line.split("==")[0] for path in sys.argv[1:] for line in Path(path).read_text().splitlines()
             if line and not line.startswith("#")]
 missing = [package for package in packages if is_missing(package)]
 if missing:

@@ -42,7 +42,9 @@ module divided_mesh
       !> Temperature and, where the step solves it, stress at the end of the step; stress is smooth
       !> where the elements are divided besides those at the contact
       type(field_record_type), allocatable :: fields
-      type(simulation_type), private :: run
+      !> Freed by release. Held by value, its copying, which nothing calls, would be most of the
+      !> code of this module and of those that hold a divided mesh
+      type(simulation_type), pointer, private :: run => null()
       type(solution_state_type), private :: initial     !! state before the first increment
       !> heat of both meshes with the films at the end, where the runs' have others
       type(heat_reduction_type), private :: heat, coarse_heat
@@ -95,11 +97,14 @@ contains
       points = self%run%recovery%points
    end function points
 
-   !> Frees the factors.
+   !> Frees the run with its factors.
    subroutine release(self)
       class(divided_mesh_type), intent(inout) :: self
 
-      call self%run%release()
+      if (associated(self%run)) then
+         call self%run%release()
+         deallocate (self%run)
+      end if
       call self%heat%release()
       call self%coarse_heat%release()
    end subroutine release
@@ -122,8 +127,8 @@ contains
       call choose_neighbours(model, chosen)
       if (allocated(self%is_divided)) then
          if (all(self%is_divided .eqv. chosen)) return
-         call self%release()
       end if
+      call self%release()
       call prepare(self, model, chosen, error)
    end subroutine divide_at_contact
 
@@ -174,7 +179,6 @@ contains
       type(model_type), intent(in) :: model
       logical, intent(in) :: chosen(:)                    ! (elements) as choose_neighbours asks
       type(error_type), allocatable, intent(out) :: error
-      type(simulation_type) :: fresh_run
       type(heat_reduction_type) :: fresh_heat
 
       self%is_divided = chosen
@@ -183,7 +187,7 @@ contains
       call divide_model(self%model, self%division)
       call hold_new_nodes(self%division, self%model)
       call keep_to_equations(self%division, self%model)
-      self%run = fresh_run
+      allocate (self%run)
       self%heat = fresh_heat
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) then

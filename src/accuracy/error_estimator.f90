@@ -118,7 +118,7 @@ contains
       integer :: i
 
       if (.not. self%is_on) then
-         if (record%last_of_step) call go_without(model, simulation, record)
+         if (record%last_of_step) call go_without(model, record)
          return
       end if
       if (record%step /= self%step) then
@@ -130,7 +130,7 @@ contains
       do i = 1, size(record%contacts)
          call simulation%bodies%view(i, points)
          associate (contact => record%contacts(i))
-            values(:, i) = quantities_of(points, contact)
+            values(:, i) = quantities_of(contact)
             self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact, &
                self%has_triangles(i)))
             if (regime_of(contact) /= self%regime(i)) call self%histories%begin_anew(i)
@@ -169,18 +169,15 @@ contains
    end subroutine end_increment
 
    !> The quantities at the end of a step in a run that bounds nothing, and why.
-   subroutine go_without(model, simulation, record)
+   subroutine go_without(model, record)
       type(model_type), intent(in) :: model
-      type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
-      type(contact_points_type) :: points
       integer :: i
 
       allocate (record%errors(size(record%contacts)), record%body_errors(0))
       do i = 1, size(record%errors)
-         call simulation%bodies%view(i, points)
          associate (errors => record%errors(i))
-            errors%value = quantities_of(points, record%contacts(i))
+            errors%value = quantities_of(record%contacts(i))
             errors%bound = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(estimated))
             errors%mesh = errors%bound
             errors%increment = errors%bound

@@ -55,14 +55,13 @@ contains
    end function contact_of
 
    !> The estimated quantities of an interface.
-   pure function quantities_of(points, contact) result(values)
-      type(contact_points_type), intent(in) :: points    !! the contact points of the interface
+   pure function quantities_of(contact) result(values)
       type(contact_record_type), intent(in) :: contact   !! as from contact_of
       real(dp) :: values(size(estimated))                !! NaN for an edge where there is none
       integer :: q
 
       do q = 1, size(estimated)
-         values(q:q) = contact_values(estimated(q)%name, points, contact)
+         values(q:q) = contact_values(estimated(q)%name, contact)
       end do
    end function quantities_of
 
@@ -79,7 +78,7 @@ contains
             first = start(i)
             last = start(i + 1) - 1
             call bodies%view(i, points)
-            values(:, i) = quantities_of(points, contact_of(points, bodies%laws%friction(first), &
+            values(:, i) = quantities_of(contact_of(points, bodies%laws%friction(first), &
                contact%contact_state(first:last), contact%gap(first:last), &
                contact%force(first:last), contact%shear_force(first:last), &
                heat_across(points%weight, state%flux_conductance(first:last), &

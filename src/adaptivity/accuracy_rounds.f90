@@ -135,7 +135,7 @@ contains
          associate (points => interfaces(self%demands(d)%interface), &
             contact => record%contacts(self%demands(d)%interface))
             ! A relative target refers to the value, or of an edge to the width of the contact.
-            value = contact_values(quantity%name, points, contact)
+            value = contact_values(quantity%name, contact)
             scale = abs(value(1))
             if (quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(scale)) scale = &
                contact_width(points, contact)
@@ -147,7 +147,11 @@ contains
             associate (finding => self%rounds(n)%findings(d, record%step))
                finding = found(self%demands(d), points, &
                   record%errors(self%demands(d)%interface), scale)
-               finding%instead = instead_of(quantity, contact)
+               finding%instead = '0 at the end of each step'
+               if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) then
+                  finding%instead = 'no heat'
+               end if
+               if (quantity%resolution > 0.0_dp) finding%instead = end_words(quantity%name, contact)
                if (quantity%name == 'peak_pressure') then
                   finding%is_at_end = any(peak_is_at_end(points, contact))
                   if (has_grown(self%rounds, d, record%step) .and. .not. &
@@ -197,18 +201,6 @@ contains
          finding%no_estimate = errors%no_estimate(q)
       end associate
    end function found
-
-   !> Words where a quantity has no value to judge.
-   pure function instead_of(quantity, contact) result(words)
-      type(quantity_type), intent(in) :: quantity
-      type(contact_record_type), intent(in) :: contact
-      character(:), allocatable :: words
-
-      words = '0 at the end of each step'
-      if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) words = 'no heat'
-      if (quantity%resolution <= 0.0_dp) return
-      words = end_words(quantity%name, contact)
-   end function instead_of
 
    !> Lets the changes from the rounds before count where nothing else does.
    subroutine add_change(rounds, d, step)

@@ -34,7 +34,7 @@ module adaptive_rounds
    use variations, only: marked_elements_type, variation_type
    implicit none
    private
-   public :: adaptive_rounds_type, increment_taker_type, round_solver_type, round_indicators_type
+   public :: adaptive_rounds_type, increment_taker_type, round_indicators_type
 
    !> The rounds so far, and the variation of the present one.
    type :: adaptive_rounds_type
@@ -44,7 +44,7 @@ module adaptive_rounds
       real(dp), private :: cpu_start = 0.0_dp           !! CPU seconds of the process before it [s]
       real(dp), private :: start = 0.0_dp               !! when it began [s]
    contains
-      procedure :: solve
+      procedure :: begin_round
       procedure :: solve_increments
    end type adaptive_rounds_type
 
@@ -53,12 +53,6 @@ module adaptive_rounds
    contains
       procedure(take_increment), deferred :: take
    end type increment_taker_type
-
-   !> Solves a round, with `solve_increments`.
-   type, abstract, extends(increment_taker_type) :: round_solver_type
-   contains
-      procedure(solve_round), deferred :: solve_round
-   end type round_solver_type
 
    abstract interface
       !> Takes an increment, with the bounds of its errors where a step ends.
@@ -70,13 +64,6 @@ module adaptive_rounds
          !> In: why the increment failed; out: why none follows
          type(error_type), allocatable, intent(inout) :: error
       end subroutine take_increment
-
-      !> Solves the variation of the rounds; may find that no other round can follow.
-      subroutine solve_round(self, rounds)
-         import :: adaptive_rounds_type, round_solver_type
-         class(round_solver_type), intent(inout) :: self
-         type(adaptive_rounds_type), intent(inout) :: rounds
-      end subroutine solve_round
    end interface
 
    real(dp), parameter :: marked = 0.8_dp       !! part of the squared error that is marked
@@ -99,19 +86,15 @@ module adaptive_rounds
 
 contains
 
-   !> Solves round after round, until all targets are met or nothing more can be done.
-   subroutine solve(self, solver)
+   !> Begins a round, which is to prepare the model of the variation and to solve its increments;
+   !> another one follows where the accuracy then goes on.
+   subroutine begin_round(self)
       class(adaptive_rounds_type), intent(inout) :: self
-      class(round_solver_type), intent(inout) :: solver
 
-      do
-         call cpu_time(self%cpu_start)
-         self%start = wall_seconds()
-         self%accuracy%goes_on = .false.
-         call solver%solve_round(self)
-         if (.not. self%accuracy%goes_on) return
-      end do
-   end subroutine solve
+      call cpu_time(self%cpu_start)
+      self%start = wall_seconds()
+      self%accuracy%goes_on = .false.
+   end subroutine begin_round
 
    !> Solves the increments of a round and judges it.
    !> Errors: as simulation_type's advance, and those of the taker.
@@ -205,8 +188,9 @@ contains
       type(accuracy_rounds_type), intent(in) :: rounds
       type(increment_record_type), intent(in) :: record
       type(finding_type) :: finding
-      real(dp) :: weight(size(self%division%levels))
-      integer :: d, levels
+      real(dp), allocatable :: edges(:)
+      real(dp) :: length, weight(size(self%division%levels))
+      integer :: d, levels, of_edges
 
       do d = 1, size(rounds%demands)
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
@@ -233,43 +217,25 @@ contains
                where (elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
                   model%contacts(i)%master])) of_elements = max(of_elements, 1)
             end if
-            call mark_edges(self, interfaces(i), edges_for(q, interfaces(i), record%contacts(i)), &
-               max(levels, levels_of_edges(interfaces(i), record, i, q, finding%allowed)))
+            ! Edges near which it errs: those of stick only for what friction decides, and where the
+            ! whole face is closed the ends of its pieces.
+            edges = record%contacts(i)%edges_contact
+            if (all(record%contacts(i)%contact_state /= contact_open)) edges = &
+               interfaces(i)%arc_length(interfaces(i)%ends())
+            if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
+               [edges, record%contacts(i)%edges_stick]
+            ! How often the sides at an edge must be divided for its resolution.
+            length = resolved_length(estimated(q), interfaces(i), record%errors(i)%value(q))
+            of_edges = 0
+            if (length > 0.0_dp) of_edges = min(most_levels, ceiling(log(length/ &
+               (part*finding%allowed))/log(2.0_dp)))
+            call mark_edges(self, interfaces(i), edges, max(levels, of_edges))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
             where (largest_part(weight*squared_errors(model%mesh, record), marked)) &
                of_elements = max(of_elements, levels)
          end associate
       end do
    end subroutine take
-
-   !> How often the sides at an edge must be divided for its resolution.
-   function levels_of_edges(points, record, i, q, allowed) result(levels)
-      type(contact_points_type), intent(in) :: points
-      type(increment_record_type), intent(in) :: record
-      integer, intent(in) :: i, q
-      real(dp), intent(in) :: allowed
-      real(dp) :: length
-      integer :: levels
-
-      levels = 0
-      length = resolved_length(estimated(q), points, record%errors(i)%value(q))
-      if (length > 0.0_dp) levels = min(most_levels, max(0, ceiling(log(length/(part*allowed))/ &
-         log(2.0_dp))))
-   end function levels_of_edges
-
-   !> The edges near which a quantity errs: those of stick only for what friction decides, and where
-   !> the whole face is closed the ends of its pieces.
-   pure function edges_for(q, points, contact) result(edges)
-      integer, intent(in) :: q
-      type(contact_points_type), intent(in) :: points
-      type(contact_record_type), intent(in) :: contact
-      real(dp), allocatable :: edges(:)
-
-      edges = contact%edges_contact
-      if (all(contact%contact_state /= contact_open)) edges = points%arc_length(points%ends())
-      if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
-         [edges, contact%edges_stick]
-   end function edges_for
 
    !> How much the squared error of each element counts for a quantity.
    pure function influence(q, mesh, points, contact) result(weight)

@@ -29,18 +29,14 @@ int file_rename(const char *from, const char *to)
 }
 
 /* Waits until a file is on its disk, where the system can tell. */
-void file_sync(const char *path)
+int file_sync(const char *path)
 {
    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
-   if (descriptor < 0)
-      return;
-   fsync(descriptor);
-   close(descriptor);
-}
+   int number = descriptor >= 0 && fsync(descriptor) == 0 ? 0 : errno;
 
-int file_remove(const char *path)
-{
-   return unlink(path) == 0 ? 0 : errno;
+   if (descriptor >= 0)
+      close(descriptor);
+   return number;
 }
 
 int file_make_folder(const char *path)
@@ -54,13 +50,8 @@ int file_check_folder(const char *path)
    return access(path, W_OK | X_OK) == 0 ? 0 : errno;
 }
 
-int file_is_terminal(int descriptor)
-{
-   return isatty(descriptor);
-}
-
-/* Writes all of the bytes. */
-static int write_all(int descriptor, const char *bytes, size_t count)
+/* Writes all of the bytes; signal handlers may call it. */
+int file_write_all(int descriptor, const char *bytes, size_t count)
 {
    while (count > 0) {
       ssize_t written = write(descriptor, bytes, count);
@@ -78,7 +69,7 @@ static int write_all(int descriptor, const char *bytes, size_t count)
  * it any more is not. */
 void file_print(const char *text, long count)
 {
-   int number = write_all(STDOUT_FILENO, text, (size_t)count);
+   int number = file_write_all(STDOUT_FILENO, text, (size_t)count);
 
    if (standard_output_error == 0 && number != EPIPE)
       standard_output_error = number;
@@ -121,7 +112,7 @@ int file_try_growth(const char *path, long count)
    if (descriptor < 0 || !bytes)
       number = errno;
    else
-      number = write_all(descriptor, bytes, (size_t)count);
+      number = file_write_all(descriptor, bytes, (size_t)count);
    if (descriptor >= 0 && close(descriptor) != 0 && number == 0)
       number = errno;
    free(bytes);
@@ -158,7 +149,7 @@ static int may_be_result(int folder, const char *name)
 }
 
 /* Removes the results `stem.<number>.tmp`, which runs left that were killed. */
-void file_remove_working(const char *stem)
+int file_remove_working(const char *stem)
 {
    const char *slash = strrchr(stem, '/');
    const char *name = slash ? slash + 1 : stem;
@@ -179,6 +170,7 @@ void file_remove_working(const char *stem)
    if (entries)
       closedir(entries);
    free(folder);
+   return 0;
 }
 
 /* Device and inode of a regular file; zeros where there is none. */
@@ -242,18 +234,13 @@ int file_write(int descriptor, long position, const char *text, long count)
 
    if (lseek(descriptor, position < 0 ? 0 : position, from) < 0 && errno != ESPIPE)
       return errno;
-   return write_all(descriptor, text, (size_t)count);
+   return file_write_all(descriptor, text, (size_t)count);
 }
 
 int file_empty(int descriptor)
 {
    /* What is no regular file, such as a device, has nothing to be cut off. */
    return ftruncate(descriptor, 0) == 0 || errno == EINVAL ? 0 : errno;
-}
-
-int file_close(int descriptor)
-{
-   return close(descriptor) == 0 ? 0 : errno;
 }
 
 /* Copies a file over another one. */
@@ -268,7 +255,7 @@ int file_copy(const char *from, const char *to, int *is_source)
    if (*is_source || target < 0)
       number = errno;
    while (number == 0 && (count = read(source, block, block_size)) > 0)
-      number = write_all(target, block, (size_t)count);
+      number = file_write_all(target, block, (size_t)count);
    if (count < 0) {
       number = errno;
       *is_source = 1;
@@ -319,11 +306,6 @@ int file_read(const char *path, long most, char **contents, long *count)
       *contents = NULL;
    }
    return number;
-}
-
-void file_free(char *contents)
-{
-   free(contents);
 }
 
 /* A file that would grow past the limit of the process is an error like others, no reason to die. */

@@ -15,7 +15,7 @@ module file_calls
    public :: rename_file, copy_file, remove_file, make_folder, is_terminal, is_stream, read_file, &
       sync_file, try_file, try_growth, create_working_file, remove_working_files, &
       survive_file_limits, cannot_write, check_written, print_text, check_printed, &
-      identity_of, check_in_place, seal_file, check_seal
+      identity_of, check_in_place, seal_file, check_seal, c_free
 
    integer(c_int), parameter :: too_long = -3_c_int   !! as in file_calls.c
    integer, parameter :: reason_length = 200
@@ -28,7 +28,9 @@ module file_calls
       end function path_call
    end interface
 
-   procedure(path_call), bind(c, name='file_remove') :: c_remove
+   procedure(path_call), bind(c, name='unlink') :: c_remove
+   procedure(path_call), bind(c, name='file_remove_working') :: c_remove_working
+   procedure(path_call), bind(c, name='file_sync') :: c_sync
    procedure(path_call), bind(c, name='file_make_folder') :: c_make_folder
    procedure(path_call), bind(c, name='file_check_folder') :: c_check_folder
    procedure(path_call), bind(c, name='file_is_stream') :: c_is_stream
@@ -49,12 +51,7 @@ module file_calls
          character(kind=c_char), intent(in) :: from(*), to(*)
       end function c_rename
 
-      subroutine c_sync(path) bind(c, name='file_sync')
-         import :: c_char
-         character(kind=c_char), intent(in) :: path(*)
-      end subroutine c_sync
-
-      integer(c_int) function c_is_terminal(descriptor) bind(c, name='file_is_terminal')
+      integer(c_int) function c_is_terminal(descriptor) bind(c, name='isatty')
          import :: c_int
          integer(c_int), value :: descriptor
       end function c_is_terminal
@@ -83,11 +80,6 @@ module file_calls
          character(kind=c_char), intent(out) :: path(length)
       end function c_create_working
 
-      subroutine c_remove_working(stem) bind(c, name='file_remove_working')
-         import :: c_char
-         character(kind=c_char), intent(in) :: stem(*)
-      end subroutine c_remove_working
-
       integer(c_int) function c_copy(from, to, is_source) bind(c, name='file_copy')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: from(*), to(*)
@@ -102,7 +94,8 @@ module file_calls
          integer(c_long), intent(out) :: count
       end function c_read
 
-      subroutine c_free(contents) bind(c, name='file_free')
+      !> Frees what C has allocated.
+      subroutine c_free(contents) bind(c, name='free')
          import :: c_ptr
          type(c_ptr), value :: contents
       end subroutine c_free
@@ -153,8 +146,9 @@ contains
    !> its name leaves it whole.
    subroutine sync_file(path)
       character(*), intent(in) :: path
+      integer(c_int) :: ignored
 
-      call c_sync(path//c_null_char)
+      ignored = c_sync(path//c_null_char)
    end subroutine sync_file
 
    !> Makes a folder and those above it; one that is there already is left as it is.
@@ -270,8 +264,9 @@ contains
    !> Removes what killed runs have left beside a file. Call it with the lock of its run only.
    subroutine remove_working_files(path)
       character(*), intent(in) :: path   !! as create_working_file had it
+      integer(c_int) :: ignored
 
-      call c_remove_working(path//c_null_char)
+      ignored = c_remove_working(path//c_null_char)
    end subroutine remove_working_files
 
    !> Reads a file, which may be a pipe, to its end.

@@ -2,7 +2,7 @@
 module memory_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_null_char
    use errors, only: error_type, set_error, status_internal
-   use kinds, only: dp
+   use kinds, only: dp, long
    use text, only: to_text
    implicit none
    private
@@ -57,21 +57,9 @@ contains
       limit = c_limit(source, int(source_length, c_int))
       if (needed <= limit) return
       call set_error(error, status_internal, 'not enough memory: the run needs about '// &
-         megabytes(needed)//' MB and may use '//megabytes(limit)//' MB ('// &
-         source(:index(source, c_null_char) - 1)//')')
+         to_text(nint(needed/megabyte, long))//' MB and may use '// &
+         to_text(nint(limit/megabyte, long))//' MB ('//source(:index(source, c_null_char) - 1)//')')
       error%lacks_memory = .true.
    end subroutine check_memory
-
-   !> Whole megabytes, of any number of them.
-   pure function megabytes(bytes) result(string)
-      real(dp), intent(in) :: bytes
-      character(:), allocatable :: string
-
-      if (bytes/megabyte < 1.0e9_dp) then
-         string = to_text(nint(bytes/megabyte))
-      else
-         string = to_text(bytes/megabyte)
-      end if
-   end function megabytes
 
 end module memory_calls

@@ -28,7 +28,7 @@ module open_files
    procedure(open_call), bind(c, name='file_open_new') :: c_open_new
    procedure(open_call), bind(c, name='file_lock') :: c_lock
    procedure(descriptor_call), bind(c, name='file_empty') :: c_empty
-   procedure(descriptor_call), bind(c, name='file_close') :: c_close
+   procedure(descriptor_call), bind(c, name='close') :: c_close
 
    interface
       subroutine c_unlock(path, descriptor) bind(c, name='file_unlock')

@@ -91,11 +91,13 @@ module processes
          integer(c_int), value :: child, kills
       end subroutine c_signal_child
 
-      integer(c_int) function c_read(file, offset, length, bytes) bind(c, name='thercon_read')
-         import :: c_char, c_int, c_long
-         integer(c_int), value :: file, length
-         integer(c_long), value :: offset
+      !> POSIX pread(2): how many bytes were read, negative after an error.
+      integer(c_size_t) function c_read(file, bytes, length, offset) bind(c, name='pread')
+         import :: c_char, c_int, c_long, c_size_t
+         integer(c_int), value :: file
+         integer(c_size_t), value :: length
          character(c_char), intent(out) :: bytes(length)
+         integer(c_long), value :: offset
       end function c_read
 
       subroutine c_file_report(report) bind(c, name='thercon_file_report')
@@ -187,7 +189,7 @@ contains
       type(report_type) :: report
       character(c_char) :: bytes(c_sizeof(report))
 
-      if (c_read(self%reports, 0_c_long, int(size(bytes), c_int), bytes) == size(bytes)) then
+      if (c_read(self%reports, bytes, size(bytes, kind=c_size_t), 0_c_long) == size(bytes)) then
          report = transfer(bytes, report)
       end if
       if (self%is_running .or. self%end%signal == 0 .and. report%is_whole == 1) return
@@ -201,12 +203,13 @@ contains
       class(child_type), intent(inout) :: self
       character(:), allocatable, intent(out) :: contents   !! lines with their ends between them
       character(c_char) :: block(block_length)
-      integer(c_int) :: count
+      integer(c_size_t) :: count
 
       contents = ''
       do
-         count = c_read(self%messages, int(len(contents), c_long), int(block_length, c_int), block)
-         if (count == 0_c_int) exit
+         count = c_read(self%messages, block, int(block_length, c_size_t), &
+            len(contents, kind=c_long))
+         if (count <= 0) exit
          contents = contents//transfer(block(:count), repeat(' ', int(count)))
       end do
       contents = contents(:verify(contents, new_line('a'), back=.true.))

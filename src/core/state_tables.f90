@@ -133,20 +133,11 @@ contains
       integer, allocatable :: codes(:)
       integer :: i
 
-      if (allocated(text)) then
-         allocate (codes(len(text)))
-         do i = 1, len(text)
-            codes(i) = iachar(text(i:i))
-         end do
-      end if
+      if (allocated(text)) codes = [(iachar(text(i:i)), i=1, len(text))]
       call integers(table, name, codes)
       if (.not. table%restores) return
       if (allocated(text)) deallocate (text)
-      if (.not. allocated(codes)) return
-      text = repeat(' ', size(codes))
-      do i = 1, size(codes)
-         text(i:i) = achar(codes(i))
-      end do
+      if (allocated(codes)) text = transfer(achar(codes), repeat(' ', size(codes)))
    end subroutine words
 
 end module state_tables

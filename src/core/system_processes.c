@@ -90,14 +90,6 @@ int thercon_collect_child(int child, int waits, struct process_end *end)
 /* Passes the signal that came on to a child, or ends it at once. */
 void thercon_signal_child(int child, int kills) { kill(child, kills ? SIGKILL : caught); }
 
-/* Reads a part of a file; returns the number of bytes. */
-int thercon_read(int file, long offset, int length, char *bytes)
-{
-   const ssize_t count = pread(file, bytes, (size_t)length, offset);
-
-   return count < 0 ? 0 : (int)count;
-}
-
 /* A child files its report over the one before; in the first process nothing is done. */
 void thercon_file_report(const struct report *report)
 {
@@ -112,24 +104,10 @@ void *thercon_share(size_t bytes)
    return shared == MAP_FAILED ? NULL : shared;
 }
 
-static void put(int file, const char *words)
-{
-   size_t left = strlen(words);
-   ssize_t count;
+/* In file_calls.c. */
+int file_write_all(int descriptor, const char *bytes, size_t count);
 
-   while (left > 0) {
-      count = write(file, words, left);
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return;
-      words += count;
-      left -= (size_t)count;
-   }
-}
-
-static void add_reason(const char *words)
-{
-   if (strlen(filed.reason) + strlen(words) < sizeof filed.reason) strcat(filed.reason, words);
-}
+static void put(int file, const char *words) { file_write_all(file, words, strlen(words)); }
 
 /* Says why in one line, removes the file that is left over and ends the process. */
 static _Noreturn void end_run(int status, const char *reason)
@@ -137,7 +115,7 @@ static _Noreturn void end_run(int status, const char *reason)
    filed.is_whole = 1;
    filed.status = status;
    strcpy(filed.reason, reason);
-   add_reason(where);
+   if (strlen(reason) + strlen(where) < sizeof filed.reason) strcat(filed.reason, where);
    signal(SIGPIPE, SIG_IGN);
    if (shows_progress) put(2, "\r\033[K");
    put(2, deck[0] ? deck : "thercon");

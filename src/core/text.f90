@@ -6,7 +6,7 @@ module text
    private
    public :: string_type
    public :: others, counted, to_text, few_digits, rounded, digits_above, with_decimals
-   public :: percent
+   public :: or_blank, percent
    public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
    public :: is_whole, integer_fault, real_fault, largest_magnitude, split_words, quoted
 
@@ -291,28 +291,13 @@ contains
    pure function has_form_of_real(string) result(valid)
       character(*), intent(in) :: string
       logical :: valid
-      integer :: mark, before, after
+      integer :: mark, point
 
-      valid = .false.
-      mark = scan(string, 'eEdD')
-      if (mark > 0) then
-         if (.not. is_whole(string(mark + 1:))) return
-      else
-         mark = len(string) + 1
-      end if
-      before = scan(string(:mark - 1), '.')
-      if (before == 0) then
-         valid = is_whole(string(:mark - 1))
-         return
-      end if
-      after = mark - before - 1
-      if (verify(string(before + 1:mark - 1), '0123456789') /= 0) return
-      select case (string(:before - 1))
-      case ('', '+', '-')
-         valid = after > 0
-      case default
-         valid = is_whole(string(:before - 1))
-      end select
+      mark = scan(string//'E', 'eEdD')
+      point = scan(string(:mark - 1)//'.', '.')
+      valid = is_whole(string(:point - 1)//string(point + 1:mark - 1)) .and. &
+         verify(string(point + 1:mark - 1), '0123456789') == 0
+      if (mark <= len(string)) valid = valid .and. is_whole(string(mark + 1:))
    end function has_form_of_real
 
    !> Whether a text is an optional sign and at least one digit.
@@ -373,6 +358,15 @@ contains
 
       words = to_text(n)//' '//noun//trim(merge(' ', 's', n == 1))
    end function counted
+
+   !> Text that may not have been given.
+   pure function or_blank(text) result(string)
+      character(:), allocatable, intent(in) :: text   !! the text, or unallocated
+      character(:), allocatable :: string             !! the text, or nothing
+
+      string = ''
+      if (allocated(text)) string = text
+   end function or_blank
 
    !> The ending of a message that names one of several: their number, if it is more than one.
    pure function others(n, words) result(ending)

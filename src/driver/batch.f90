@@ -1,7 +1,7 @@
 !> Several decks, some of them at a time. Each has a process of its own, so that what becomes of one
 !> leaves the others alone.
 module batch
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use batch_table, only: print_batch, table_name, write_batch
    use clock, only: wall_seconds
    use command_line, only: command_type
@@ -54,6 +54,8 @@ module batch
       integer :: forwarded = 0                           !! signals that were seen
       real(dp) :: signalled = 0.0_dp                     !! when the first was passed on [s]
       real(dp) :: written = 0.0_dp                       !! when the CSV file was written [s]
+      !> File that it locks, because the table is a new file whenever it is written
+      character(:), allocatable :: lock_path
       logical :: has_news = .false.                      !! whether it is not up to date
    end type batch_type
 
@@ -74,6 +76,7 @@ contains
       if (status /= 0) return
       call catch_signals(outlives_pipes=.true.)
       self%command = command
+      self%lock_path = command%folder//'/'//table_name//'.lock'
       associate (decks => size(command%decks))
          allocate (self%outcomes(decks), self%running(min(command%jobs, decks)))
       end associate
@@ -107,12 +110,12 @@ contains
       end do
       status = maxval(self%outcomes%report%status)
       call write_batch(command%folder, self%outcomes, error)
-      call unlock_file(lock_path(command), lock)
+      call unlock_file(self%lock_path, lock)
       if (allocated(error)) then
          call print_error('thercon', error%message)
          status = max(status, error%status)
       end if
-      if (.not. command%quiet) call print_batch(output_unit, self%outcomes, wall_seconds() - since)
+      if (.not. command%quiet) call print_batch(self%outcomes, wall_seconds() - since)
    end subroutine run_batch
 
    !> Two decks with the same results are an error before anything runs.
@@ -145,22 +148,14 @@ contains
       lock = -1
       call check_inputs(self%command, error)
       if (.not. allocated(error)) call make_folder(self%command%folder, error)
-      if (.not. allocated(error)) call lock_file(lock_path(self%command), lock, has_lock, error)
+      if (.not. allocated(error)) call lock_file(self%lock_path, lock, has_lock, error)
       if (allocated(error)) return
       if (.not. has_lock) call print_line(error_unit, 'thercon: warning: the file system of "'// &
          self%command%folder//'" has no locks: a second batch there at the same time would '// &
          'not be noticed')
       call write_batch(self%command%folder, self%outcomes, error)
-      if (allocated(error)) call unlock_file(lock_path(self%command), lock)
+      if (allocated(error)) call unlock_file(self%lock_path, lock)
    end subroutine begin_table
-
-   !> The file that a batch locks, because the table is a new file whenever it is written.
-   pure function lock_path(command) result(path)
-      type(command_type), intent(in) :: command
-      character(:), allocatable :: path
-
-      path = command%folder//'/'//table_name//'.lock'
-   end function lock_path
 
    !> Compares the files that the decks are read from with those that the batch writes. Pipes are
    !> read once only, by their deck.

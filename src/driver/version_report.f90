@@ -1,7 +1,7 @@
 !> Versions of the program, its compiler and its libraries.
 module version_report
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
-   use, intrinsic :: iso_fortran_env, only: compiler_version
+   use, intrinsic :: iso_fortran_env, only: compiler_version, output_unit
    use blas_lapack, only: ilaver
    use hdf5, only: h5close_f, h5get_libversion_f, h5open_f
    use messages, only: print_line
@@ -23,8 +23,7 @@ module version_report
 contains
 
    !> Prints one line each.
-   subroutine print_versions(unit)
-      integer, intent(in) :: unit   !! open for formatted output
+   subroutine print_versions()
       integer, parameter :: most = 64
       character(most, kind=c_char) :: buffer
       character(:), allocatable :: mumps, processor
@@ -35,16 +34,16 @@ contains
       call h5open_f(status)
       call h5get_libversion_f(hdf5(1), hdf5(2), hdf5(3), status)
       call h5close_f(status)
-      call print_line(unit, 'thercon '//program_version)
-      call print_line(unit, 'compiler '//compiler_version())
-      call print_line(unit, 'MUMPS '//mumps)
-      call print_line(unit, 'METIS '//metis_version)
-      call print_line(unit, 'HDF5 '//dotted(hdf5))
+      call print_line(output_unit, 'thercon '//program_version)
+      call print_line(output_unit, 'compiler '//compiler_version())
+      call print_line(output_unit, 'MUMPS '//mumps)
+      call print_line(output_unit, 'METIS '//metis_version)
+      call print_line(output_unit, 'HDF5 '//dotted(hdf5))
       ! The processor for which OpenBLAS computes, in its own words; empty with another BLAS.
       call c_processor(buffer, int(most, c_int))
       processor = buffer(:index(buffer, c_null_char) - 1)
       if (len(processor) > 0) processor = ', OpenBLAS for '//processor
-      call print_line(unit, 'LAPACK '//dotted(lapack)//processor)
+      call print_line(output_unit, 'LAPACK '//dotted(lapack)//processor)
    end subroutine print_versions
 
    pure function dotted(numbers) result(string)

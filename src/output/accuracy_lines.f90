@@ -5,7 +5,8 @@ module accuracy_lines
    use accuracy_rounds, only: accuracy_round_type, accuracy_rounds_type, finding_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
-   use hdf5_writer, only: as_integer, hdf5_writer_type
+   use growing_datasets, only: growing_dataset, growing_dataset_type, write_integers, write_once
+   use hdf5_writer, only: as_integer, as_real, hdf5_writer_type
    use kinds, only: dp
    use model, only: unit_labels_type
    use no_estimates, only: at_corner, grows, no_reason, words_of_reason
@@ -13,7 +14,7 @@ module accuracy_lines
    use run_summaries, only: accuracy_words_type
    use summary, only: words_of
    use text, only: append, counted, digits_above, few_digits, percent, to_text
-   use unit_labels, only: unit_in_words, unit_label
+   use unit_labels, only: unit_label
    implicit none
    private
    public :: told_of_rounds, write_accuracy
@@ -242,22 +243,24 @@ contains
    end function round_words
 
    !> Writes the rounds, where an accuracy is requested and the first one came to its end.
-   subroutine write_accuracy(file, accuracy, interfaces, labels)
+   subroutine write_accuracy(file, accuracy, interfaces)
       type(hdf5_writer_type), intent(inout) :: file          !! the open file
       type(accuracy_rounds_type), intent(in) :: accuracy
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      type(unit_labels_type), intent(in) :: labels           !! units of the deck
       integer :: d, i
 
       if (.not. accuracy%is_on) return
       if (size(accuracy%rounds) == 0) return
       call file%create_group(group)
       associate (rounds => accuracy%rounds)
-         call file%write(group//'/cpu_seconds', rounds%cpu_seconds, 'CPU seconds of the round', 's')
-         call file%write(group//'/unknowns', rounds%unknowns, as_integer, &
+         call write_once(file, growing_dataset(group//'/cpu_seconds', as_real, 0, 1, 1, &
+            'CPU seconds of the round', 's'), rounds%cpu_seconds)
+         call write_integers(file, group//'/unknowns', rounds%unknowns, as_integer, &
             'unknown temperatures, displacements and contact unknowns')
-         call file%write(group//'/elements', rounds%elements, as_integer, 'elements of the mesh')
-         call file%write(group//'/increments', rounds%increments, as_integer, 'accepted increments')
+         call write_integers(file, group//'/elements', rounds%elements, as_integer, &
+            'elements of the mesh')
+         call write_integers(file, group//'/increments', rounds%increments, as_integer, &
+            'accepted increments')
       end associate
       call file%set(group, 'reached', merge(1, 0, accuracy%is_reached()))
       call file%set(group, 'later_round_begun', merge(1, 0, accuracy%goes_on))
@@ -267,21 +270,21 @@ contains
          call file%create_group(group//'/bounds/'//interfaces(i)%name)
          do d = 1, size(accuracy%demands)
             if (accuracy%demands(d)%interface == i) call write_demand(file, accuracy, d, &
-               group//'/bounds/'//interfaces(i)%name, labels)
+               group//'/bounds/'//interfaces(i)%name)
          end do
       end do
    end subroutine write_accuracy
 
    !> A row for each round: step, value, bound and what the target allows, at the end of the step
    !> that is furthest from the target; zeros where no step has the quantity.
-   subroutine write_demand(file, accuracy, d, path, labels)
+   subroutine write_demand(file, accuracy, d, path)
       type(hdf5_writer_type), intent(inout) :: file
       type(accuracy_rounds_type), intent(in) :: accuracy
       integer, intent(in) :: d
       character(*), intent(in) :: path
-      type(unit_labels_type), intent(in) :: labels
       real(dp) :: rows(columns, size(accuracy%rounds))
       integer :: i, step
+      type(growing_dataset_type) :: dataset
       type(quantity_type) :: quantity
 
       rows = 0.0_dp
@@ -293,9 +296,11 @@ contains
          end associate
       end do
       quantity = estimated(accuracy%demands(d)%quantity)
-      call file%write(path//'/'//trim(quantity%name), rows, 'rounds of the requested accuracy: '// &
-         trim(quantity%description), unit_in_words(quantity%unit, labels), &
-         'step value bound target')
+      dataset = growing_dataset(path//'/'//trim(quantity%name), as_real, columns, 1, 1, &
+         'rounds of the requested accuracy: '//trim(quantity%description), &
+         quantity%unit)
+      dataset%components = 'step value bound target'
+      call write_once(file, dataset, [rows])
    end subroutine write_demand
 
 end module accuracy_lines

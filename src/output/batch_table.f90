@@ -1,5 +1,6 @@
 !> The table of a batch: on the terminal, and as a CSV file.
 module batch_table
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use deck_outcomes, only: deck_outcome_type
    use errors, only: error_type
    use file_calls, only: create_working_file, remove_file, rename_file
@@ -23,8 +24,7 @@ module batch_table
 contains
 
    !> Prints the table, and how many decks ended in which way.
-   subroutine print_batch(unit, outcomes, seconds)
-      integer, intent(in) :: unit                          !! unit that is written to
+   subroutine print_batch(outcomes, seconds)
       type(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
       real(dp), intent(in) :: seconds                      !! time that the batch took [s]
       character(120) :: line
@@ -36,8 +36,8 @@ contains
       end do
       write (line, '(2x, a20, 2a12, 2a8, 2a10, a9)') 'outcome', 'increments', 'iterations', &
          'passed', 'failed', 'seconds', 'CPU s', 'peak MB'
-      call print_line(unit, '')
-      call print_line(unit, 'deck'//repeat(' ', width - 4)//trim(line))
+      call print_line(output_unit, '')
+      call print_line(output_unit, 'deck'//repeat(' ', width - 4)//trim(line))
       do i = 1, size(outcomes)
          associate (deck => outcomes(i), report => outcomes(i)%report)
             write (line, '(2x, a20)') deck%words()
@@ -45,13 +45,12 @@ contains
                report%iterations, report%verify_passed, report%verify_failed, report%seconds
             if (deck%has_run .and. .not. deck%is_earlier()) write (line(73:), '(f10.2, f9.1)') &
                deck%cpu_seconds, deck%peak_bytes/megabyte
-            call print_line(unit, deck%path//repeat(' ', width - &
+            call print_line(output_unit, deck%path//repeat(' ', width - &
                character_count(printable(deck%path)))//trim(line))
          end associate
       end do
-      call print_line(unit, counted(size(outcomes), 'deck')//' in '// &
-         with_decimals(seconds, 3)//' s: '// &
-         counts_of(outcomes))
+      call print_line(output_unit, counted(size(outcomes), 'deck')//' in '// &
+         with_decimals(seconds, 3)//' s: '//counts_of(outcomes))
    end subroutine print_batch
 
    !> How many decks ended in which way, in the order of the first of each.

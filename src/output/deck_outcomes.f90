@@ -38,7 +38,6 @@ module deck_outcomes
       type(string_type), allocatable :: failed_checks(:)   !! one line each
    contains
       procedure :: note
-      procedure :: doubt
       procedure :: note_files
       procedure :: fail
       procedure :: words
@@ -61,18 +60,6 @@ contains
          size(record%iterations)
       call self%note_files(files)
    end subroutine note
-
-   !> Notes that rounding leaves the conductance of an increment less sure than TOL; the worst
-   !> counts.
-   pure subroutine doubt(self, floor)
-      class(deck_outcome_type), intent(inout) :: self     !! the run
-      real(dp), intent(in) :: floor                       !! what it is known to, relative
-
-      if (floor <= self%known_to .or. self%report%status /= status_ok) return
-      self%known_to = floor
-      call set_reason(self%report, 'the contact conductance is accurate to '//to_text(floor)// &
-         ' only')
-   end subroutine doubt
 
    !> Notes what is written; the process of a deck of a batch reports this and all else.
    subroutine note_files(self, files)

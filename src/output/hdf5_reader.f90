@@ -6,12 +6,13 @@ module hdf5_reader
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_loc, c_ptr, &
       c_size_t
    use errors, only: error_type, set_error, status_deck
-   use file_calls, only: check_seal
+   use file_calls, only: c_free, check_seal
    use hdf5, only: h5aclose_f, h5aexists_f, h5aopen_f, h5aread_f, h5dclose_f, h5dget_space_f, &
       h5dopen_f, h5dread_f, h5f_acc_rdonly_f, h5fclose_f, h5fopen_f, h5lexists_f, h5oclose_f, &
       h5oopen_f, h5s_select_set_f, h5sclose_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
-      h5sselect_hyperslab_f, h5t_cset_utf8_f, h5t_native_double, h5t_string, h5tclose_f, &
-      h5tcopy_f, h5tset_cset_f, hid_t, hsize_t
+      h5sselect_hyperslab_f, h5t_native_double, h5tclose_f, hid_t, &
+      hsize_t
+   use hdf5_writer, only: make_text_type
    use kinds, only: dp
    use text, only: string_type
    implicit none
@@ -40,11 +41,6 @@ module hdf5_reader
          import :: c_ptr, c_size_t
          type(c_ptr), value :: string
       end function c_length
-
-      subroutine c_free(address) bind(c, name='free')
-         import :: c_ptr
-         type(c_ptr), value :: address
-      end subroutine c_free
    end interface
 
 contains
@@ -223,27 +219,14 @@ contains
       call note(self, status, path//'@'//name//' is damaged')
    end subroutine read_attribute
 
-   !> The type of text of any length; to be closed by the caller.
-   subroutine make_text_type(type, status)
-      integer(hid_t), intent(out) :: type
-      integer, intent(out) :: status
-
-      call h5tcopy_f(h5t_string, type, status)
-      call h5tset_cset_f(type, h5t_cset_utf8_f, status)
-   end subroutine make_text_type
-
    !> A string that HDF5 has allocated, which is freed.
    function taken(start) result(string)
       type(c_ptr), intent(in) :: start
       character(:), allocatable :: string
       character(kind=c_char), pointer :: characters(:)
-      integer :: i
 
       call c_f_pointer(start, characters, [c_length(start)])
-      allocate (character(size(characters)) :: string)
-      do i = 1, size(characters)
-         string(i:i) = characters(i)
-      end do
+      string = transfer(characters, repeat(' ', size(characters)))
       call c_free(start)
    end function taken
 

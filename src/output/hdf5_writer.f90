@@ -8,7 +8,6 @@ module hdf5_writer
    use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5close_f, h5dont_atexit_f, h5eset_auto_f, &
       h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, h5f_acc_rdwr_f, &
       h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5p_file_access_f, &
-      h5pset_buffer_f, h5p_dataset_xfer_f, &
       h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
       h5ldelete_f, h5lexists_f, &
       h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f, h5dcreate_f, h5dwrite_f, &
@@ -17,10 +16,12 @@ module hdf5_writer
       h5t_string, h5t_native_character, h5t_native_double, h5t_native_integer, h5kind_to_type, &
       h5_integer_kind, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5t_ieee_f64le
    use kinds, only: dp, long
+   use model, only: unit_labels_type
    use text, only: string_type
+   use unit_labels, only: unit_in_words
    implicit none
    private
-   public :: hdf5_writer_type, start_hdf5, end_hdf5, write_values
+   public :: hdf5_writer_type, start_hdf5, end_hdf5, make_text_type
    public :: stored_type, as_real, as_integer, as_long, as_byte
 
    integer, parameter :: as_real = 1      !! stored as 64-bit real
@@ -28,30 +29,24 @@ module hdf5_writer
    integer, parameter :: as_long = 3      !! stored as 64-bit integer
    integer, parameter :: as_byte = 4      !! stored as unsigned byte
 
-   !> Bytes of the buffer in which HDF5 converts types; its own default, 1 MB, is cleared each time.
-   integer(hsize_t), parameter :: conversion_bytes = 16384_hsize_t
-
    !> A file that is being written.
    type :: hdf5_writer_type
       integer(hid_t) :: id = -1                          !! HDF5's handle while the file is open
-      type(error_type), allocatable, private :: error    !! the first one since it was opened
+      type(error_type), allocatable :: error             !! the first one since it was opened
+      type(unit_labels_type) :: labels                   !! units of the deck
    contains
       procedure :: create => create_file
       procedure :: open => open_file
       procedure :: close => close_file
-      procedure :: fail
       procedure :: note
-      procedure :: check
-      procedure :: has_failed
       procedure :: create_group
       procedure :: link => link_dataset
       procedure :: has
       procedure :: remove
-      generic :: write => write_integers, write_reals, write_real_table, write_strings
+      procedure :: write => write_strings
       generic :: set => set_attribute, set_integers
       procedure :: set_fixed_text
       procedure :: describe
-      procedure, private :: write_integers, write_reals, write_real_table, write_strings
       procedure, private :: set_attribute, set_integers
    end type hdf5_writer_type
 
@@ -126,14 +121,6 @@ contains
       call move_alloc(self%error, error)
    end subroutine close_file
 
-   !> Keeps an error, unless there was one before.
-   subroutine fail(self, error)
-      class(hdf5_writer_type), intent(inout) :: self
-      type(error_type), intent(in) :: error
-
-      if (.not. allocated(self%error)) self%error = error
-   end subroutine fail
-
    !> Keeps an error of status_internal where a call of HDF5 failed.
    subroutine note(self, status, message)
       class(hdf5_writer_type), intent(inout) :: self
@@ -144,21 +131,6 @@ contains
       if (any(status < 0)) call set_error(self%error, status_internal, message)
    end subroutine note
 
-   !> Error: the first one so far.
-   subroutine check(self, error)
-      class(hdf5_writer_type), intent(in) :: self
-      type(error_type), allocatable, intent(out) :: error
-
-      if (allocated(self%error)) error = self%error
-   end subroutine check
-
-   !> Whether there was an error, so that nothing more is written.
-   pure logical function has_failed(self)
-      class(hdf5_writer_type), intent(in) :: self
-
-      has_failed = allocated(self%error)
-   end function has_failed
-
    !> Creates a group; its parent exists.
    subroutine create_group(self, path)
       class(hdf5_writer_type), intent(inout) :: self
@@ -166,7 +138,7 @@ contains
       integer(hid_t) :: group
       integer :: status(2)
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       call h5gcreate_f(self%id, path, group, status(1))
       call h5gclose_f(group, status(2))
       call self%note(status, 'cannot create group '//path)
@@ -179,7 +151,7 @@ contains
       integer :: status
 
       has = .false.
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       call h5lexists_f(self%id, path, has, status)
       call self%note([status], 'cannot look for '//path)
    end function has
@@ -190,7 +162,7 @@ contains
       character(*), intent(in) :: path
       integer :: status
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       call h5ldelete_f(self%id, path, status)
       call self%note([status], 'cannot remove '//path)
    end subroutine remove
@@ -201,7 +173,7 @@ contains
       character(*), intent(in) :: path, second_path
       integer :: status
 
-      if (self%has(second_path) .or. self%has_failed()) return
+      if (self%has(second_path) .or. allocated(self%error)) return
       call h5lcreate_hard_f(self%id, path, self%id, second_path, status)
       call self%note([status], 'cannot link '//second_path)
    end subroutine link_dataset
@@ -234,9 +206,10 @@ contains
       character(*), intent(in) :: description
       character(kind=c_char), allocatable, target :: characters(:)
       type(c_ptr), allocatable, target :: starts(:)
-      integer(hid_t) :: type
-      integer :: i, k, position, status
+      integer(hid_t) :: dataset, space, type
+      integer :: i, k, position, status(7)
 
+      if (allocated(self%error)) return
       position = 0
       do i = 1, size(strings)
          position = position + len(strings(i)%value) + 1
@@ -251,106 +224,30 @@ contains
          position = position + len(strings(i)%value) + 1
          characters(position) = c_null_char
       end do
-      call make_text_type(type, status)
-      call write_whole(self, path, shape(starts, kind=hsize_t), stored_value_type(type, type, &
-         c_loc(starts)), description, '-')
-      call h5tclose_f(type, status)
+      call make_text_type(type, status(1))
+      call h5screate_simple_f(1, shape(starts, kind=hsize_t), space, status(2))
+      call h5dcreate_f(self%id, path, type, space, dataset, status(3))
+      call h5dwrite_f(dataset, type, c_loc(starts), status(4))
+      call self%note(status(:4), 'cannot write dataset '//path)
+      call self%describe(dataset, path, description, '-', '')
+      call h5dclose_f(dataset, status(5))
+      call h5sclose_f(space, status(6))
+      call h5tclose_f(type, status(7))
+      call self%note(status, 'cannot write dataset '//path)
    end subroutine write_strings
 
-   !> Writes a dataset of integers, numbers without a unit.
-   subroutine write_integers(self, path, values, storage, description)
+   !> Says what an open dataset is: `description`, `unit`, and `components` where there are such.
+   subroutine describe(self, dataset, path, description, unit, components)
       class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      integer, contiguous, target, intent(in) :: values(:)
-      integer, intent(in) :: storage                      !! as_integer, as_long or as_byte
-      character(*), intent(in) :: description
-
-      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_integer, stored_type(storage), c_loc(values)), description, '-')
-   end subroutine write_integers
-
-   !> Writes a dataset of reals.
-   subroutine write_reals(self, path, values, description, unit)
-      class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      real(dp), contiguous, target, intent(in) :: values(:)
-      character(*), intent(in) :: description, unit       !! as for describe
-
-      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_double, stored_type(as_real), c_loc(values)), description, unit)
-   end subroutine write_reals
-
-   !> Writes a dataset of rows of reals.
-   subroutine write_real_table(self, path, values, description, unit, components)
-      class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      real(dp), contiguous, target, intent(in) :: values(:, :)
-      character(*), intent(in) :: description, unit       !! as for describe
-      character(*), intent(in), optional :: components    !! as for describe
-
-      call write_whole(self, path, shape(values, kind=hsize_t), stored_value_type( &
-         h5t_native_double, stored_type(as_real), c_loc(values)), description, unit, components)
-   end subroutine write_real_table
-
-   subroutine write_whole(self, path, dimensions, value, description, unit, components)
-      class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      integer(hsize_t), intent(in) :: dimensions(:)
-      type(stored_value_type), intent(in) :: value
-      character(*), intent(in) :: description, unit
-      character(*), intent(in), optional :: components
-      integer(hid_t) :: space, dataset
-      integer :: status(5)
-
-      if (self%has_failed()) return
-      call h5screate_simple_f(size(dimensions), dimensions, space, status(1))
-      call h5dcreate_f(self%id, path, value%file_type, space, dataset, status(2))
-      call write_values(dataset, value%memory_type, value%address, status(3))
-      call h5dclose_f(dataset, status(4))
-      call h5sclose_f(space, status(5))
-      call self%note(status, 'cannot write dataset '//path)
-      call self%describe(path, description, unit, components)
-   end subroutine write_whole
-
-   !> Writes values into an open dataset: all of it, or what the selections name.
-   subroutine write_values(dataset, memory_type, address, status, memory, space)
       integer(hid_t), intent(in) :: dataset
-      integer(hid_t), intent(in) :: memory_type        !! type of the values
-      type(c_ptr), intent(in) :: address               !! the values
-      integer, intent(out) :: status                   !! negative for failure
-      integer(hid_t), intent(in), optional :: memory   !! selection in memory
-      integer(hid_t), intent(in), optional :: space    !! selection in the dataset
-      integer(hid_t) :: transfer
-      integer :: results(4)
-
-      call h5pcreate_f(h5p_dataset_xfer_f, transfer, results(1))
-      call h5pset_buffer_f(transfer, conversion_bytes, results(2))
-      call h5dwrite_f(dataset, memory_type, address, results(3), memory, space, transfer)
-      call h5pclose_f(transfer, results(4))
-      status = minval(results)
-   end subroutine write_values
-
-   !> Says what a dataset is: `description`, `unit`, and `components` where there are such.
-   subroutine describe(self, path, description, unit, components)
-      class(hdf5_writer_type), intent(inout) :: self
-      character(*), intent(in) :: path
+      character(*), intent(in) :: path                    !! its path
       character(*), intent(in) :: description
-      character(*), intent(in) :: unit                    !! '-' for a pure number
-      character(*), intent(in), optional :: components    !! their names; empty or absent: none
+      character(*), intent(in) :: unit                    !! as of quantity_type; '-': pure number
+      character(*), intent(in) :: components              !! their names; empty: none
 
-      integer(hid_t) :: object
-      integer :: status(2)
-
-      if (self%has_failed()) return
-      call h5oopen_f(self%id, path, object, status(1))
-      call set_text(self, path, 'description', trim(description), object)
-      call set_text(self, path, 'unit', trim(unit), object)
-      if (present(components)) then
-         if (len_trim(components) > 0) call set_text(self, path, 'components', trim(components), &
-            object)
-      end if
-      call h5oclose_f(object, status(2))
-      call self%note(status, 'cannot describe '//path)
+      call set_text(self, path, 'description', trim(description), dataset)
+      call set_text(self, path, 'unit', unit_in_words(trim(unit), self%labels), dataset)
+      if (components /= '') call set_text(self, path, 'components', trim(components), dataset)
    end subroutine describe
 
    !> Writes an attribute of a group or dataset, over one of the same name: an integer of either
@@ -393,7 +290,7 @@ contains
       integer(hid_t) :: type
       integer :: status(3)
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       copy = value
       call h5tcopy_f(h5t_native_character, type, status(1))
       call h5tset_size_f(type, len(value, kind=size_t), status(2))
@@ -411,7 +308,7 @@ contains
       integer(hid_t) :: type
       integer :: status(2)
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       copy = value//c_null_char
       start = c_loc(copy)
       call make_text_type(type, status(1))
@@ -429,7 +326,7 @@ contains
       integer :: status(8)
       logical :: exists
 
-      if (self%has_failed()) return
+      if (allocated(self%error)) return
       status = 0
       exists = .false.
       ! HDF5 1.10 cannot write to an attribute that was opened by the path of its object.

@@ -19,9 +19,9 @@ module listing
    use open_files, only: empty_file, lock_file, unlock_file, write_to_file
    use records, only: increment_record_type
    use run_sizes, only: run_size_type
-   use run_summaries, only: in_times, or_blank, run_entries, run_entry_type, run_summary_type
+   use run_summaries, only: in_times, run_entries, run_entry_type, run_summary_type
    use summary, only: summary_type
-   use text, only: append, counted, string_type, to_text, with_decimals
+   use text, only: append, counted, or_blank, string_type, to_text, with_decimals
    use verification, only: verifier_type
    use zone_diagram, only: zone_diagram_type
    implicit none
@@ -37,7 +37,6 @@ module listing
       type(page_type) :: page                                  !! what is not yet in the file
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
-      type(string_type), allocatable :: warnings(:)            !! of the run
       type(summary_type), public :: summary                    !! what the run comes to
       integer :: summary_start = 0                             !! bytes before it
    contains
@@ -47,7 +46,6 @@ module listing
       procedure :: add
       procedure :: end_early
       procedure :: break_off
-      procedure :: warn
       procedure :: finish
       procedure :: close => close_listing
    end type listing_type
@@ -84,14 +82,13 @@ contains
       self%is_draft = is_draft
       if (.not. is_draft) call empty_file(self%descriptor, self%path, error)
       if (allocated(error)) return
-      allocate(self%diagrams(size(interfaces)), self%warnings(0))
+      allocate(self%diagrams(size(interfaces)))
       call print_heading(self%page, model, run)
       call self%page%title('SUMMARY')
       self%summary_start = self%page%length
       allocate (running(0))
       call append(running, 'not finished: the run is still in progress, or was killed')
-      call self%page%append(summary_block(running, size(interfaces), size(model%steps), &
-         merge(model%mesh%body_count, 0, model%estimates_errors)))
+      call self%page%append(summary_block(running, model))
       call self%page%list('DEFAULTS AND IGNORED CARDS', model%notes)
       call print_model(self%page, model, interfaces, run)
       call self%page%title('INCREMENTS')
@@ -102,7 +99,7 @@ contains
    pure logical function is_begun(self)
       class(listing_type), intent(in) :: self
 
-      is_begun = allocated(self%warnings)
+      is_begun = allocated(self%diagrams)
    end function is_begun
 
    !> Writes what waits; of a draft all goes on waiting.
@@ -189,17 +186,6 @@ contains
       call write_text(self, ignored)
    end subroutine break_off
 
-   !> Takes the warnings of the run as a whole.
-   subroutine warn(self, warnings)
-      class(listing_type), intent(inout) :: self
-      type(string_type), intent(in) :: warnings(:)
-      integer :: i
-
-      do i = 1, size(warnings)
-         call append(self%warnings, warnings(i)%value)
-      end do
-   end subroutine warn
-
    !> Ends the listing that is open: verdicts, zone diagrams, all warnings again, times, the deck;
    !> then the summary in the room that was left for it.
    !> Error: status_internal, when its end cannot be written.
@@ -227,10 +213,7 @@ contains
          call self%page%line('  '//run%accuracy%rounds(i)%value)
       end do
       call print_unapproached(self%page, model%mesh%node_number, interfaces, self%summary)
-      warnings = model%warnings
-      do i = 1, size(self%warnings)
-         call append(warnings, self%warnings(i)%value)
-      end do
+      warnings = [model%warnings, run%warnings]
       call self%page%list('WARNINGS', warnings)
       if (size(warnings) == 0) then
          call self%page%line('')
@@ -258,15 +241,13 @@ contains
       call write_text(self, error)
       if (allocated(error)) return
       allocate (lines(0))
-      call append(lines, ending(allocated(self%failure), self%summary%increment, &
-         run%verify_failed, run%accuracy%missed /= '', run%accuracy%later_round))
+      call append(lines, ending(run, allocated(self%failure), self%summary%increment))
       call append(lines, checks(verifier, run))
       if (size(warnings) == 0) call append(lines, 'no warnings')
       if (size(warnings) > 0) call append(lines, counted(size(warnings), 'warning')// &
          ', see WARNINGS below')
       call self%summary%add_lines(model, interfaces, lines)
-      block = summary_block(lines, size(interfaces), size(model%steps), &
-         merge(model%mesh%body_count, 0, model%estimates_errors))
+      block = summary_block(lines, model)
       if (self%is_draft) then
          call self%page%take(whole)
          whole(self%summary_start + 1:self%summary_start + len(block)) = block

@@ -8,10 +8,10 @@ module listing_head
    use model, only: model_type
    use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
       open_law_words, open_words, overlap_words, pairing_words, points_words
-   use run_summaries, only: in_listing, or_blank, run_entries, run_entry_type, run_summary_type
+   use run_summaries, only: in_listing, run_entries, run_entry_type, run_summary_type
    use steps, only: solves_heat
    use summary, only: summary_type
-   use text, only: append, counted, string_type, to_text
+   use text, only: append, counted, or_blank, string_type, to_text
    use verification, only: verifier_type
    implicit none
    private
@@ -23,18 +23,17 @@ module listing_head
 contains
 
    !> How the run ended.
-   pure function ending(has_failed, increments, failed_checks, missed, later_round) result(line)
+   pure function ending(run, has_failed, increments) result(line)
+      type(run_summary_type), intent(in) :: run
       logical, intent(in) :: has_failed          !! whether it ended early
       integer, intent(in) :: increments          !! accepted ones
-      integer, intent(in) :: failed_checks
-      logical, intent(in) :: missed              !! whether a target of accuracy is not met
-      integer, intent(in) :: later_round         !! round that was begun after this one; 0 for none
       character(:), allocatable :: line
 
-      line = end_of_run(failed_checks, missed)//', '//counted(increments, 'increment')
+      line = end_of_run(run%verify_failed, run%accuracy%missed /= '')//', '// &
+         counted(increments, 'increment')
       ! Read only while that round is solved, or where it did not come to its end.
-      if (later_round > 0) line = line//'; round '//to_text(later_round)// &
-         ' is being solved, or see ENDED EARLY at the end'
+      if (run%accuracy%later_round > 0) line = line//'; round '// &
+         to_text(run%accuracy%later_round)//' is being solved, or see ENDED EARLY at the end'
       if (has_failed) line = 'ended early after '//counted(increments, 'increment')// &
          ', see ENDED EARLY below'
    end function ending
@@ -57,10 +56,9 @@ contains
 
    !> The summary as it is in the file: always as many lines of the same length, so that it can be
    !> written over.
-   pure function summary_block(lines, interfaces, steps, bodies) result(block)
+   pure function summary_block(lines, model) result(block)
       type(string_type), intent(in) :: lines(:)
-      integer, intent(in) :: interfaces, steps        !! number of each
-      integer, intent(in) :: bodies                   !! those with bounds
+      type(model_type), intent(in) :: model
       character(:), allocatable :: block
       type(summary_type) :: summary
       type(string_type), allocatable :: wrapped(:)
@@ -80,8 +78,7 @@ contains
          call append(wrapped, rest)
       end do
       block = ''
-      do i = 1, run_lines + summary%most_lines(interfaces, steps, bodies) + &
-         more_lines*max(interfaces, 1)
+      do i = 1, run_lines + summary%most_lines(model) + more_lines*max(size(model%contacts), 1)
          line = ''
          if (i <= size(wrapped)) line = wrapped(i)%value
          block = block//line//new_line('a')

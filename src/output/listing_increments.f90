@@ -85,7 +85,7 @@ contains
          if (quantities(i)%kind /= of_interface .or. quantities(i)%label == '') cycle
          quantity = quantities(i)
          if (quantity%needs == needs_heat .and. .not. allocated(contact%heat_flux)) cycle
-         value = contact_values(quantity%name, points, contact)
+         value = contact_values(quantity%name, contact)
          if (quantity%resolution > 0.0_dp) then
             edges = edges//told(quantity, value(1))
          else

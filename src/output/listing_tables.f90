@@ -15,9 +15,8 @@ module listing_tables
    use records, only: contact_record_type, element_points_record_type, field_record_type, &
       increment_record_type
    use reported_quantities, only: quantities
-   use run_summaries, only: or_blank
    use solution_report, only: iteration_record_type
-   use text, only: string_type, to_text
+   use text, only: or_blank, string_type, to_text
    use transforms, only: axes_at
    use verification, only: bound_words, outcome_type
    implicit none
@@ -57,7 +56,7 @@ contains
          if (columns(i)%is_geometry) then
             values(:, i) = geometry_values(columns(i)%name, points, node_number)
          else
-            values(:, i) = contact_values(columns(i)%name, points, contact)
+            values(:, i) = contact_values(columns(i)%name, contact)
          end if
       end do
       rows(0)%value = ' no.'//table_heads(columns)

@@ -15,6 +15,9 @@ module listing_text
    integer, parameter :: page_width = 132     !! columns of the line printer
    integer, parameter :: first_room = 4096    !! characters
 
+   !> Roman numerals of the zones, by their contact states.
+   character(3), parameter :: zone_numeral(contact_open:contact_stick) = ['  I', ' II', 'III']
+
    !> Lines that wait to be written to a file.
    type :: page_type
       private
@@ -288,28 +291,13 @@ contains
       end do
    end function table_row
 
-   !> The Roman numeral of a zone, set to the right.
-   pure function zone_numeral(contact_state) result(numeral)
-      integer, intent(in) :: contact_state !! contact_open, contact_slip or contact_stick
-      character(3) :: numeral         !! I, II or III
-
-      if (contact_state == contact_open) then
-         numeral = '  I'
-      else if (contact_state == contact_stick) then
-         numeral = 'III'
-      else
-         numeral = ' II'
-      end if
-   end function zone_numeral
-
    !> Numbers of contact points in the zones.
    pure function zone_counts(contact_state) result(counts)
       integer, intent(in) :: contact_state(:) !! (contact points) contact states
       integer :: counts(3)               !! contact points in zones I, II and III
+      integer :: i
 
-      counts(1) = count(contact_state == contact_open)
-      counts(3) = count(contact_state == contact_stick)
-      counts(2) = size(contact_state) - counts(1) - counts(3)
+      counts = [(count(contact_state == i), i=contact_open, contact_stick)]
    end function zone_counts
 
 end module listing_text

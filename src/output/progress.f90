@@ -21,12 +21,11 @@ module progress
       logical, public :: is_shown = .false. !! whether there is a terminal that wants it
       real(dp) :: last_update = 0.0_dp      !! when the line was last drawn [s]
       character(:), allocatable :: last     !! what the last increment came to
-      integer :: round = 0                  !! of a requested accuracy; 0: none
-      real(dp) :: since = 0.0_dp            !! when its run began [s]
+      integer, public :: round = 0          !! of a requested accuracy; 0: none
+      real(dp), public :: since = 0.0_dp    !! when its run began, as wall_seconds [s]
       character(line_length) :: line = ''   !! what is there
    contains
       procedure :: start
-      procedure :: of_round
       procedure :: begin_increment
       procedure :: take
       procedure :: say
@@ -44,16 +43,6 @@ contains
       if (self%is_shown) self%is_shown = is_terminal(2)
       self%last = ''
    end subroutine start
-
-   !> From now on the line tells the round of a requested accuracy and the time since its run began.
-   subroutine of_round(self, round, since)
-      class(progress_type), intent(inout) :: self   !! the line
-      integer, intent(in) :: round
-      real(dp), intent(in) :: since                 !! as wall_seconds [s]
-
-      self%round = round
-      self%since = since
-   end subroutine of_round
 
    !> Shows which increment is being solved, and what the last one came to. The line is drawn some
    !> times a second at most.

@@ -3,12 +3,10 @@
 module restart_results
    use hdf5_writer, only: as_real, hdf5_writer_type
    use kinds, only: dp
-   use model, only: unit_labels_type
    use records, only: increment_record_type
-   use result_tables, only: flush_sets, growing_dataset, growing_dataset_type
+   use growing_datasets, only: flush_sets, growing_dataset, growing_dataset_type
    use state_tables, only: state_table_type
    use text, only: string_type
-   use unit_labels, only: unit_in_words
    implicit none
    private
    public :: restart_results_type, restart_group, names_set, place_set, value_set
@@ -38,15 +36,14 @@ module restart_results
 contains
 
    !> Adds a restart, in the place of the last one where only one of each step is kept.
-   subroutine append(self, record, table, overlays, labels)
+   subroutine append(self, record, table, overlays)
       class(restart_results_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
       type(state_table_type), intent(in) :: table         !! state of the run, whole
       logical, intent(in) :: overlays                     !! whether only one of each step is kept
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       integer :: count
 
-      if (.not. allocated(self%sets)) call start(self, table, labels)
+      if (.not. allocated(self%sets)) call start(self, table)
       associate (places => self%sets(1), values => self%sets(2))
          if (overlays .and. self%step == record%step) then
             call places%cut(places%rows() - 1)
@@ -63,15 +60,14 @@ contains
    end subroutine append
 
    !> Prepares the datasets.
-   subroutine start(self, table, labels)
+   subroutine start(self, table)
       type(restart_results_type), intent(inout) :: self
       type(state_table_type), intent(in) :: table
-      type(unit_labels_type), intent(in) :: labels
       integer :: i
 
       allocate (self%names(table%arrays), self%sets(2))
       self%sets(1) = growing_dataset(place_set, as_real, place_columns, 1, 1000, &
-         'where each state is, and how many values it has', unit_in_words('time', labels))
+         'where each state is, and how many values it has', 'time')
       self%sets(1)%components = 'increment step increment_in_step time values'
       self%sets(2) = growing_dataset(value_set, as_real, 0, min(most_in_chunk, &
          table%arrays + table%count), 10, &
@@ -82,15 +78,14 @@ contains
    end subroutine start
 
    !> Goes on behind the first restarts of an earlier file.
-   subroutine go_on(self, file, table, counts, labels)
+   subroutine go_on(self, file, table, counts)
       class(restart_results_type), intent(inout) :: self  !! empty
       type(hdf5_writer_type), intent(inout) :: file       !! the open file
       type(state_table_type), intent(in) :: table         !! the last of those that are kept
       integer, intent(in) :: counts(2)                    !! restarts that are kept, their values
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       integer :: i
 
-      call start(self, table, labels)
+      call start(self, table)
       do i = 1, size(self%sets)
          call self%sets(i)%go_on(file, counts(i))
       end do

@@ -15,13 +15,13 @@ module result_fields
    use hdf5_writer, only: as_byte, as_integer, as_long, as_real, hdf5_writer_type
    use increment_quantities, only: part_values
    use kinds, only: dp
-   use model, only: model_type, unit_labels_type
+   use model, only: model_type
    use quantity_types, only: of_contact_points, of_elements, of_points, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets
-   use result_tables, only: flush_sets, growing_dataset, growing_dataset_type, quantity_dataset, &
-      write_geometry
-   use unit_labels, only: unit_in_words
+   use growing_datasets, only: flush_sets, growing_dataset, growing_dataset_type, &
+      quantity_dataset, write_integers, write_once
+   use result_tables, only: write_geometry
    implicit none
    private
    public :: field_results_type, contact_grid_type, node_sets, cell_sets, interface_sets, &
@@ -117,7 +117,7 @@ contains
       fields = datasets(of_points, has)
       if (size(interfaces) > 0) fields = [fields, on_faces(datasets(of_contact_points, has))]
       call self%start_grid(fields, datasets(of_elements, has), size(point_node), &
-         size(model%mesh%element_kind), expected, model%units)
+         size(model%mesh%element_kind), expected)
    end subroutine start
 
    !> Unit vectors from the origin to points; along x at the origin itself.
@@ -201,7 +201,7 @@ contains
       values = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, self%points)
       do i = 1, size(interfaces)
          associate (at_nodes => interfaces(i)%at_face_nodes, &
-            of_points => contact_values(name, interfaces(i), record%contacts(i)))
+            of_points => contact_values(name, record%contacts(i)))
             if (name == 'status') then
                ! Not interpolated: that of the nearest contact point.
                face = [(nearest_value(at_nodes%coefficients_of(k), &
@@ -244,42 +244,38 @@ contains
             cell_points(offsets(e - 1) + 1:offsets(e)) = &
                element_points(:offsets(e) - offsets(e - 1), e)
          end do
-         call write_grid(file, points, cell_points, offsets, vtk_types(mesh%element_kind), &
-            model%units)
-         call file%write(point_group//node_sets(1), mesh%node_number(self%point_node), as_integer, &
-            'number of the node in the deck')
-         call file%write(cell_group//trim(cell_sets(1)), mesh%element_number, as_integer, &
-            'number of the element in the deck')
-         call file%write(cell_group//trim(cell_sets(2)), mesh%element_body, as_integer, &
+         call write_grid(file, points, cell_points, offsets, vtk_types(mesh%element_kind))
+         call write_integers(file, point_group//node_sets(1), mesh%node_number(self%point_node), &
+            as_integer, 'number of the node in the deck')
+         call write_integers(file, cell_group//trim(cell_sets(1)), mesh%element_number, &
+            as_integer, 'number of the element in the deck')
+         call write_integers(file, cell_group//trim(cell_sets(2)), mesh%element_body, as_integer, &
             'number of the body, from 1')
-         call file%write(cell_group//trim(cell_sets(3)), &
+         call write_integers(file, cell_group//trim(cell_sets(3)), &
             model%sections(mesh%element_section)%material, as_integer, &
             'number of the *MATERIAL in the deck, from 1')
       end associate
    end subroutine write_head
 
    !> Adds the contact points of an increment.
-   subroutine append_contact(self, record, interfaces)
+   subroutine append_contact(self, record)
       class(contact_grid_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
-      type(contact_points_type), intent(in) :: interfaces(:)
       integer :: i, k
 
       do k = 1, size(self%sets)
-         do i = 1, size(interfaces)
-            call self%sets(k)%append(contact_values(self%point_data(k)%name, interfaces(i), &
-               record%contacts(i)))
+         do i = 1, size(record%contacts)
+            call self%sets(k)%append(contact_values(self%point_data(k)%name, record%contacts(i)))
          end do
       end do
       call self%append_time(record%time)
    end subroutine append_contact
 
    !> Writes the lines and what does not vary: numbers of nodes, arc lengths, weights.
-   subroutine write_contact_head(file, interfaces, node_number, labels)
+   subroutine write_contact_head(file, interfaces, node_number)
       type(hdf5_writer_type), intent(inout) :: file       !! the open file
       type(contact_points_type), intent(in) :: interfaces(:)
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       real(dp), allocatable :: points(:, :)
       integer, allocatable :: ends(:), interface_of(:)
       integer :: first, i, k, m
@@ -299,37 +295,36 @@ contains
          first = first + m
       end do
       call write_grid(file, points, ends, [(2*k, k=0, size(interface_of))], &
-         [(vtk_line, k=1, size(interface_of))], labels)
-      call write_geometry(file, point_group, interfaces, node_number, labels)
-      call file%write(cell_group//interface_sets(1), interface_of, as_integer, &
+         [(vtk_line, k=1, size(interface_of))])
+      call write_geometry(file, point_group, interfaces, node_number)
+      call write_integers(file, cell_group//interface_sets(1), interface_of, as_integer, &
          'number of the *CONTACT PAIR, from 1')
    end subroutine write_contact_head
 
    !> Creates the groups of a grid in one part and writes its points and cells.
-   subroutine write_grid(file, points, cell_points, offsets, types, labels)
+   subroutine write_grid(file, points, cell_points, offsets, types)
       type(hdf5_writer_type), intent(inout) :: file       !! the open file
       real(dp), intent(in) :: points(:, :)                !! (3, points) [length]
       integer, intent(in) :: cell_points(:)               !! points of each cell, from 1
       integer, intent(in) :: offsets(:)                   !! (cells + 1) from 0
       integer, intent(in) :: types(:)                     !! (cells) VTK's
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
 
       call file%create_group(grid_group)
       call file%set_fixed_text(grid_group, 'Type', 'UnstructuredGrid')
       call file%set(grid_group, 'Version', [2, 0])
-      call file%write(grid_group//'/NumberOfPoints', [size(points, 2)], as_long, 'points')
-      call file%write(grid_group//'/NumberOfCells', [size(types)], as_long, 'cells')
-      call file%write(grid_group//'/NumberOfConnectivityIds', [size(cell_points)], as_long, &
-         'entries of Connectivity')
+      call write_integers(file, grid_group//'/NumberOfPoints', [size(points, 2)], as_long, 'points')
+      call write_integers(file, grid_group//'/NumberOfCells', [size(types)], as_long, 'cells')
+      call write_integers(file, grid_group//'/NumberOfConnectivityIds', [size(cell_points)], &
+         as_long, 'entries of Connectivity')
       ! VTK counts from 0.
-      call file%write(grid_group//'/Connectivity', cell_points - 1, as_long, &
+      call write_integers(file, grid_group//'/Connectivity', cell_points - 1, as_long, &
          'points of every cell, from 0')
-      call file%write(grid_group//'/Offsets', offsets, as_long, &
+      call write_integers(file, grid_group//'/Offsets', offsets, as_long, &
          'first entry of every cell in Connectivity')
-      call file%write(grid_group//'/Types', types, as_byte, &
+      call write_integers(file, grid_group//'/Types', types, as_byte, &
          'VTK cell types: 3 line, 5, 22 triangle, 9, 23 four-sided')
-      call file%write(grid_group//'/Points', points, 'coordinates before deformation', &
-         unit_in_words('length', labels))
+      call write_once(file, growing_dataset(grid_group//'/Points', as_real, 3, 1, 1, &
+         'coordinates before deformation', 'length'), [points])
       call file%create_group(point_group)
       call file%create_group(cell_group)
       call file%create_group(steps_group)
@@ -338,13 +333,12 @@ contains
    end subroutine write_grid
 
    !> Prepares the datasets.
-   pure subroutine start_grid(self, point_data, cell_data, points, cells, expected, labels)
+   pure subroutine start_grid(self, point_data, cell_data, points, cells, expected)
       class(vtk_grid_type), intent(inout) :: self
       type(quantity_type), intent(in) :: point_data(:)    !! those that grow, at least one
       type(quantity_type), intent(in) :: cell_data(:)     !! those that grow
       integer, intent(in) :: points, cells                !! of the grid
       integer, intent(in) :: expected                     !! increments that are expected
-      type(unit_labels_type), intent(in) :: labels        !! units of the deck
       character(:), allocatable :: path
       integer :: i, n
 
@@ -355,10 +349,10 @@ contains
       n = size(point_data)
       allocate(self%sets(n + size(cell_data)), self%steps(merge(6, 5, size(cell_data) > 0)))
       do i = 1, n
-         self%sets(i) = quantity_dataset(point_group, point_data(i), labels, points, expected)
+         self%sets(i) = quantity_dataset(point_group, point_data(i), points, expected)
       end do
       do i = 1, size(cell_data)
-         self%sets(n + i) = quantity_dataset(cell_group, cell_data(i), labels, cells, expected)
+         self%sets(n + i) = quantity_dataset(cell_group, cell_data(i), cells, expected)
       end do
       do i = 1, size(self%steps)
          path = trim(step_sets(i))

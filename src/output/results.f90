@@ -13,9 +13,9 @@ module results
    use due_output, only: fields_are_due
    use errors, only: error_type
    use field_quantities, only: maxima
-   use file_calls, only: identity_of, remove_file, rename_file
-   use result_tables, only: bounded, bytes_in, flush_sets, result_table_type, &
-      write_geometry
+   use file_calls, only: identity_of, remove_file, rename_file, try_file
+   use growing_datasets, only: bytes_in, flush_sets
+   use result_tables, only: bounded, result_table_type, write_geometry
    use equations, only: section_nodes
    use hdf5_writer, only: end_hdf5, hdf5_writer_type, start_hdf5
    use kinds, only: dp, long
@@ -31,13 +31,13 @@ module results
    use restart_results, only: restart_results_type
    use result_fields, only: cell_sets, contact_grid_type, field_results_type, interface_sets, &
       node_sets
-   use run_summaries, only: or_blank, run_summary_type, write_run
+   use run_summaries, only: run_summary_type, write_run
    use solution_report, only: iteration_record_type
    use state_tables, only: integers, state_table_type
    use status_files, only: status_file_type
    use steps, only: dof_temperature, planned_increments, solves_heat, solves_mechanics
    use clock, only: wall_seconds
-   use text, only: string_type, to_text
+   use text, only: or_blank, string_type, to_text
    use unit_labels, only: unit_in_words
    use working_files, only: working_file_type
    implicit none
@@ -97,9 +97,9 @@ contains
       call self%contact_file%start(path//contact_end)
       call self%increments%start_increments(path//'.sta')
       call self%passes%start_iterations(path//'.cvg')
-      call self%increments%reserve(error)
+      call try_file(path//'.sta', error)
       if (allocated(error)) return
-      call self%passes%reserve(error)
+      call try_file(path//'.cvg', error)
       if (allocated(error)) return
       call self%file%reserve(has_lock, error)
       if (allocated(error)) return
@@ -143,6 +143,8 @@ contains
 
       call start_hdf5(error)
       if (allocated(error)) return
+      self%file%content%labels = model%units
+      self%contact_file%content%labels = model%units
       self%element_points = element_points
       self%cards = cards
       has = what_is_solved(model, size(interfaces) > 0)
@@ -152,34 +154,31 @@ contains
       call self%fields%start(model, interfaces, point_node, has, expected)
       self%has_contact = n > 0
       if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
-         [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected, &
-         model%units)
+         [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected)
       allocate (self%tables(4 + 2*n + merge(model%mesh%body_count, 0, model%estimates_errors)))
-      associate (tables => self%tables, units => model%units, steps => size(model%steps))
+      associate (tables => self%tables, steps => size(model%steps))
          of_stability = datasets(of_history, has)
          of_history_alone = pack(of_stability, of_stability%needs /= needs_stability)
          of_stability = pack(of_stability, of_stability%needs == needs_stability)
          if (size(of_stability) > 0) of_stability = [of_history_alone(1), of_stability]
-         call tables(stability)%start('/stability', of_stability, 0, expected, units)
+         call tables(stability)%start('/stability', of_stability, 0, expected)
          of_cuts = datasets(of_sections, has)
          of_cuts%values = size(section_nodes(model%couplings))
          call tables(history)%start('/history', [of_history_alone, of_cuts, &
-            datasets(of_bodies, has)], model%mesh%body_count, expected, units)
-         call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected, &
-            units)
+            datasets(of_bodies, has)], model%mesh%body_count, expected)
+         call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected)
          do i = 1, n
             call tables(3 + i)%start('/contact/'//interfaces(i)%name, &
                [datasets(of_contact_points, has), datasets(of_interface, has)], &
-               size(interfaces(i)%slave), expected, units)
+               size(interfaces(i)%slave), expected)
          end do
-         call tables(4 + n)%start('/errors', [step_time], 0, steps, units)
+         call tables(4 + n)%start('/errors', [step_time], 0, steps)
          do i = 1, n
             call tables(4 + n + i)%start('/errors/'//interfaces(i)%name, bounded(estimated), 0, &
-               steps, units)
+               steps)
          end do
          do i = 1, size(tables) - (4 + 2*n)
-            call tables(4 + 2*n + i)%start('/errors/body '//to_text(i), bounded(maxima), 0, steps, &
-               units)
+            call tables(4 + 2*n + i)%start('/errors/body '//to_text(i), bounded(maxima), 0, steps)
          end do
       end associate
    end subroutine open_results
@@ -211,11 +210,11 @@ contains
             ! Steps that are new may be the first to have such rows.
             if (.not. file%has(self%tables(i)%group)) call file%create_group(self%tables(i)%group)
             do k = 1, size(self%tables(i)%sets)
-               call self%tables(i)%sets(k)%go_on(file, rows(row_of(self, i)))
+               call self%tables(i)%sets(k)%go_on(file, rows(2 + i))
             end do
          end do
-         call self%fields%go_on(file, rows(3))
-         call self%restarts%go_on(file, restart, counts, model%units)
+         call self%fields%go_on(file, rows(2))
+         call self%restarts%go_on(file, restart, counts)
          call file%remove('/errors/reasons')
          call write_reasons(file, model)
          call file%remove('/deck')
@@ -233,38 +232,6 @@ contains
       if (allocated(error)) call self%give_up()
    end subroutine go_on
 
-   !> Which number of rows is that of a table: of the increments, the passes, the ends of steps, or
-   !> the analyses of stability.
-   pure integer function row_of(self, i)
-      class(results_type), intent(in) :: self
-      integer, intent(in) :: i                            ! index of the table
-
-      row_of = 1
-      if (i == convergence) row_of = 2
-      if (index(self%tables(i)%group, '/errors') == 1) row_of = 4
-      if (i == stability) row_of = 5
-   end function row_of
-
-   !> Adds a restart, with the rows of all datasets at its increment.
-   subroutine add_restart(self, record, model, restart)
-      class(results_type), intent(inout) :: self
-      type(increment_record_type), intent(in) :: record
-      type(model_type), intent(in) :: model
-      type(state_table_type), intent(inout) :: restart
-      integer, allocatable :: rows(:)
-
-      associate (last => self%tables(size(self%tables)))
-         rows = [self%accepted, self%tables(convergence)%sets(1)%rows(), self%fields%increments, &
-            last%sets(1)%rows(), 0]
-         if (size(self%tables(stability)%sets) > 0) rows(5) = self%tables(stability)%sets(1)%rows()
-      end associate
-      call integers(restart, 'rows', rows)
-      call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts, &
-         model%units)
-      self%file%is_synced = .true.
-      self%contact_file%is_synced = .true.
-   end subroutine add_restart
-
    !> Adds an accepted increment; publishes where that is due. The last increment of the last step
    !> waits for `finish`.
    !> Error: status_internal, when a file cannot be written.
@@ -275,12 +242,12 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run           !! the run so far
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(state_table_type), intent(inout), optional :: restart   !! of the run, where one is due
-      real(dp) :: since
+      !> Of the run, where one is due; receives the rows of all datasets
+      type(state_table_type), intent(inout), optional :: restart
+      integer, allocatable :: rows(:)
       logical :: is_due, ends_run
       integer :: i, n
 
-      since = wall_seconds()
       self%accepted = self%accepted + 1
       call self%tables(history)%append(record)
       call self%increments%add_increment(record)
@@ -290,9 +257,9 @@ contains
          call self%passes%add_iterations(record%iterations)
       end if
       do i = 1, size(interfaces)
-         call self%tables(3 + i)%append(interfaces(i), record%contacts(i))
+         call self%tables(3 + i)%append(record%contacts(i))
       end do
-      if (self%has_contact) call self%contact_grid%append(record, interfaces)
+      if (self%has_contact) call self%contact_grid%append(record)
       if (allocated(record%errors)) then
          n = size(interfaces)
          call self%tables(4 + n)%append(record)
@@ -304,7 +271,14 @@ contains
          end do
       end if
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
-      if (present(restart)) call add_restart(self, record, model, restart)
+      if (present(restart)) then
+         rows = [self%accepted, self%fields%increments, (self%tables(i)%rows(), &
+            i=1, size(self%tables))]
+         call integers(restart, 'rows', rows)
+         call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts)
+         self%file%is_synced = .true.
+         self%contact_file%is_synced = .true.
+      end if
       is_due = self%file%is_due()
       ends_run = record%last_of_step .and. record%step == size(model%steps)
       if ((record%last_of_step .or. is_due) .and. .not. (ends_run .or. self%is_draft)) then
@@ -312,11 +286,7 @@ contains
       else if (waiting_bytes(self) > memory_limit) then
          call flush_all(self, model, interfaces)
          call self%file%check(error)
-         if (self%has_contact .and. .not. allocated(error)) then
-            call flush_contact(self, model, interfaces)
-            call self%contact_file%check(error)
-         end if
-         call self%file%charge(since, ended=.false.)
+         if (.not. allocated(error)) call self%contact_file%check(error)
       end if
       if (allocated(error)) call self%give_up()
    end subroutine append
@@ -416,12 +386,10 @@ contains
       until_now = run
       until_now%seconds_write = run%seconds_write + (wall_seconds() - since)
       call write_run(self%file%content, until_now, model)
-      if (present(accuracy)) call write_accuracy(self%file%content, accuracy, interfaces, &
-         model%units)
+      if (present(accuracy)) call write_accuracy(self%file%content, accuracy, interfaces)
       call self%file%close(error)
       if (allocated(error)) return
       if (self%has_contact) then
-         call flush_contact(self, model, interfaces)
          call self%contact_file%close(error)
          if (.not. allocated(error)) call self%contact_file%put_in_place(error)
       else
@@ -440,21 +408,8 @@ contains
       call self%passes%write_waiting(error)
       if (allocated(error)) return
       call self%increments%write_waiting(error)
-      call self%file%charge(since, ended=.true.)
+      call self%file%note_publishing(since)
    end subroutine publish
-
-   subroutine flush_contact(self, model, interfaces)
-      class(results_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(contact_points_type), intent(in) :: interfaces(:)
-      logical :: is_new
-
-      call self%contact_file%open(is_new)
-      if (is_new) call self%contact_grid%write_head(self%contact_file%content, interfaces, &
-         model%mesh%node_number, model%units)
-      call self%contact_grid%flush_grid(self%contact_file%content, .not. &
-         self%contact_file%in_place, geometry%name, interface_sets)
-   end subroutine flush_contact
 
    subroutine flush_all(self, model, interfaces)
       class(results_type), intent(inout) :: self
@@ -471,11 +426,19 @@ contains
          do i = 1, size(self%tables)
             call flush_sets(self%tables(i)%sets, file)
          end do
-         if (.not. is_new) return
-         call file%set('/history/load', 'label', or_blank(model%load_label))
-         call file%set('/history/load', 'unit', unit_in_words(trim(merge( &
-            'time       ', merge('temperature', 'length     ', model%load_dof == dof_temperature), &
-            model%load_dof == 0)), model%units))
+         if (is_new) then
+            call file%set('/history/load', 'label', or_blank(model%load_label))
+            call file%set('/history/load', 'unit', unit_in_words(trim(merge('time       ', &
+               merge('temperature', 'length     ', model%load_dof == dof_temperature), &
+               model%load_dof == 0)), model%units))
+         end if
+      end associate
+      if (.not. self%has_contact) return
+      call self%contact_file%open(is_new)
+      associate (file => self%contact_file%content)
+         if (is_new) call self%contact_grid%write_head(file, interfaces, model%mesh%node_number)
+         call self%contact_grid%flush_grid(file, .not. self%contact_file%in_place, &
+            geometry%name, interface_sets)
       end associate
    end subroutine flush_all
 
@@ -496,8 +459,7 @@ contains
                call file%set(group, 'friction', &
                   model%interactions(model%contacts(i)%interaction)%friction%coefficient)
                call file%set(group, 'pairing', pairing_name(interfaces(i)%pairing))
-               call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number, &
-                  model%units)
+               call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number)
             end associate
          end do
          call write_reasons(file, model)

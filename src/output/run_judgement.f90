@@ -48,12 +48,12 @@ module run_judgement
       real(dp) :: largest(2) = 0.0_dp              !! strain and rotation so far [-], [radian]
       integer :: element(2) = 0                    !! elements that have them
       integer :: increment(2) = 0                  !! increments that have them
-      logical, public :: ended_early = .false.     !! whether the run failed
+      !> Whether the run failed, so that what never happened might still have done
+      logical, public :: ended_early = .false.
       type(warning_summary_type) :: repeated       !! warnings of its increments
    contains
       procedure :: take
       procedure :: exchange
-      procedure :: fail
       procedure :: warnings
    end type run_judgement_type
 
@@ -119,13 +119,6 @@ contains
       self%increment = places(3:)
    end subroutine exchange
 
-   !> Notes that the run ended early, so that what never happened might still have done.
-   pure subroutine fail(self)
-      class(run_judgement_type), intent(inout) :: self    !! what was seen
-
-      self%ended_early = .true.
-   end subroutine fail
-
    !> The warnings on the run.
    pure function warnings(self, model, interfaces) result(lines)
       class(run_judgement_type), intent(in) :: self       !! what was seen
@@ -177,7 +170,7 @@ contains
       class(warning_summary_type), intent(inout) :: self
       integer, intent(in) :: increment               !! its running number
       type(warning_type), intent(in) :: warnings(:)
-      type(kind_type), allocatable :: more(:)
+      type(kind_type) :: kind
       integer :: i, k
 
       if (.not. allocated(self%kinds)) allocate (self%kinds(0))
@@ -186,12 +179,10 @@ contains
             if (self%kinds(k)%worst%is_like(warnings(i))) exit
          end do
          if (k > size(self%kinds)) then
-            allocate (more(k))
-            more(:k - 1) = self%kinds
-            more(k)%first = increment
-            more(k)%at = increment
-            more(k)%worst = warnings(i)
-            call move_alloc(more, self%kinds)
+            kind%first = increment
+            kind%at = increment
+            kind%worst = warnings(i)
+            self%kinds = [self%kinds, kind]
          end if
          associate (kind => self%kinds(k))
             if (kind%last < increment) kind%count = kind%count + 1

@@ -17,15 +17,15 @@ module run_output
    use records, only: increment_record_type
    use results, only: results_type
    use run_judgement, only: run_judgement_type
-   use run_summaries, only: or_blank, run_summary_type
+   use run_summaries, only: run_summary_type
    use clock, only: wall_seconds
    use solution_report, only: iteration_record_type
    use state_tables, only: state_table_type
-   use text, only: append, counted, string_type, to_text
+   use text, only: append, counted, or_blank, string_type, to_text
    use verification, only: failure_words, verifier_type
    implicit none
    private
-   public :: run_output_type, paths_written
+   public :: run_output_type
 
    !> The output of one run.
    type :: run_output_type
@@ -34,9 +34,9 @@ module run_output
       type(run_summary_type), public :: run
       type(results_type), public :: results                    !! result file, `.sta`, `.cvg`
       type(listing_type), public :: listing                    !! `.lst`
-      type(verifier_type) :: verifier                          !! *VERIFY cards
+      type(verifier_type), public :: verifier                          !! *VERIFY cards
       type(progress_type), public :: progress                  !! progress line
-      type(run_judgement_type) :: judgement                    !! what the whole run shows
+      type(run_judgement_type), public :: judgement                    !! what the whole run shows
       integer, public :: kept_round = 0                        !! round in the files; 0 for none
       type(iteration_record_type), allocatable :: failed(:)    !! passes of an increment that failed
       integer, allocatable :: point_node(:)                    !! (points) node index of each point
@@ -44,7 +44,6 @@ module run_output
    contains
       procedure :: reserve
       procedure :: start
-      procedure :: go_on
       procedure :: accept
       procedure :: fail
       procedure :: finish
@@ -56,20 +55,6 @@ module run_output
    end type run_output_type
 
 contains
-
-   !> Paths of all files that a run may write.
-   pure function paths_written(path) result(paths)
-      character(*), intent(in) :: path                    !! path of the results without extension
-      type(string_type), allocatable :: paths(:)
-      character(*), parameter :: extensions(5) = [character(16) :: '.lst', '.sta', '.cvg', &
-         '.vtkhdf', '.contact.vtkhdf']
-      integer :: i
-
-      allocate (paths(size(extensions)))
-      do i = 1, size(extensions)
-         paths(i)%value = path//trim(extensions(i))
-      end do
-   end function paths_written
 
    !> Tries whether all files of a run can be written, before anything is solved, and locks them
    !> against other runs of the same name. They are left as they are; close the listing in any case.
@@ -111,21 +96,6 @@ contains
       call self%results%open(model, interfaces, point_node, element_points, cards, error)
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine start
-
-   !> Goes on behind an earlier result, as results_type's go_on.
-   !> Error: status_internal, when a file cannot be written.
-   subroutine go_on(self, path, restart, counts, model, error)
-      class(run_output_type), intent(inout) :: self       !! started
-      character(*), intent(in) :: path                    !! of that result
-      type(state_table_type), intent(inout) :: restart    !! state of its run, to be restored
-      integer, intent(in) :: counts(2)                    !! restarts up to it, their values
-      type(model_type), intent(in) :: model
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
-
-      call self%verifier%exchange(restart)
-      call self%judgement%exchange(restart)
-      call self%results%go_on(path, restart, counts, model, error)
-   end subroutine go_on
 
    !> Takes an accepted increment.
    !> Error: status_internal, when a file cannot be written.
@@ -181,7 +151,7 @@ contains
          return
       end if
       if (allocated(record%iterations)) self%failed = record%iterations
-      call self%judgement%fail()
+      self%judgement%ended_early = .true.
       call self%listing%end_early(reason, record, words_of_kept(self%results%accepted))
    end subroutine fail
 
@@ -195,7 +165,6 @@ contains
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(accuracy_rounds_type), intent(in) :: accuracy  !! rounds of a requested accuracy
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(string_type), allocatable :: warnings(:)
       real(dp) :: since
       integer :: counts(3)
 
@@ -217,10 +186,9 @@ contains
       self%kept_round = 0
       self%is_finished = .true.
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
-      warnings = self%judgement%warnings(model, interfaces)
-      call self%listing%warn(warnings)
+      self%run%warnings = self%judgement%warnings(model, interfaces)
       call self%listing%finish(model, interfaces, cards, self%verifier, self%run, error)
-      if (self%run%accuracy%later_round == 0) call print_warnings(self, warnings)
+      if (self%run%accuracy%later_round == 0) call print_warnings(self, self%run%warnings)
    end subroutine finish
 
    !> Ends the listing with the reason why the other files could not be written.

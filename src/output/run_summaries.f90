@@ -7,10 +7,10 @@ module run_summaries
    use model, only: model_type
    use model_words, only: expansion_words, from_to, material_words, section_words, step_words
    use run_sizes, only: run_seconds_type, run_size_type
-   use text, only: string_type, to_text
+   use text, only: or_blank, string_type, to_text
    implicit none
    private
-   public :: run_summary_type, accuracy_words_type, run_entry_type, run_entries, write_run, or_blank
+   public :: run_summary_type, accuracy_words_type, run_entry_type, run_entries, write_run
    public :: in_listing, in_check, in_times, stages
 
    ! Where an entry is told.
@@ -55,6 +55,7 @@ module run_summaries
       integer :: verify_passed = 0               !! *VERIFY checks that passed
       integer :: verify_failed = 0               !! *VERIFY checks that failed
       type(accuracy_words_type) :: accuracy      !! a requested accuracy, once a round ended
+      type(string_type), allocatable :: warnings(:)   !! on the run as a whole, once it has ended
    end type run_summary_type
 
    !> A fact about a run.
@@ -70,15 +71,6 @@ module run_summaries
    end type run_entry_type
 
 contains
-
-   !> Text that may not have been given.
-   pure function or_blank(text) result(string)
-      character(:), allocatable, intent(in) :: text   !! the text, or unallocated
-      character(:), allocatable :: string             !! the text, or nothing
-
-      string = ''
-      if (allocated(text)) string = text
-   end function or_blank
 
    !> Whether an entry is told somewhere.
    pure logical function is_told(self, where)
@@ -177,34 +169,30 @@ contains
       character(*), intent(in) :: label
       class(*), intent(in) :: value
       character(*), intent(in), optional :: attribute, behind
-      type(run_entry_type), allocatable :: more(:)
+      type(run_entry_type) :: entry
 
-      allocate (more(size(entries) + 1))
-      more(:size(entries)) = entries
-      associate (entry => more(size(more)))
-         entry%told = told
-         entry%label = label
-         entry%attribute = ''
-         if (present(attribute)) entry%attribute = attribute
-         select type (value)
-         type is (character(*))
-            entry%words = value
-         type is (integer)
-            entry%kind = 'integer'
-            entry%number = value
-            entry%words = to_text(value)
-         type is (integer(long))
-            entry%kind = 'long'
-            entry%number = value
-            entry%words = to_text(entry%number)
-         type is (real(dp))
-            entry%kind = 'real'
-            entry%number = value
-            entry%words = to_text(value)
-         end select
-         if (present(behind)) entry%words = entry%words//behind
-      end associate
-      call move_alloc(more, entries)
+      entry%told = told
+      entry%label = label
+      entry%attribute = ''
+      if (present(attribute)) entry%attribute = attribute
+      select type (value)
+      type is (character(*))
+         entry%words = value
+      type is (integer)
+         entry%kind = 'integer'
+         entry%number = value
+         entry%words = to_text(value)
+      type is (integer(long))
+         entry%kind = 'long'
+         entry%number = value
+         entry%words = to_text(entry%number)
+      type is (real(dp))
+         entry%kind = 'real'
+         entry%number = value
+         entry%words = to_text(value)
+      end select
+      if (present(behind)) entry%words = entry%words//behind
+      entries = [entries, entry]
    end subroutine add
 
    !> Writes the attributes of `/run`, over those of an earlier publishing.

@@ -2,7 +2,7 @@
 !> here until the result file that holds their increments is in place.
 module status_files
    use errors, only: error_type
-   use file_calls, only: check_in_place, read_file, try_file
+   use file_calls, only: check_in_place, read_file
    use increment_quantities, only: history_value, pass_value
    use listing_text, only: column, page_type, table_heads, table_row, to_right
    use open_files, only: close_descriptor, open_new_file, write_to_file
@@ -30,7 +30,6 @@ module status_files
       procedure :: start_iterations
       procedure :: add_increment
       procedure :: add_iterations
-      procedure :: reserve
       procedure :: go_on
       procedure :: empty
       procedure :: write_waiting
@@ -90,15 +89,6 @@ contains
          end associate
       end do
    end subroutine add_iterations
-
-   !> Tries whether the file can be written, and leaves it as it is.
-   !> Error: status_internal, when it cannot.
-   subroutine reserve(self, error)
-      class(status_file_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: error !! what went wrong
-
-      call try_file(self%path, error)
-   end subroutine reserve
 
    !> Goes on behind the lines of an earlier file up to an increment, as far as it has them.
    subroutine go_on(self, path, increment)

@@ -15,8 +15,7 @@ module summary
    use quantity_types, only: needs_heat, quantity_type
    use records, only: body_errors_type, contact_record_type, increment_record_type, &
       interface_errors_type
-   use run_summaries, only: or_blank
-   use text, only: append, few_digits, percent, string_type, to_text
+   use text, only: append, few_digits, or_blank, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private
@@ -113,7 +112,7 @@ contains
 
       columns(1) = to_text(record%time)
       do k = 1, size(step_quantities)
-         value = contact_values(step_quantities(k), points, contact)
+         value = contact_values(step_quantities(k), contact)
          columns(k + 1) = to_text(value(1))
          if (ieee_is_nan(value(1)) .or. (step_quantities(k) == 'heat_rate' .and. &
             .not. allocated(contact%heat_flux))) columns(k + 1) = '-'
@@ -126,15 +125,17 @@ contains
    end function step_line
 
    !> Most lines that there can be.
-   pure integer function most_lines(interfaces, steps, bodies)
-      integer, intent(in) :: interfaces, steps   !! number of each
-      integer, intent(in) :: bodies              !! those with bounds
+   pure integer function most_lines(model)
+      type(model_type), intent(in) :: model
 
-      most_lines = 2 + interfaces*(1 + size(estimated))
-      if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
-      if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
+      associate (interfaces => size(model%contacts), steps => size(model%steps))
+         most_lines = 2 + interfaces*(1 + size(estimated))
+         if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
+         if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
+      end associate
       ! Some of a body's lines are wrapped.
-      most_lines = most_lines + bodies*2*(1 + size(maxima))
+      if (model%estimates_errors) most_lines = most_lines + &
+         model%mesh%body_count*2*(1 + size(maxima))
    end function most_lines
 
    !> Adds when that increment was and where a branch turned, then each interface with a line for
@@ -285,7 +286,7 @@ contains
 
       do q = 1, size(estimated)
          if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
-         values = contact_values(estimated(q)%name, points, self%contacts(i))
+         values = contact_values(estimated(q)%name, self%contacts(i))
          zone = zone_words(estimated(q)%name, self%contacts(i))
          name = words_of(estimated(q)%name)
          if (ieee_is_nan(values(1))) then

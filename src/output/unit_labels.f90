@@ -1,7 +1,7 @@
 !> Units of reported quantities in the labels of *OPTIONS, UNITS=.
 module unit_labels
    use model, only: unit_labels_type
-   use run_summaries, only: or_blank
+   use text, only: or_blank
    implicit none
    private
    public :: unit_label, unit_in_words

@@ -15,7 +15,7 @@ module verification
    use quantity_types, only: find_quantity, of_history, of_nodes, of_sections, quantity_type
    use records, only: contact_record_type, increment_record_type, interface_errors_type
    use reported_quantities, only: verifiable
-   use state_tables, only: logicals, reals, state_table_type, words
+   use state_tables, only: reals, state_table_type, words
    use text, only: few_digits, percent, read_integer, read_real, to_text, to_upper
    implicit none
    private
@@ -84,42 +84,39 @@ contains
       class(verifier_type), intent(inout) :: self   !! started
       type(state_table_type), intent(inout) :: table
       character(:), allocatable :: reasons
-      logical, allocatable :: flags(:)
       real(dp), allocatable :: values(:)
-      integer :: first, i, n
+      real(dp) :: rows(7, size(self%outcomes))
+      integer :: first, i
 
-      n = size(self%outcomes)
       reasons = ''
-      values = [self%outcomes%time, self%outcomes%found, self%outcomes%deviation, &
-         spread(0.0_dp, 1, n)]
-      flags = [self%outcomes%judged, self%outcomes%passed, spread(.false., 1, n)]
-      do i = 1, n
+      do i = 1, size(self%outcomes)
          associate (outcome => self%outcomes(i))
+            rows(:, i) = [outcome%time, outcome%found, outcome%deviation, merge(1.0_dp, 0.0_dp, &
+               [outcome%judged, outcome%passed, allocated(outcome%bound)]), &
+               real(outcome%no_estimate, dp)]
+            if (allocated(outcome%bound)) rows(7, i) = outcome%bound
             if (outcome%judged) reasons = reasons//outcome%reason//new_line('a')
-            flags(2*n + i) = allocated(outcome%bound)
-            values(3*n + i) = outcome%no_estimate
-            if (allocated(outcome%bound)) values(3*n + i) = outcome%bound
          end associate
       end do
-      call reals(table, 'check_values', values)
-      call logicals(table, 'check_marks', flags)
+      values = [rows]
+      call reals(table, 'checks', values)
       call words(table, 'check_reasons', reasons)
-      if (size(flags) /= 3*n .or. .not. table%is_restoring()) return
-      self%outcomes%time = values(:n)
-      self%outcomes%found = values(n + 1:2*n)
-      self%outcomes%deviation = values(2*n + 1:3*n)
-      self%outcomes%judged = flags(:n)
-      self%outcomes%passed = flags(n + 1:2*n)
+      if (size(values) /= size(rows) .or. .not. table%is_restoring()) return
+      rows = reshape(values, shape(rows))
       first = 1
-      do i = 1, n
-         if (.not. flags(i)) cycle
-         self%outcomes(i)%reason = reasons(first:first - 2 + index(reasons(first:), new_line('a')))
-         first = first + len(self%outcomes(i)%reason) + 1
-         if (flags(2*n + i)) then
-            self%outcomes(i)%bound = values(3*n + i)
-         else
-            self%outcomes(i)%no_estimate = nint(values(3*n + i))
-         end if
+      do i = 1, size(self%outcomes)
+         associate (outcome => self%outcomes(i))
+            outcome%judged = rows(4, i) > 0.0_dp
+            if (.not. outcome%judged) cycle
+            outcome%time = rows(1, i)
+            outcome%found = rows(2, i)
+            outcome%deviation = rows(3, i)
+            outcome%passed = rows(5, i) > 0.0_dp
+            if (rows(6, i) > 0.0_dp) outcome%bound = rows(7, i)
+            if (rows(6, i) <= 0.0_dp) outcome%no_estimate = nint(rows(7, i))
+            outcome%reason = reasons(first:first - 2 + index(reasons(first:), new_line('a')))
+            first = first + len(outcome%reason) + 1
+         end associate
       end do
    end subroutine exchange
 
@@ -300,7 +297,13 @@ contains
          end do
          if (.not. is_extreme) reason = 'there is no contact pair "'//name//'"'
       end select
-      if (is_extreme .and. reason == '') values = [extreme(values, to_upper(check%where))]
+      if (.not. is_extreme .or. reason /= '') return
+      values = pack(values, .not. ieee_is_nan(values))
+      if (size(values) == 0) then
+         values = [ieee_value(1.0_dp, ieee_quiet_nan)]
+      else
+         values = [merge(minval(values), maxval(values), to_upper(check%where) == 'MIN')]
+      end if
    end subroutine values_asked_for
 
    !> Values of an interface; of positions in a list that is padded with NaN those that there are.
@@ -314,7 +317,7 @@ contains
       if (quantity%is_geometry) then
          values = geometry_values(quantity%name, points, mesh%node_number)
       else
-         values = contact_values(quantity%name, points, contact)
+         values = contact_values(quantity%name, contact)
       end if
       if (quantity%values == 1) return
       values = pack(values, .not. ieee_is_nan(values))
@@ -390,16 +393,5 @@ contains
       values = pack(values, wanted(point_node))
       if (size(values) == 0) reason = 'there is no node or node set "'//where//'"'
    end subroutine select_points
-
-   function extreme(values, which) result(value)
-      real(dp), intent(in) :: values(:)
-      character(*), intent(in) :: which
-      real(dp) :: value
-      real(dp), allocatable :: numbers(:)
-
-      numbers = pack(values, .not. ieee_is_nan(values))
-      value = ieee_value(value, ieee_quiet_nan)
-      if (size(numbers) > 0) value = merge(minval(numbers), maxval(numbers), which == 'MIN')
-   end function extreme
 
 end module verification

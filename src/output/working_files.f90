@@ -28,7 +28,6 @@ module working_files
       logical, public :: is_synced = .false.     !! whether it is on the disk before it is in place
       type(hdf5_writer_type), public :: content  !! writes the working copy while it is open
       logical, public :: in_place = .false.      !! whether this run's file is in place
-      real(dp) :: cost = 0.0_dp                  !! what the present publishing has cost so far [s]
       real(dp) :: last_cost = usual_cost         !! what the last one cost [s]
       real(dp) :: last_increment = 0.0_dp        !! when the last increment was accepted [s]
       real(dp) :: last_end = 0.0_dp              !! when it ended, at first when the run began [s]
@@ -39,7 +38,7 @@ module working_files
       procedure :: close => close_working
       procedure :: put_in_place
       procedure :: is_due
-      procedure :: charge
+      procedure :: note_publishing
       procedure :: check
       procedure :: discard
    end type working_file_type
@@ -93,7 +92,7 @@ contains
          if (.not. allocated(error)) call copy_file(self%source, self%working_path, error)
       end if
       if (allocated(error)) then
-         call self%content%fail(error)
+         call move_alloc(error, self%content%error)
       else if (is_new) then
          call self%content%create(self%working_path)
       else
@@ -106,7 +105,7 @@ contains
       class(working_file_type), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
-      call self%content%check(error)
+      if (allocated(self%content%error)) error = self%content%error
       call explain(self, error)
    end subroutine check
 
@@ -151,23 +150,19 @@ contains
       real(dp) :: now
 
       now = wall_seconds()
-      due = now - self%last_end > patience*(self%last_cost + self%cost) .or. &
+      due = now - self%last_end > patience*self%last_cost .or. &
          now - self%last_increment > long_increment
       self%last_increment = now
    end function is_due
 
-   !> Books time that was spent on publishing.
-   subroutine charge(self, since, ended)
+   !> Notes that the file is in place now.
+   subroutine note_publishing(self, since)
       class(working_file_type), intent(inout) :: self
-      real(dp), intent(in) :: since                    !! when the work began [s]
-      logical, intent(in) :: ended                     !! whether the file is in place now
+      real(dp), intent(in) :: since                    !! when the work for that began [s]
 
-      self%cost = self%cost + (wall_seconds() - since)
-      if (.not. ended) return
-      self%last_cost = self%cost
-      self%cost = 0.0_dp
       self%last_end = wall_seconds()
-   end subroutine charge
+      self%last_cost = self%last_end - since
+   end subroutine note_publishing
 
    !> Gives the system's reason to an error of HDF5, which tells none.
    subroutine explain(self, error)

@@ -75,10 +75,9 @@ module contact_quantities
 contains
 
    !> A quantity of an interface, or of its contact points: those of the mesh excepted.
-   pure function contact_values(name, points, contact) result(values)
+   pure function contact_values(name, contact) result(values)
       character(*), intent(in) :: name                   !! one of of_interface or of_contact_points
-      type(contact_points_type), intent(in) :: points       !! contact points of the interface
-      type(contact_record_type), intent(in) :: contact     !! its state
+      type(contact_record_type), intent(in) :: contact   !! state of the interface
       !> One a contact point, one an edge, or one alone; NaN where the step has none; empty for a
       !> name that is not known.
       real(dp), allocatable :: values(:)
@@ -91,7 +90,7 @@ contains
       case ('heat_rate')
          values = [contact%heat_rate]
       case ('peak_pressure')
-         values = [maxval(or_nan(contact%pressure, size(points%slave)))]
+         values = [maxval(or_nan(contact%pressure))]
       case ('edge_contact')
          values = [contact%edge_contact]
       case ('edge_stick')
@@ -103,38 +102,34 @@ contains
       case ('status')
          values = real(contact%contact_state, dp)
       case ('gap')
-         values = or_nan(contact%gap, size(points%slave))
+         values = or_nan(contact%gap)
       case ('pressure')
-         values = or_nan(contact%pressure, size(points%slave))
+         values = or_nan(contact%pressure)
       case ('shear')
-         values = or_nan(contact%shear, size(points%slave))
+         values = or_nan(contact%shear)
       case ('slip')
-         values = or_nan(contact%slip, size(points%slave))
+         values = or_nan(contact%slip)
       case ('slave_temperature')
-         values = or_nan(contact%slave_temperature, size(points%slave))
+         values = or_nan(contact%slave_temperature)
       case ('master_temperature')
-         values = or_nan(contact%master_temperature, size(points%slave))
+         values = or_nan(contact%master_temperature)
       case ('conductance')
-         values = or_nan(contact%conductance, size(points%slave))
+         values = or_nan(contact%conductance)
       case ('heat_flux')
-         values = or_nan(contact%heat_flux, size(points%slave))
+         values = or_nan(contact%heat_flux)
       case default
          allocate (values(0))
       end select
+   contains
+      !> Values, or a NaN for each contact point where there are none.
+      pure function or_nan(given) result(filled)
+         real(dp), allocatable, intent(in) :: given(:)
+         real(dp) :: filled(size(contact%contact_state))
+
+         filled = ieee_value(1.0_dp, ieee_quiet_nan)
+         if (allocated(given)) filled = given
+      end function or_nan
    end function contact_values
-
-   !> Values, or a NaN for each of n contact points where there are none.
-   pure function or_nan(given, n) result(filled)
-      real(dp), allocatable, intent(in) :: given(:)
-      integer, intent(in) :: n
-      real(dp), allocatable :: filled(:)
-
-      if (allocated(given)) then
-         filled = given
-      else
-         allocate (filled(n), source=ieee_value(1.0_dp, ieee_quiet_nan))
-      end if
-   end function or_nan
 
    !> A quantity of the contact points that the mesh gives.
    pure function geometry_values(name, points, node_number) result(values)

@@ -70,10 +70,8 @@ contains
 
       allocate (values(0))
       select case (name)
-      case ('U1')
-         values = rows(fields%displacement, [1], point_node)
-      case ('U2')
-         values = rows(fields%displacement, [2], point_node)
+      case ('U1', 'U2')
+         values = rows(fields%displacement, [index('12', name(2:2))], point_node)
       case ('displacement')
          values = rows(fields%displacement, [1, 2, 0], point_node)
       case ('mode_displacement')
@@ -82,14 +80,8 @@ contains
          if (allocated(fields%mode_temperature)) values = fields%mode_temperature(point_node)
       case ('NT', 'temperature')
          if (allocated(fields%temperature)) values = fields%temperature(point_node)
-      case ('S11')
-         values = rows(fields%stress, [1])
-      case ('S22')
-         values = rows(fields%stress, [2])
-      case ('S33')
-         values = rows(fields%stress, [3])
-      case ('S12')
-         values = rows(fields%stress, [4])
+      case ('S11', 'S22', 'S33', 'S12')
+         values = rows(fields%stress, [findloc(['11', '22', '33', '12'], name(2:3), dim=1)])
       case ('stress')
          values = rows(fields%stress, [1, 2, 3, 4])
       case ('MISES', 'von_mises')
@@ -103,16 +95,12 @@ contains
          values = rows(fields%stress, [3])
          if (present(radial) .and. allocated(fields%stress)) values = fields%stress(1, :) + &
             fields%stress(2, :) - along(fields%stress, radial)
-      case ('HFL1')
-         values = rows(fields%heat_flux, [1])
-      case ('HFL2')
-         values = rows(fields%heat_flux, [2])
+      case ('HFL1', 'HFL2')
+         values = rows(fields%heat_flux, [index('12', name(4:4))])
       case ('heat_flux')
          values = rows(fields%heat_flux, [1, 2, 0])
-      case ('RF1')
-         values = rows(fields%reaction, [1], point_node)
-      case ('RF2')
-         values = rows(fields%reaction, [2], point_node)
+      case ('RF1', 'RF2')
+         values = rows(fields%reaction, [index('12', name(3:3))], point_node)
       case ('RFL')
          if (allocated(fields%reaction_heat)) values = fields%reaction_heat(point_node)
       case default   ! not known: none
@@ -127,16 +115,12 @@ contains
       real(dp), allocatable :: values(:)
       integer :: i, n
 
-      if (.not. allocated(field)) then
-         allocate (values(0))
-         return
-      end if
+      n = 0
+      if (allocated(field)) n = size(field, 2)
+      if (n > 0 .and. present(indexes)) n = size(indexes)
+      allocate (values(size(components)*n))
+      if (n == 0) return
       n = size(components)
-      if (present(indexes)) then
-         allocate (values(n*size(indexes)))
-      else
-         allocate (values(n*size(field, 2)))
-      end if
       do i = 1, n
          if (components(i) == 0) then
             values(i::n) = 0.0_dp

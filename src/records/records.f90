@@ -203,17 +203,13 @@ contains
       type(increment_record_type), intent(inout) :: record
       real(dp), intent(in) :: increment_size                 !! size of the attempt [time]
       character(*), intent(in) :: reason                     !! what failed
-      type(attempt_record_type), allocatable :: more(:)
-      integer :: n
+      type(attempt_record_type) :: attempt
 
-      n = 0
-      if (allocated(record%failed)) n = size(record%failed)
-      allocate (more(n + 1))
-      if (n > 0) more(:n) = record%failed
-      more(n + 1)%time = record%time
-      more(n + 1)%increment_size = increment_size
-      more(n + 1)%reason = reason
-      call move_alloc(more, record%failed)
+      attempt%time = record%time
+      attempt%increment_size = increment_size
+      attempt%reason = reason
+      if (.not. allocated(record%failed)) allocate (record%failed(0))
+      record%failed = [record%failed, attempt]
    end subroutine note_failure
 
 end module records

@@ -5,7 +5,6 @@ module deck_files
    use command_line, only: command_type
    use errors, only: error_type, set_error, status_deck
    use file_calls, only: identity_of
-   use run_output, only: paths_written
    use text, only: append, string_type
    implicit none
    private
@@ -38,8 +37,14 @@ contains
       character(*), intent(in) :: path           !! the deck as given
       type(command_type), intent(in) :: command
       type(string_type), allocatable :: outputs(:)
+      character(*), parameter :: extensions(5) = [character(16) :: '.lst', '.sta', '.cvg', &
+         '.vtkhdf', '.contact.vtkhdf']
+      integer :: i
 
-      outputs = paths_written(results_of(path, command))
+      allocate (outputs(size(extensions)))
+      do i = 1, size(extensions)
+         outputs(i)%value = results_of(path, command)//trim(extensions(i))
+      end do
       call append(outputs, command%folder//'/'//table_name)
    end function outputs_of
 

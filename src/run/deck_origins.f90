@@ -2,7 +2,7 @@
 !> `--resume`, at the increment that *RESTART, READ or the command line says, or the last one kept.
 module deck_origins
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use card_parameters, only: take_from
+   use card_parameters, only: take_parameter
    use cards, only: cards_type
    use command_line, only: command_type, settings_in_words
    use deck_files, only: results_of
@@ -135,8 +135,9 @@ contains
       type(earlier_deck_type), intent(out) :: earlier     ! the deck before that deck
       integer, intent(out) :: restart
       type(error_type), allocatable, intent(out) :: error
+      type(deck_report_type) :: ignored
       character(:), allocatable :: words
-      integer :: card
+      integer :: card, increment, step
       logical :: is_own
 
       restart = 0
@@ -158,37 +159,23 @@ contains
       else if (is_own) then
          call result%find_time(command%restart_time, restart, error)
       else
-         call choose_by_card(command, cards, result, restart, error)
+         ! What *RESTART, READ names by STEP= and INC=, or the command line by its time.
+         step = 0
+         increment = 0
+         associate (read_card => cards%keywords(first_card(cards)))
+            call take_parameter(read_card, 'STEP', ignored, step, '>=1')
+            call take_parameter(read_card, 'INC', ignored, increment, '>=1')
+         end associate
+         if (step > 0 .and. allocated(command%restart_time)) then
+            call set_error(error, status_deck, 'STEP= and --restart RESULT@TIME both say where '// &
+               'to go on from: leave one out')
+         else if (step > 0) then
+            call result%find_step(step, increment, restart, error)
+         else
+            call result%find_time(command%restart_time, restart, error)
+         end if
          if (.not. allocated(error)) earlier = result%deck_until(restart)
       end if
    end subroutine choose
-
-   !> The restart that *RESTART, READ names by STEP= and INC=, or the command line by its time.
-   !> Error: status_deck, when there is none.
-   subroutine choose_by_card(command, cards, result, restart, error)
-      type(command_type), intent(in) :: command
-      type(cards_type), intent(in) :: cards
-      type(earlier_result_type), intent(in) :: result
-      integer, intent(out) :: restart
-      type(error_type), allocatable, intent(out) :: error
-      type(deck_report_type) :: ignored
-      integer :: increment, step
-
-      step = 0
-      increment = 0
-      associate (card => cards%keywords(first_card(cards)))
-         call take_from(1, card, 'STEP', ignored, step)
-         call take_from(1, card, 'INC', ignored, increment)
-      end associate
-      restart = 0
-      if (step > 0 .and. allocated(command%restart_time)) then
-         call set_error(error, status_deck, 'STEP= and --restart RESULT@TIME both say where to '// &
-            'go on from: leave one out')
-      else if (step > 0) then
-         call result%find_step(step, increment, restart, error)
-      else
-         call result%find_time(command%restart_time, restart, error)
-      end if
-   end subroutine choose_by_card
 
 end module deck_origins

@@ -30,20 +30,15 @@ module deck_preparation
    use variations, only: variation_type, vary
    implicit none
    private
-   public :: prepare_deck, read_deck_type, reason_to_skip
-
-   !> Why a file is skipped.
-   character(*), parameter :: not_a_deck = 'it has no *STEP; it is taken as a file '// &
-      'that decks include'
-
-   !> Why a deck is not solved.
-   character(*), parameter :: no_analysis = 'it has *NO ANALYSIS; it is read and found sound'
+   public :: prepare_deck, read_deck_type
 
    !> A deck that was read, from which any number of variations can be made.
    type :: read_deck_type
       type(cards_type) :: cards
       type(model_type), private :: model                  !! on the deck's mesh
       type(deck_report_type), allocatable, private :: report
+      !> Why there is no model to solve, though there is no error; unallocated where there is one
+      character(:), allocatable :: why_skipped
       type(origin_type), allocatable :: origin            !! where its run goes on from, if anywhere
       !> With --resume: its result, where nothing is left to be solved
       type(earlier_result_type), allocatable :: finished
@@ -71,15 +66,14 @@ contains
       call progress%say('reading')
       if (.not. allocated(deck%report)) call read_model(path, command, deck)
       report = deck%report
-      if (is_skipped(command, deck)) then
+      if (.not. report%has_errors() .and. has_card(deck%cards, 'NO ANALYSIS') .and. .not. &
+         allocated(deck%why_skipped)) deck%why_skipped = 'it has *NO ANALYSIS; it is read and '// &
+         'found sound'
+      if (allocated(deck%why_skipped)) then
          call progress%clear()
-         call print_line(error_unit, path//': note: skipped: '//reason_to_skip(deck))
-         return
-      end if
-      if (.not. report%has_errors() .and. asks_for_none(deck%cards)) then
-         call progress%clear()
-         call report%print(error_unit)
-         call print_line(error_unit, path//': note: not solved: '//no_analysis)
+         if (allocated(deck%model%steps)) call report%print(error_unit)
+         call print_line(error_unit, path//': note: '//trim(merge('not solved', 'skipped   ', &
+            allocated(deck%model%steps)))//': '//deck%why_skipped)
          return
       end if
       if (.not. report%has_errors()) then
@@ -120,7 +114,13 @@ contains
       allocate (deck%report)
       call read_deck(path, command%width, command%settings, deck%cards, deck%report)
       call find_origin(path, command, deck%cards, deck%report, deck%origin, deck%finished)
-      if (is_skipped(command, deck)) return
+      if (allocated(deck%finished)) then
+         deck%why_skipped = 'its result is finished'
+      else if (size(command%decks) > 1 .and. .not. (deck%report%has_errors() .or. &
+         has_card(deck%cards, 'STEP'))) then
+         deck%why_skipped = 'it has no *STEP; it is taken as a file that decks include'
+      end if
+      if (allocated(deck%why_skipped)) return
       ! Without the result that it goes on from there is no model.
       if (reads_restart(deck%cards)) return
       call build_model(deck%cards, verifiable, estimated, deck%model, deck%report)
@@ -142,32 +142,14 @@ contains
          'the deck has no *CONTACT PAIR: there is no quantity whose accuracy could be requested')
    end subroutine read_model
 
-   !> Whether a file is no deck but one that decks include, or is solved already.
-   pure logical function is_skipped(command, deck)
-      type(command_type), intent(in) :: command
-      type(read_deck_type), intent(in) :: deck            ! read
-
-      is_skipped = allocated(deck%finished) .or. size(command%decks) > 1 .and. .not. &
-         (deck%report%has_errors() .or. size(step_cards(deck%cards)) > 0)
-   end function is_skipped
-
-   !> Why a deck without errors has no model to solve.
-   pure function reason_to_skip(deck) result(reason)
-      type(read_deck_type), intent(in) :: deck            !! read
-      character(:), allocatable :: reason
-
-      reason = not_a_deck
-      if (asks_for_none(deck%cards)) reason = no_analysis
-      if (allocated(deck%finished)) reason = 'its result is finished'
-   end function reason_to_skip
-
-   !> Whether a deck is to be read only.
-   pure logical function asks_for_none(cards)
+   !> Whether a deck has a card.
+   pure logical function has_card(cards, name)
       type(cards_type), intent(in) :: cards
+      character(*), intent(in) :: name
       integer :: k
 
-      asks_for_none = any([(cards%keywords(k)%name == 'NO ANALYSIS', k=1, size(cards%keywords))])
-   end function asks_for_none
+      has_card = any([(cards%keywords(k)%name == name, k=1, size(cards%keywords))])
+   end function has_card
 
    !> Reports an error at the card that it names.
    subroutine report_at_card(error, report)
@@ -193,7 +175,8 @@ contains
       integer :: step
 
       loads = simulation%loads
-      begins = step_cards(cards)
+      begins = pack([(step, step=1, size(cards%keywords))], [(cards%keywords(step)%name == &
+         'STEP', step=1, size(cards%keywords))])
       do step = 1, size(model%steps)
          call loads%begin_step(model%steps(step), simulation%state%displacement, &
             simulation%state%temperature)
@@ -205,16 +188,6 @@ contains
          if (report%has_errors()) return
       end do
    end subroutine check_supports
-
-   !> Which of the keyword cards begin steps.
-   pure function step_cards(cards) result(list)
-      type(cards_type), intent(in) :: cards
-      integer, allocatable :: list(:)
-      integer :: k
-
-      list = pack([(k, k=1, size(cards%keywords))], [(cards%keywords(k)%name == 'STEP', &
-         k=1, size(cards%keywords))])
-   end function step_cards
 
    subroutine check_step(place, model, simulation, laws, loads, step, report)
       type(place_type), intent(in) :: place

@@ -2,14 +2,14 @@
 !> of memory.
 module deck_run
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use adaptive_rounds, only: adaptive_rounds_type, round_solver_type
+   use adaptive_rounds, only: adaptive_rounds_type, increment_taker_type
    use blas_lapack, only: reserve_blas_memory
    use clock, only: wall_seconds
    use command_line, only: command_type, settings_in_words
    use contact_points, only: contact_points_type
    use deck_files, only: input_files_type, outputs_of, results_of
    use deck_outcomes, only: deck_outcome_type
-   use deck_preparation, only: prepare_deck, read_deck_type, reason_to_skip
+   use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
       status_no_convergence, status_ok, status_verify
    use file_calls, only: make_folder
@@ -24,9 +24,9 @@ module deck_run
    use restarts, only: go_on
    use run_description, only: describe_run
    use run_output, only: run_output_type
-   use run_summaries, only: or_blank
    use simulation, only: simulation_type
-   use text, only: append, counted, string_type, to_text
+   use state_tables, only: state_table_type
+   use text, only: append, counted, or_blank, string_type, to_text
    use utf8, only: printable
    use variations, only: variation_type
    implicit none
@@ -35,7 +35,7 @@ module deck_run
 
    !> The run of a deck, round by round. Held by value, the copying and freeing of all that it
    !> points to, which nothing calls, would be most of the code of this module.
-   type, extends(round_solver_type) :: deck_run_type
+   type, extends(increment_taker_type) :: deck_run_type
       character(:), allocatable :: path       !! the deck as given
       type(command_type) :: command           !! options of the command line
       type(read_deck_type), pointer :: deck => null()
@@ -49,7 +49,6 @@ module deck_run
       real(dp) :: since = 0.0_dp              !! when the run began [s]
       real(dp) :: deadline = huge(1.0_dp)     !! when a later round ends [s]
    contains
-      procedure :: solve_round
       procedure :: take
    end type deck_run_type
 
@@ -78,7 +77,11 @@ contains
       self%since = since
       if (command%limit > 0.0_dp) self%deadline = since + command%limit
       rounds%deadline = self%deadline
-      call rounds%solve(self)
+      do
+         call rounds%begin_round()
+         call solve_round(self, rounds)
+         if (.not. rounds%accuracy%goes_on) exit
+      end do
       if (size(outcome%failed_checks) > 0) then
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
          call outcome%fail(error)
@@ -89,7 +92,7 @@ contains
    !> Solves a deck as it is written, or as the variation of a later round has it. The files of the
    !> round before stay until a later one is whole.
    subroutine solve_round(self, rounds)
-      class(deck_run_type), intent(inout) :: self
+      type(deck_run_type), intent(inout) :: self
       type(adaptive_rounds_type), intent(inout) :: rounds
       type(error_type), allocatable :: error
       real(dp) :: since
@@ -156,8 +159,9 @@ contains
          if (.not. (allocated(error) .or. is_later)) call reserve_files(self, error)
          if (.not. allocated(error)) then
             call self%output%progress%start(self%command%quiet)
-            if (allocated(self%model%accuracy%targets)) call self%output%progress%of_round( &
-               self%output%kept_round + 1, self%since)
+            self%output%progress%since = self%since
+            if (allocated(self%model%accuracy%targets)) self%output%progress%round = &
+               self%output%kept_round + 1
             call self%output%progress%say('assembling')
             call self%simulation%assemble(self%model)
             call self%output%progress%say('reducing')
@@ -180,7 +184,7 @@ contains
       type(deck_run_type), intent(inout) :: self
       type(error_type), allocatable :: error
 
-      call set_reason(self%outcome%report, reason_to_skip(self%deck))
+      call set_reason(self%outcome%report, self%deck%why_skipped)
       if (.not. allocated(self%deck%finished)) return
       associate (outcome => self%outcome, finished => self%deck%finished, &
          failed => self%deck%finished%failed_checks)
@@ -210,6 +214,26 @@ contains
       call may_end(self, end_at_once)
    end subroutine reserve_files
 
+   !> Begins the output of a round, behind an earlier result where it goes on from one.
+   !> Errors: as run_output_type's start and results_type's go_on.
+   subroutine begin_output(self, error)
+      type(deck_run_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_points_type), allocatable :: interfaces(:)
+
+      call self%simulation%bodies%views(interfaces)
+      associate (output => self%output, points => self%simulation%recovery%points)
+         call output%start(self%model, interfaces, points%node, points%element_points, &
+            self%deck%cards%images, error)
+         if (allocated(error) .or. .not. allocated(self%deck%origin)) return
+         associate (origin => self%deck%origin)
+            call output%verifier%exchange(origin%table)
+            call output%judgement%exchange(origin%table)
+            call output%results%go_on(origin%path, origin%table, origin%counts, self%model, error)
+         end associate
+      end associate
+   end subroutine begin_output
+
    !> All increments, with their output.
    subroutine solve_deck(self, rounds, error)
       type(deck_run_type), intent(inout) :: self
@@ -218,32 +242,21 @@ contains
       type(error_type), allocatable :: output_error
       type(contact_points_type), allocatable :: interfaces(:)
       type(increment_record_type) :: record
+      type(state_table_type), pointer :: restart   ! disassociated for none
+      logical :: moved
 
       associate (model => self%model, output => self%output, outcome => self%outcome, &
          cards => self%deck%cards%images)
          call may_end(self, end_by_increments)
-         call self%simulation%bodies%views(interfaces)
-         associate (points => self%simulation%recovery%points)
-            call output%start(model, interfaces, points%node, points%element_points, cards, error)
-         end associate
-         deallocate (interfaces)
+         call begin_output(self, error)
          if (allocated(error)) return
-         if (allocated(self%deck%origin)) then
-            associate (origin => self%deck%origin)
-               call output%go_on(origin%path, origin%table, origin%counts, model, error)
-            end associate
-            if (allocated(error)) return
-         end if
          call outcome%note_files(output%written())
          call may_end(self, end_at_once)
          self%is_written = .true.
          call begin_increment(self, error)
-         if (allocated(self%deck%origin)) then
-            call rounds%solve_increments(model, self%simulation, self, record, error, &
-               self%deck%origin%table)
-         else
-            call rounds%solve_increments(model, self%simulation, self, record, error)
-         end if
+         nullify (restart)
+         if (allocated(self%deck%origin)) restart => self%deck%origin%table
+         call rounds%solve_increments(model, self%simulation, self, record, error, restart)
          ! From here on, output is not cut short.
          call may_end(self, end_by_increments)
          if (.not. self%is_written) then
@@ -258,7 +271,9 @@ contains
                error%status = status_no_convergence
             end if
             call output%fail(error%message, record)
-            call tell_of_earlier(self)
+            call output%results%set_aside(results_of(self%path, self%command), moved)
+            if (moved) call print_line(error_unit, self%path//': note: the results of an '// &
+               'earlier run are in "'//results_of(self%path, self%command)//'.earlier.vtkhdf"')
             call outcome%note(record, output%results%accepted, output%written())
             if (output%kept_round > 0) return
          end if
@@ -308,7 +323,12 @@ contains
             if (error%status == status_interrupted) call check_signals(self, error)
          else
             call may_end(self, end_by_increments)
-            if (record%residual_floor > tolerance) call outcome%doubt(record%residual_floor)
+            if (outcome%report%status == status_ok .and. record%residual_floor > &
+               max(tolerance, outcome%known_to)) then
+               outcome%known_to = record%residual_floor
+               call set_reason(outcome%report, 'the contact conductance is accurate to '// &
+                  to_text(outcome%known_to)//' only')
+            end if
             call simulation%bodies%views(interfaces)
             call output%accept(record, self%model, interfaces, error)
             call outcome%note(record, output%results%accepted, output%written())
@@ -411,18 +431,6 @@ contains
             '; the results are those of round '//to_text(kept_round)
       end associate
    end function kept_words
-
-   !> Sets results of an earlier run aside and says so.
-   subroutine tell_of_earlier(self)
-      type(deck_run_type), intent(inout) :: self
-      character(:), allocatable :: path
-      logical :: moved
-
-      path = results_of(self%path, self%command)
-      call self%output%results%set_aside(path, moved)
-      if (moved) call print_line(error_unit, self%path//': note: the results of an earlier run '// &
-         'are in "'//path//'.earlier.vtkhdf"')
-   end subroutine tell_of_earlier
 
    !> Prints why a run ended early. That a later round did is no mistake of the deck.
    subroutine report_failure(self, error, is_told)

@@ -249,7 +249,7 @@ contains
       type(string_type), intent(in) :: images(:)          !! of the deck alone
       type(earlier_deck_type), intent(out) :: earlier
       logical, intent(out) :: is_own
-      integer :: before, first, head, tail
+      integer :: before, first, head, i, tail
 
       head = 0
       do while (head < size(images))
@@ -260,9 +260,9 @@ contains
       is_own = .false.
       first = size(self%images) - tail
       if (first < head) return
-      if (.not. same(self%images(first + 1:), images(head + 1:))) return
+      if (any([(self%images(first + i)%value /= images(head + i)%value, i=1, tail)])) return
       do before = 0, first - head
-         is_own = same(self%images(before + 1:before + head), images(:head))
+         is_own = all([(self%images(before + i)%value == images(i)%value, i=1, head)])
          if (is_own) exit
       end do
       if (.not. is_own) return
@@ -270,16 +270,6 @@ contains
       earlier%steps = before
       earlier%images = [self%images(:before), self%images(before + head + 1:first)]
    end subroutine own_earlier_deck
-
-   pure logical function same(some, others)
-      type(string_type), intent(in) :: some(:), others(:)
-      integer :: i
-
-      same = .true.
-      do i = 1, size(some)
-         same = same .and. some(i)%value == others(i)%value
-      end do
-   end function same
 
    !> Reads the state of a restart.
    !> Error: status_deck, when the file is damaged.

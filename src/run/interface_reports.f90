@@ -36,13 +36,16 @@ contains
       type(error_type), allocatable :: error
       integer, allocatable :: slave(:), master(:), blamed(:)
       real(dp), allocatable :: normal(:, :)
-      integer :: i, known, repeated
+      integer :: card, i, known, repeated
 
       allocate (slave(0), master(0), normal(2, 0), interfaces(size(model%contacts)), blamed(0))
       do i = 1, size(model%contacts)
          call match_surfaces(model, i, interfaces(i), error)
          if (allocated(error)) then
-            call report_once(merge(error%card, model%contacts(i)%card, error%card > 0))
+            ! An error of a surface is reported for the first of its interfaces.
+            card = merge(error%card, model%contacts(i)%card, error%card > 0)
+            if (all(blamed /= card)) call report%error(place_type(image=card), error%message)
+            blamed = [blamed, card]
             cycle
          end if
          call warn_of_interface(model, i, interfaces(i), report)
@@ -62,15 +65,6 @@ contains
          master = master(:known)
          normal = normal(:, :known)
       end do
-   contains
-      !> An error of a surface is reported for the first of its interfaces.
-      subroutine report_once(card)
-         integer, intent(in) :: card
-
-         if (any(blamed == card)) return
-         blamed = [blamed, card]
-         call report%error(place_type(image=card), error%message)
-      end subroutine report_once
    end subroutine make_interfaces
 
    !> Matches the surfaces of every *TIE; reports those that cannot be matched, and notes what each
@@ -126,6 +120,7 @@ contains
       integer, intent(in) :: i
       type(contact_points_type), intent(in) :: points
       type(deck_report_type), intent(inout) :: report
+      logical :: begins_with_heat
 
       if (allocated(points%idle)) call warn(model%contacts(i)%title()//': '//points%idle// &
          ' takes no part: no face of the other surface is opposite, or other lines hide it; '// &
@@ -135,7 +130,12 @@ contains
          call warn(clearance_warning(model%mesh, points))
       else
          call warn(overlap_warning(model%mesh, points))
-         if (begins_with_heat()) then
+         ! Where heat crosses the initial gaps before any mechanics.
+         begins_with_heat = .false.
+         if (size(model%steps) > 0) begins_with_heat = solves_heat(model%steps(1)%analysis) .and. &
+            .not. (solves_mechanics(model%steps(1)%analysis) .or. &
+            is_removed(model%steps(:1)%changes, i))
+         if (begins_with_heat) then
             associate (law => model%interactions(model%contacts(i)%interaction)%law)
                call warn(unresolved_warning(model%mesh, points, law_at(law, largest_jump(law))))
             end associate
@@ -148,15 +148,6 @@ contains
       call warn(thickness_warning(model, i))
       call warn(plane_warning(model, model%contacts(i)))
    contains
-      !> Whether heat crosses the initial gaps of the interface before any mechanics.
-      pure logical function begins_with_heat()
-         begins_with_heat = .false.
-         if (size(model%steps) == 0) return
-         begins_with_heat = solves_heat(model%steps(1)%analysis) .and. &
-            .not. solves_mechanics(model%steps(1)%analysis) .and. &
-            .not. is_removed(model%steps(:1)%changes, i)
-      end function begins_with_heat
-
       subroutine warn(message)
          character(*), intent(in) :: message
 

@@ -4,7 +4,7 @@ module run_description
    use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: command_type
    use conductance_laws, only: is_constant
-   use contact_definitions, only: brings_friction, interaction_type, makes_friction_heat
+   use contact_definitions, only: brings_friction, makes_friction_heat
    use contact_points, only: contact_points_type
    use controls, only: solver_mumps
    use deck_preparation, only: prepare_deck, read_deck_type
@@ -177,6 +177,7 @@ contains
       type(run_summary_type), intent(in) :: run
       type(run_entry_type), allocatable :: entries(:)
       type(contact_points_type) :: points
+      character(:), allocatable :: words
       integer :: i
 
       call print_line(output_unit, run%deck_path//': no errors, '// &
@@ -187,9 +188,12 @@ contains
       end do
       do i = 1, size(model%interactions)
          associate (interaction => model%interactions(i))
-            call line('interaction '//interaction%name, 'friction '// &
-               friction_words(interaction%friction)//heat_of_friction(interaction)// &
-               pressure_of(interaction)//'; conductance, open: '// &
+            words = 'friction '//friction_words(interaction%friction)
+            if (interaction%heat%efficiency > 0.0_dp) words = words//'; heat of friction '// &
+               friction_heat_words(interaction%heat)
+            if (interaction%overlap%is_soft()) words = words//'; pressure '// &
+               overlap_words(interaction%overlap)
+            call line('interaction '//interaction%name, words//'; conductance, open: '// &
                open_law_words(interaction%law)//'; closed: '//closed_law_words(interaction%law))
          end associate
       end do
@@ -203,25 +207,6 @@ contains
       if (run%has_biot) call line('contact Biot number', from_to(run%contact_biot)// &
          ' at the initial gaps')
    end subroutine print_deck
-
-   !> Words on the pressure of soft faces; empty for hard ones.
-   pure function pressure_of(interaction) result(words)
-      type(interaction_type), intent(in) :: interaction
-      character(:), allocatable :: words
-
-      words = ''
-      if (interaction%overlap%is_soft()) words = '; pressure '//overlap_words(interaction%overlap)
-   end function pressure_of
-
-   !> Words on the heat of friction of an interaction; empty for none.
-   pure function heat_of_friction(interaction) result(words)
-      type(interaction_type), intent(in) :: interaction
-      character(:), allocatable :: words
-
-      words = ''
-      if (interaction%heat%efficiency > 0.0_dp) words = '; heat of friction '// &
-         friction_heat_words(interaction%heat)
-   end function heat_of_friction
 
    subroutine line(name, value)
       character(*), intent(in) :: name, value

@@ -159,26 +159,13 @@ contains
       if (found) misfit = maxval(hypot(real_part, imaginary_part))
    end function misfit
 
-   !> W_i^T C W_j.
-   pure function stored_between(self, i, j) result(block)
-      type(projected_motions_type), intent(in) :: self
-      integer, intent(in) :: i, j
-      real(dp) :: block(size(self%stored, 1), size(self%stored, 1))
-
-      if (i == j) then
-         block = self%stored(:, :, i)
-      else
-         block = (self%exchange(:, :, i) - self%exchange(:, :, j))/(self%sigma(j) - self%sigma(i))
-      end if
-   end function stored_between
-
    !> The bodies projected on motions that are orthonormal in the energy A'/sigma + E at the
    !> smallest rate.
    subroutine project(self, bodies, found)
       type(projected_motions_type), intent(in) :: self
       type(projected_bodies_type), intent(out) :: bodies
       logical, intent(out) :: found
-      real(dp), allocatable :: vectors(:, :)
+      real(dp), allocatable :: block(:, :), vectors(:, :)
       integer, allocatable :: which(:)
       integer :: i, j, n, r
 
@@ -189,11 +176,13 @@ contains
       do i = 1, size(which)
          bodies%heats(n*(i - 1) + 1:n*i, :) = self%exchange(:, :, which(i))
          do j = 1, size(which)
-            associate (block => stored_between(self, which(i), which(j)), rows => n*(i - 1), &
-               columns => n*(j - 1))
+            associate (h => self%exchange(:, :, which([i, j])), &
+               sigma => self%sigma(which([i, j])), rows => n*(i - 1), columns => n*(j - 1))
+               block = self%stored(:, :, which(i))   ! W_i^T C W_j
+               if (i /= j) block = (h(:, :, 1) - h(:, :, 2))/(sigma(2) - sigma(1))
                bodies%capacity(rows + 1:rows + n, columns + 1:columns + n) = block
-               bodies%conduction(rows + 1:rows + n, columns + 1:columns + n) = &
-                  self%exchange(:, :, which(j)) - self%sigma(which(i))*block
+               bodies%conduction(rows + 1:rows + n, columns + 1:columns + n) = h(:, :, 2) - &
+                  sigma(1)*block
             end associate
          end do
       end do

@@ -4,6 +4,7 @@ module branch_trials
    use branch_path, only: branch_measure_type, branch_point_type
    use contact_operator, only: make_graph, openings
    use contact_system, only: contact_state_type
+   use controls, only: continuation_type
    use coupled_increment, only: contact_scales
    use errors, only: error_type, set_error, status_no_convergence
    use field_problem, only: solved_loads_type
@@ -21,7 +22,7 @@ module branch_trials
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: branch_trial_type, is_found, is_sharp, is_lost, straight
+   public :: branch_type, is_found, is_sharp, is_lost, straight
 
    integer, parameter :: most_corrections = 12
    real(dp), parameter :: wanted_part = 0.5_dp       !! of the residual that an increment may leave
@@ -33,18 +34,33 @@ module branch_trials
    integer, parameter :: is_sharp = 2   !! the branch turns too far, maybe in a kink
    integer, parameter :: is_lost = 3    !! the corrections fail
 
-   !> Steps from a point of the branch.
-   type :: branch_trial_type
+   !> The branch of a step, and steps from a point of it.
+   type :: branch_type
       integer :: step = 0                      !! number of the step of the deck
       type(step_clock_type) :: start           !! its start
-      type(branch_measure_type) :: measure     !! of lengths along the branch
+      type(continuation_type) :: asked         !! its *CONTINUATION
+      logical :: is_followed = .false.         !! whether points are found by arc length
+      integer :: points = 0                    !! so far
+      type(branch_point_type) :: first, base   !! first and last point
+      integer, allocatable :: direction(:)     !! (m) of slip so far, 0 where there was none
+      logical :: is_last = .false.             !! whether the branch ends at the point
+      character(:), allocatable :: ending      !! why
+      logical :: is_fold = .false.             !! whether the load factor turns there
+      real(dp) :: length = 0.0_dp              !! of the next step
+      real(dp) :: tried = 0.0_dp               !! of the one that led to the point
       type(branch_point_type) :: from          !! where steps begin
       type(branch_point_type) :: point         !! where the last one ended, on the branch if found
-      integer :: fixed_coordinate = 0 !! what corrections leave: a contact point, or m + 1
+      integer :: fixed_coordinate = 0          !! what corrections leave: a contact point, or m + 1
       integer :: outcome = is_lost             !! of the last step
       logical :: has_converged = .false.       !! whether it led to the branch
+      type(branch_measure_type) :: measure     !! of lengths along the branch
       type(contact_state_type) :: contact      !! of the last pass
-      type(solution_state_type), private :: before   !! state at the last point of the branch
+      ! What it is a branch of, while a point is sought.
+      type(model_type), pointer :: model => null()
+      type(reduced_bodies_type), pointer :: bodies => null()
+      type(heat_reduction_type), pointer :: heat => null()
+      type(loads_type), pointer :: loads => null()   !! moved along
+      type(solution_state_type) :: before   !! state at the last point of the branch
       type(load_rate_type), private :: rate
       type(solved_loads_type), allocatable, private :: known(:)
       type(pass_type), private :: pass
@@ -53,15 +69,14 @@ module branch_trials
    contains
       procedure :: clock_at
       procedure :: begin
-      procedure :: renew
       procedure :: try_step
-   end type branch_trial_type
+   end type branch_type
 
 contains
 
    !> The instant at which loads have a load factor.
    pure function clock_at(self, factor) result(clock)
-      class(branch_trial_type), intent(in) :: self
+      class(branch_type), intent(in) :: self
       real(dp), intent(in) :: factor               !! [-]
       type(step_clock_type) :: clock
 
@@ -70,33 +85,10 @@ contains
       clock%total_time = clock%total_time + clock%step_time
    end function clock_at
 
-   !> Loads of an increment.
-   pure subroutine take_loads(loads, next)
-      type(loads_type), intent(in) :: loads
-      type(solution_state_type), intent(inout) :: next   !! receives them
-
-      next%sources%load = loads%heat_load()
-      next%sources%film = loads%film_matrix()
-      next%force_load = loads%nodal_forces()
-   end subroutine take_loads
-
-   !> Steps begin at another solution.
-   subroutine renew(self, state)
-      class(branch_trial_type), intent(inout) :: self
-      type(solution_state_type), intent(in) :: state   !! the solution
-
-      self%before = state
-      self%contact = state%contact
-   end subroutine renew
-
    !> Begins at a solution, the first point: measures lengths and finds the way of the branch.
    !> Errors: as a pass; there is no way.
-   subroutine begin(self, model, bodies, heat, loads, factor, error)
-      class(branch_trial_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads         !! moved along
+   subroutine begin(self, factor, error)
+      class(branch_type), intent(inout) :: self
       real(dp), intent(in) :: factor                   !! load factor of the solution
       type(error_type), allocatable, intent(out) :: error
       type(trial_type) :: loaded
@@ -104,31 +96,30 @@ contains
       integer :: k, m
 
       allocate (self%known(2))
-      call load_increment(self, model, bodies, heat, loads, loaded, error)
+      call load_increment(self, loaded, error)
       if (allocated(error)) return
       self%rate = load_rate_type(loaded%data%heat%condensed, loaded%data%no_jump_load)
       if (allocated(loaded%data%welded_mean)) self%rate%mean = loaded%data%welded_mean
       self%point%factor = 1.0_dp
-      call load_increment(self, model, bodies, heat, loads, loaded, error)
+      call load_increment(self, loaded, error)
       if (allocated(error)) return
       self%rate%heat = loaded%data%heat%condensed - self%rate%heat
       self%rate%force = loaded%data%no_jump_load - self%rate%force
       if (allocated(loaded%data%welded_mean)) self%rate%mean = loaded%data%welded_mean - &
          self%rate%mean
       m = size(self%before%omega)
-      associate (measure => self%measure, weight => max(bodies%points%weight, 0.0_dp))
+      associate (measure => self%measure, weight => max(self%bodies%points%weight, 0.0_dp))
          measure%length = loaded%data%scales%length
-         measure%graph = make_graph(bodies, heat, measure%length)
+         measure%graph = make_graph(self%bodies, self%heat, measure%length)
          measure%part = sqrt(weight/sum(weight))
          allocate (measure%body(m), source=1.0_dp)
          self%point%coordinate = measure%graph%coordinate_of_omega(self%before%omega, &
-            openings(bodies, measure%graph, self%before%contact))
+            openings(self%bodies, measure%graph, self%before%contact))
       end associate
       self%point%factor = factor
-      self%point%tangent = [(0.0_dp, k=1, m), merge(1.0_dp, -1.0_dp, &
-         model%steps(self%step)%continuation%rises)]
+      self%point%tangent = [(0.0_dp, k=1, m), merge(1.0_dp, -1.0_dp, self%asked%rises)]
       self%from = self%point
-      call find_pass(self, model, bodies, heat, loads, error)
+      call find_pass(self, error)
       if (allocated(error)) return
       if (allocated(self%pass%body)) self%measure%body = self%pass%body
       call self%measure%correction(self%point, self%pass, 0, step)
@@ -144,37 +135,31 @@ contains
 
    !> An increment with the load factor of the point.
    !> Error: its loads overflow.
-   subroutine load_increment(self, model, bodies, heat, loads, loaded, error)
-      type(branch_trial_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine load_increment(self, loaded, error)
+      type(branch_type), intent(inout) :: self
       type(trial_type), intent(inout) :: loaded
       type(error_type), allocatable, intent(out) :: error
 
-      call loads%move_to(self%clock_at(self%point%factor), model)
+      call self%loads%move_to(self%clock_at(self%point%factor), self%model)
       loaded%next = self%before
-      call take_loads(loads, loaded%next)
-      call begin_increment(bodies, model%steps(self%step), self%before, loaded)
+      loaded%next%sources%load = self%loads%heat_load()
+      loaded%next%sources%film = self%loads%film_matrix()
+      loaded%next%force_load = self%loads%nodal_forces()
+      call begin_increment(self%bodies, self%model%steps(self%step), self%before, loaded)
       call move_alloc(self%known, loaded%known)
-      call load_points(bodies, heat, loads, loaded, error)
+      call load_points(self%bodies, self%heat, self%loads, loaded, error)
       call move_alloc(loaded%known, self%known)
-      if (.not. allocated(error)) loaded%data%scales = contact_scales(bodies, loaded%data)
+      if (.not. allocated(error)) loaded%data%scales = contact_scales(self%bodies, loaded%data)
    end subroutine load_increment
 
    !> The pass at the point, with its derivatives.
    !> Errors: as a pass.
-   subroutine find_pass(self, model, bodies, heat, loads, error)
-      type(branch_trial_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine find_pass(self, error)
+      type(branch_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
       type(trial_type) :: loaded
 
-      call load_increment(self, model, bodies, heat, loads, loaded, error)
+      call load_increment(self, loaded, error)
       if (allocated(error)) return
       associate (data => loaded%data, workspace => loaded%workspace, next => loaded%next)
          data%rate = self%rate
@@ -182,7 +167,7 @@ contains
          workspace%pass%coordinate = self%point%coordinate
          self%contact%reference = next%contact%reference
          next%contact = self%contact
-         call pass_on_branch(bodies, heat, loaded, self%residual, error)
+         call pass_on_branch(self%bodies, self%heat, loaded, self%residual, error)
          if (allocated(error)) return
          self%contact = next%contact
          self%near = max(nearest, workspace%record%residual_floor)
@@ -195,16 +180,12 @@ contains
    !> A pass at the point, and the correction that it asks for; the tangent there is the point's.
    !> Not sound where contact zones are not found or derivatives do not exist.
    !> Error: status_interrupted.
-   subroutine correct_once(self, model, bodies, heat, loads, correction, error)
-      type(branch_trial_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine correct_once(self, correction, error)
+      type(branch_type), intent(inout) :: self
       type(path_step_type), intent(out) :: correction
       type(error_type), allocatable, intent(out) :: error
 
-      call find_pass(self, model, bodies, heat, loads, error)
+      call find_pass(self, error)
       if (allocated(error)) then
          if (error%status == status_no_convergence) deallocate (error)
          return
@@ -219,12 +200,8 @@ contains
    !> A step of a length along the tangent, and back to the branch. With an unknown held it ends
    !> where that has the value of the point before.
    !> Error: status_interrupted.
-   subroutine try_step(self, model, bodies, heat, loads, length, error)
-      class(branch_trial_type), intent(inout) :: self   !! receives point and outcome
-      type(model_type), intent(in) :: model
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(loads_type), intent(inout) :: loads
+   subroutine try_step(self, length, error)
+      class(branch_type), intent(inout) :: self   !! receives point and outcome
       real(dp), intent(in) :: length
       type(error_type), allocatable, intent(out) :: error
       type(branch_point_type) :: trial
@@ -240,7 +217,7 @@ contains
       self%point = trial
       self%has_converged = .false.
       do i = 1, most_corrections
-         call correct_once(self, model, bodies, heat, loads, correction, error)
+         call correct_once(self, correction, error)
          if (allocated(error)) return
          if (.not. correction%sound) exit
          self%has_converged = self%residual <= wanted_part .and. norm2(correction%change) <= &

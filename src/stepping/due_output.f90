@@ -7,8 +7,7 @@ module due_output
    use time_points, only: time_points_type
    implicit none
    private
-   public :: fields_are_due, is_judged, met_within, needs_recovery, restart_is_due, &
-      stability_is_due, table_is_due
+   public :: fields_are_due, is_judged, is_nth, met_within, needs_recovery, table_is_due
 
    real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
 
@@ -43,25 +42,9 @@ contains
       end associate
    end function table_is_due
 
-   !> Whether a restart is written: at every n-th increment of a step and its last.
-   pure logical function restart_is_due(record, model)
-      type(increment_record_type), intent(in) :: record
-      type(model_type), intent(in) :: model
-
-      restart_is_due = is_nth(model%steps(record%step)%restart_frequency, record)
-   end function restart_is_due
-
-   !> Whether the stability of a state is analysed: at every n-th increment of a step and its last.
-   pure logical function stability_is_due(record, model)
-      type(increment_record_type), intent(in) :: record
-      type(model_type), intent(in) :: model
-
-      stability_is_due = is_nth(model%steps(record%step)%stability_frequency, record)
-   end function stability_is_due
-
    !> Whether an increment is an n-th one of its step, or the last; none is of n = 0.
    pure logical function is_nth(n, record)
-      integer, intent(in) :: n
+      integer, intent(in) :: n                            !! such as restart_frequency of the step
       type(increment_record_type), intent(in) :: record
 
       is_nth = n > 0

@@ -23,7 +23,7 @@ module heat_storage
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: begin_first_stage, begin_second_stage, begin_storage, measure_changes, strain_rate
+   public :: begin_first_stage, begin_second_stage, begin_storage, measure_changes
 
    real(dp), parameter :: own = 2.0_dp   !! growth of the range that an increment makes itself
    !> Part of the largest temperature below which a range is that of rounding.
@@ -54,8 +54,7 @@ contains
       if (stage%is_last) return
       stage%duration = stage_part*stage%size
       stage%size = stage%duration
-      stage%clock%step_time = run%control%step_time + stage%size
-      stage%clock%total_time = run%control%step_start + stage%clock%step_time
+      stage%clock = run%control%instant_at(model, run%control%step_time + stage%size)
    end subroutine begin_first_stage
 
    !> The second stage of an increment: C (T_i+1 - T_i)/dt is (1 - gamma) of the first stage's rate
@@ -81,17 +80,6 @@ contains
       stage%is_last = .true.
    end subroutine begin_second_stage
 
-   !> Rate of the heat that strains take up, T0 beta:eps' over all bodies, over the stage. Loads
-   !> that act at once strain bodies within the first one.
-   pure real(dp) function strain_rate(bodies, stage, before, next)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(stage_type), intent(in) :: stage
-      type(solution_state_type), intent(in) :: before, next  !! states at both ends
-
-      strain_rate = sum(bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
-         before%displacement))/stage%size
-   end function strain_rate
-
    !> The state as its first increment finds it: temperatures that the step prescribes, with those
    !> that ties, equations and hanging nodes give by them, its loads and its films act as at its
    !> start, jumps included, and what they leave over is stored.
@@ -104,7 +92,7 @@ contains
       logical :: stores(size(state%temperature))
       integer :: i
 
-      call run%loads%move_to(run%control%start_of_step(model), model)
+      call run%loads%move_to(run%control%instant_at(model, 0.0_dp), model)
       associate (bodies => run%bodies, loads => run%loads, &
          by => run%bodies%thermal%map%by_unknowns)
          temperature = bodies%thermal%map%carried_along(state%temperature, merge( &

@@ -8,8 +8,9 @@ module increment_attempts
    use coupled_increment, only: differ, judge_solution
    use errors, only: error_type, set_error, status_no_convergence
    use friction_heating, only: nodal_friction_heat
-   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, strain_rate
-   use increment_checks, only: check_heat, check_record, warn_of_choices
+   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes
+   use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, &
+      warn_of_tables
    use increment_data, only: stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
@@ -18,11 +19,9 @@ module increment_attempts
    use load_histories, only: step_clock_type
    use model, only: model_type
    use records, only: add_attempts, increment_record_type
-   use shock_checks, only: note_shock
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
-   use table_checks, only: warn_of_tables
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
@@ -30,6 +29,9 @@ module increment_attempts
 
    !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
    type, extends(trial_type) :: attempt_type
+      type(stage_type) :: stage
+      !> State at the start of the stage; of a first one jumps where a step begins included
+      type(solution_state_type) :: before
       type(increment_record_type) :: record
       character(:), allocatable :: undecided       !! what was last warned of
    end type attempt_type
@@ -44,28 +46,29 @@ contains
       type(step_clock_type), intent(in) :: clock            !! its end
       type(attempt_type), intent(out) :: attempt
       type(error_type), allocatable, intent(out) :: error
-      type(solution_state_type) :: start    ! state at its start, jumps where a step begins included
-      type(solution_state_type) :: middle   ! state between two stages
-      type(increment_record_type) :: first  ! record of the first of two
-      type(stage_type) :: stage
+      type(solution_state_type) :: start    ! state at its start
+      type(increment_record_type) :: first  ! record of the first of two stages
 
       ! An attempt that fails leaves nothing behind, not even in the last digits.
       if (allocated(run%known)) attempt%known = run%known
       attempt%undecided = run%undecided
-      start = run%state
-      stage%clock = clock
-      stage%of_increment = clock
-      stage%size = clock%step_time - run%control%step_time
-      stage%duration = stage%size
-      if (allocated(start%history)) stage%history = start%history
-      associate (step => model%steps(run%control%step))
-         if (step%is_transient) call begin_first_stage(run, model, stage, start)
-         call solve_stage(run, model, stage, start, attempt, error)
+      attempt%before = run%state
+      associate (step => model%steps(run%control%step), stage => attempt%stage)
+         stage%clock = clock
+         stage%of_increment = clock
+         stage%size = clock%step_time - run%control%step_time
+         stage%duration = stage%size
+         if (allocated(run%state%history)) stage%history = run%state%history
+         if (step%is_transient) then
+            call begin_first_stage(run, model, stage, attempt%before)
+            start = attempt%before
+         end if
+         call solve_stage(run, model, attempt, error)
          if (.not. (stage%is_last .or. allocated(error))) then
-            middle = attempt%next
             first = attempt%record
-            call begin_second_stage(run, model, start, middle, stage)
-            call solve_stage(run, model, stage, middle, attempt, error)
+            attempt%before = attempt%next
+            call begin_second_stage(run, model, start, attempt%before, stage)
+            call solve_stage(run, model, attempt, error)
             call add_attempts(first, attempt%record)
          end if
          if (run%branch%is_followed .and. .not. allocated(error)) then
@@ -81,23 +84,21 @@ contains
    end subroutine attempt_increment
 
    !> Solves a stage of an increment, mostly the only one; the last one is recorded.
-   subroutine solve_stage(run, model, stage, before, attempt, error)
+   subroutine solve_stage(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
-      type(stage_type), intent(in) :: stage
-      type(solution_state_type), intent(in) :: before
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
 
-      call run%loads%move_to(stage%clock, model)
+      call run%loads%move_to(attempt%stage%clock, model)
       call check_prescribed(model, run%bodies, run%loads, run%control%step, error)
-      call begin_record(run, model, stage%of_increment, attempt%record)
+      call begin_record(run, model, attempt%stage%of_increment, attempt%record)
       if (allocated(error)) return
-      attempt%next = before
+      attempt%next = attempt%before
       associate (step => model%steps(run%control%step), bodies => run%bodies, &
          next => attempt%next, record => attempt%record)
-         next%increment_size = stage%size
+         next%increment_size = attempt%stage%size
          ! (3.4) asks for them at the start of the next increment, whether this one solves heat or
          ! not.
          if (any(solves_heat(model%steps%analysis))) then
@@ -105,12 +106,16 @@ contains
             next%sources%film = run%loads%film_matrix()
          end if
          next%force_load = run%loads%nodal_forces()
-         call solve_corrected(run, model, stage, before, attempt, error)
+         call solve_corrected(run, model, attempt, error)
          if (allocated(error)) return
          if (solves_mechanics(step%analysis)) call warn_of_choices(run, model, &
             attempt%workspace%contact, next, attempt%undecided, record)
-         if (step%dilates) next%dilatation = strain_rate(bodies, stage, before, next)
-         if (stage%is_last) then
+         ! Heat that strains take up, T0 beta:eps' over all bodies. Loads that act at once strain
+         ! bodies within the first stage.
+         if (step%dilates) next%dilatation = sum(bodies%dilatation%of_strains( &
+            bodies%thermal_load, next%displacement - attempt%before%displacement))/ &
+            attempt%stage%size
+         if (attempt%stage%is_last) then
             since = wall_seconds()
             call complete_record(bodies, model, run%recovery, run%loads, attempt%data, next, record)
             run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
@@ -122,43 +127,40 @@ contains
    end subroutine solve_stage
 
    !> Solves the fields of a stage until its corrections are those of its solution.
-   subroutine solve_corrected(run, model, stage, before, attempt, error)
+   subroutine solve_corrected(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
-      type(stage_type), intent(in) :: stage
-      type(solution_state_type), intent(in) :: before
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
       type(solved_loads_type), allocatable :: known(:)   ! before the stage
 
-      call begin_trial(run, model, stage, before, attempt, error)
+      call begin_trial(run, model, attempt, error)
       if (allocated(error)) return
       associate (corrections => run%corrections, step => model%steps(run%control%step))
          if (.not. corrections%corrects) then
-            call solve_fields(run, model, before, attempt, error)
+            call solve_fields(run, model, attempt, error)
             return
          end if
          allocate (known(2))
          if (allocated(attempt%known)) known = attempt%known
-         call corrections%begin(model, run%bodies, stage, before, &
+         call corrections%begin(model, run%bodies, attempt%stage, attempt%before, &
             takes_past=abs(step%scheme%b(1)) > 0.0_dp)
          do
             call corrections%give(attempt%data%equation, attempt%next)
-            call solve_fields(run, model, before, attempt, error)
+            call solve_fields(run, model, attempt, error)
             if (allocated(error)) return
-            call corrections%correct(model, run%bodies, stage, attempt%next, error)
+            call corrections%correct(model, run%bodies, attempt%next, error)
             if (allocated(error)) return
             if (corrections%is_settled) exit
             attempt%known = known
             if (corrections%asks_operators) then
-               call renew_operators(run, model, stage, before, attempt%next, error)
-               if (.not. allocated(error)) call begin_trial(run, model, stage, before, attempt, &
-                  error)
+               call renew_operators(run, model, attempt, error)
+               if (.not. allocated(error)) call begin_trial(run, model, attempt, error)
                if (allocated(error)) return
             end if
-            call attempt%begin_again(before)
+            call attempt%begin_again(attempt%before)
          end do
-         call corrections%keep(run%bodies, before, attempt%next)
+         call corrections%keep(run%bodies, attempt%before, attempt%next)
          if (run%bodies%is_coupled .and. step%fixed_point%finds_gain .and. .not. &
             attempt%data%equation%is_explicit()) then
             call judge_solution(run%bodies, run%heat_reductions(run%in_use), attempt%trial_type)
@@ -171,18 +173,17 @@ contains
 
    !> Forms the operators at the solution of a stage, and goes on from it.
    !> Errors: as reduce.
-   subroutine renew_operators(run, model, stage, before, next, error)
+   subroutine renew_operators(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
-      type(stage_type), intent(in) :: stage
-      type(solution_state_type), intent(in) :: before, next
+      type(attempt_type), intent(in) :: attempt
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: tangent(:)
 
-      call run%corrections%find_tangents(model, next, tangent)
+      call run%corrections%find_tangents(model, attempt%next, tangent)
       associate (bodies => run%bodies)
-         call bodies%move_operators(model, next%temperature, tangent)
-         call run%corrections%renew(model, bodies, stage, before, next)
+         call bodies%move_operators(model, attempt%next%temperature, tangent)
+         call run%corrections%renew(model, bodies, attempt%before, attempt%next)
          if (solves_mechanics(model%steps(run%control%step)%analysis)) call bodies%reduce(model, &
             run%heat_reductions(run%in_use)%node_rank, error)
       end associate
@@ -190,24 +191,24 @@ contains
 
    !> Begins the trial of a stage, with the reduction of heat that its equation asks for.
    !> Errors: as reduce_heat.
-   subroutine begin_trial(run, model, stage, before, attempt, error)
+   subroutine begin_trial(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
-      type(stage_type), intent(in) :: stage
-      type(solution_state_type), intent(in) :: before
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
 
       associate (step => model%steps(run%control%step), bodies => run%bodies, data => attempt%data)
-         call begin_increment(bodies, step, before, attempt%trial_type)
+         call begin_increment(bodies, step, attempt%before, attempt%trial_type)
          ! The last of the corrected solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
             run%corrections%corrects
          if (step%is_transient) then
-            call data%equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
-               before%stored)
-            data%friction%duration = stage%duration
-            if (allocated(stage%slip_before)) data%friction%slip_before = stage%slip_before
+            associate (stage => attempt%stage)
+               call data%equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
+                  attempt%before%stored)
+               data%friction%duration = stage%duration
+               if (allocated(stage%slip_before)) data%friction%slip_before = stage%slip_before
+            end associate
          end if
          if (run%branch%is_followed) then
             data%omega_start = run%branch%point%omega
@@ -219,10 +220,9 @@ contains
    end subroutine begin_trial
 
    !> Solves the fields of a stage with the present corrections of its operators.
-   subroutine solve_fields(run, model, before, attempt, error)
+   subroutine solve_fields(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
-      type(solution_state_type), intent(in) :: before
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: since
@@ -245,13 +245,14 @@ contains
             return
          end if
          since = wall_seconds()
-         call recover_fields(bodies, run%heat_reductions(run%in_use), run%loads, before, &
-            attempt%trial_type)
+         call recover_fields(bodies, run%heat_reductions(run%in_use), run%loads, &
+            attempt%before, attempt%trial_type)
          if (step%is_transient) then
             next%stored = data%equation%stored_rate(bodies%capacity, next%temperature)
             associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
                if (allocated(data%friction%heat)) next%stored = next%stored - b(1)/a(1)* &
-                  nodal_friction_heat(bodies, data%friction%late_start(before%friction_heat))
+                  nodal_friction_heat(bodies, data%friction%late_start( &
+                  attempt%before%friction_heat))
             end associate
          end if
          run%seconds%recover = run%seconds%recover + (wall_seconds() - since)

@@ -1,23 +1,34 @@
-!> Checks that a solved increment must pass before it is accepted.
+!> Checks that a solved increment must pass before it is accepted, and what it is warned of:
+!> choices that the loads leave open; tables of materials and of conductances that it leaves;
+!> temperatures that jump where a step that stores heat begins, on a mesh that is too coarse for its
+!> increments. Beside these temperatures overshoot until the heat has crossed an element.
 module increment_checks
+   use conductance_laws, only: law_by_temperature_type, law_clearance, law_none, law_pressure
+   use connections, only: connections_type
    use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type
+   use element_kinds, only: element_node_count
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use kinds, only: dp
-   use model, only: model_type
+   use materials, only: follows_temperature, heat_capacity, property_keywords
+   use mesh_bodies, only: body_name
+   use model, only: follows_temperatures, model_type
    use records, only: increment_record_type
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
-   use text, only: to_text
+   use text, only: counted, to_text
    use unconstrained_bodies, only: unconstrained_now, undetermined_now
    implicit none
    private
-   public :: check_balance, check_heat, check_record, check_values, check_violation
-   public :: warn_of_choices
+   public :: check_balance, check_heat, check_record, check_values
+   public :: note_shock, warn_of_choices, warn_of_tables
 
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
    real(dp), parameter :: sound_imbalance = 1.0e-6_dp !! of heat and forces in discrete equations
+   real(dp), parameter :: shock = 0.01_dp   !! part of the range of temperatures that is a jump
+   real(dp), parameter :: crossing = 4.0_dp !! least useful increment: rho c h^2/(4 k)
+   real(dp), parameter :: margin = 1.0e-9_dp   !! of a table, that rounding may leave
 
 contains
 
@@ -34,20 +45,11 @@ contains
       if (solves_heat(analysis)) call check_balance(record%heat_imbalance, 'heat rates', error)
       if (allocated(error) .or. .not. solves_mechanics(analysis)) return
       call check_balance(record%force_imbalance, 'forces', error)
-      if (.not. allocated(error)) call check_violation(record, error)
-   end subroutine check_record
-
-   !> The recovered displacements keep the contact conditions.
-   !> Error: they do not.
-   subroutine check_violation(record, error)
-      type(increment_record_type), intent(in) :: record
-      type(error_type), allocatable, intent(out) :: error
-
-      if (record%contact_violation <= sound_violation) return
+      if (allocated(error) .or. record%contact_violation <= sound_violation) return
       call set_error(error, status_no_convergence, &
          'the recovered displacements violate the contact conditions by '// &
          to_text(record%contact_violation)//' of the largest displacement or force')
-   end subroutine check_violation
+   end subroutine check_record
 
    !> The heat rates, or the forces, of the discrete equations balance.
    !> Error: they do not.
@@ -70,36 +72,29 @@ contains
       integer :: i
 
       associate (fields => record%fields)
-         if (allocated(fields%temperature)) then
-            call check_finite(fields%temperature, 'temperatures', status_no_convergence, error)
-            if (allocated(error)) return
-         end if
-         if (allocated(fields%heat_flux)) then
-            call check_finite([fields%heat_flux], 'heat fluxes', status_no_convergence, error)
-            if (allocated(error)) return
-         end if
-         if (allocated(fields%reaction_heat)) then
-            call check_finite([record%heat_imbalance], 'heat fluxes', status_no_convergence, error)
-            if (allocated(error)) return
-         end if
-         if (allocated(fields%stress)) then
-            call check_finite([fields%stress], 'displacements and stresses', &
-               status_no_convergence, error)
-            if (allocated(error)) return
-         end if
-         if (allocated(fields%displacement)) then
-            call check_finite([fields%displacement, fields%reaction], &
-               'displacements and stresses', status_no_convergence, error)
-            if (allocated(error)) return
-         end if
+         call judge('temperatures', fields%temperature)
+         call judge('heat fluxes', table=fields%heat_flux)
+         if (allocated(fields%reaction_heat)) call judge('heat fluxes', [record%heat_imbalance])
+         call judge('displacements and stresses', table=fields%stress)
+         call judge('displacements and stresses', table=fields%displacement)
+         call judge('displacements and stresses', table=fields%reaction)
       end associate
       do i = 1, size(record%contacts)
          associate (contact => record%contacts(i))
-            call check_finite([contact%gap, contact%pressure, contact%shear, contact%slip], &
-               'gaps and pressures', status_no_convergence, error)
-            if (allocated(error)) return
+            call judge('gaps and pressures', [contact%gap, contact%pressure, contact%shear, &
+               contact%slip])
          end associate
       end do
+   contains
+      !> Judges a list or a table; one that is not allocated is absent.
+      subroutine judge(what, list, table)
+         character(*), intent(in) :: what
+         real(dp), intent(in), optional :: list(:), table(:, :)
+
+         if (allocated(error)) return
+         if (present(list)) call check_finite(list, what, status_no_convergence, error)
+         if (present(table)) call check_finite([table], what, status_no_convergence, error)
+      end subroutine judge
    end subroutine check_values
 
    !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
@@ -143,5 +138,192 @@ contains
       if (words /= undecided .and. len(words) > 0) call record%warn(words)
       undecided = words
    end subroutine warn_of_choices
+
+   !> Notes the least increment that does not overshoot beside nodes whose temperature jumps, in the
+   !> smallest elements there, and warns of nodes where elements need a longer one. Elements without
+   !> midside nodes have lumped capacities and do not overshoot.
+   pure subroutine note_shock(model, jump, increment_size, record)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: jump(:)              !! (nodes) of temperatures [temperature]
+      real(dp), intent(in) :: increment_size       !! of the first increment [time]
+      type(increment_record_type), intent(inout) :: record   !! of it; receives both
+      logical :: jumps(size(jump)), is_coarse(size(jump))
+      real(dp) :: least, largest, size_across
+      integer :: e, i
+
+      associate (temperature => record%fields%temperature, used => model%mesh%node_body > 0)
+         jumps = abs(jump) > shock*max(maxval(abs(jump)), maxval(temperature, mask=used) - &
+            minval(temperature, mask=used))
+      end associate
+      is_coarse = .false.
+      largest = 0.0_dp
+      do e = 1, size(model%mesh%element_kind)
+         associate (nodes => model%mesh%element_nodes(:element_node_count( &
+            model%mesh%element_kind(e)), e), x => model%mesh%coordinates, material => &
+            model%materials(model%sections(model%mesh%element_section(e))%material))
+            if (size(nodes) <= 4 .or. .not. any(jumps(nodes)) .or. all(jumps(nodes))) cycle
+            size_across = maxval([(minval(norm2(x(:, nodes) - spread(x(:, nodes(i)), 2, &
+               size(nodes)), dim=1), mask=jumps(nodes)), i=1, size(nodes))])
+            least = heat_capacity(material)*size_across**2/(crossing*maxval(material%conductivity))
+            if (record%useful_increment <= 0.0_dp) record%useful_increment = least
+            record%useful_increment = min(record%useful_increment, least)
+            if (increment_size >= least) cycle
+            is_coarse(nodes) = is_coarse(nodes) .or. jumps(nodes)
+            largest = max(largest, least)
+         end associate
+      end do
+      if (.not. any(is_coarse)) return
+      call record%warn('temperatures jump at '//counted(count(is_coarse), 'node')//', such as '// &
+         to_text(model%mesh%node_number(findloc(is_coarse, .true., dim=1)))//', where elements '// &
+         'are so large that temperatures beside them overshoot within '//to_text(largest)// &
+         '; refine the mesh there, or take increments of at least this')
+   end subroutine note_shock
+
+   !> Warns of temperatures beyond the first and last rows of tables of the bodies' materials, and
+   !> of pressures, gaps and temperatures beyond those of conductances.
+   subroutine warn_of_tables(model, points, record)
+      type(model_type), intent(in) :: model
+      type(connections_type), intent(in) :: points             !! of all interfaces
+      type(increment_record_type), intent(inout) :: record     !! receives the warnings
+      integer :: i
+
+      if (follows_temperatures(model)) call warn_of_materials(model, record)
+      do i = 1, size(record%contacts)
+         if (allocated(record%contacts(i)%conductance)) call warn_of_law(model, i, &
+            points%slave(points%interface_start(i):points%interface_start(i + 1) - 1), record)
+      end do
+   end subroutine warn_of_tables
+
+   !> Those of materials.
+   subroutine warn_of_materials(model, record)
+      type(model_type), intent(in) :: model
+      type(increment_record_type), intent(inout) :: record     ! receives the warnings
+      logical :: is_of(size(model%mesh%node_number))
+      integer :: e, i, m
+
+      do m = 1, size(model%materials)
+         if (.not. follows_temperature(model%materials(m))) cycle
+         is_of = .false.
+         do e = 1, size(model%mesh%element_kind)
+            if (model%sections(model%mesh%element_section(e))%material == m) then
+               is_of(model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), &
+               e)) = .true.
+            end if
+         end do
+         if (.not. any(is_of)) cycle
+         associate (t => record%fields%temperature)
+            call warn_of_end(minloc(t, dim=1, mask=is_of), -1.0_dp, ' below their first rows')
+            call warn_of_end(maxloc(t, dim=1, mask=is_of), 1.0_dp, ' above their last rows')
+         end associate
+      end do
+   contains
+      subroutine warn_of_end(node, side, where)
+         integer, intent(in) :: node
+         real(dp), intent(in) :: side
+         character(*), intent(in) :: where
+         character(:), allocatable :: left
+         real(dp) :: row, beyond
+
+         left = ''
+         beyond = 0.0_dp
+         associate (material => model%materials(m), there => record%fields%temperature(node))
+            do i = 1, size(material%given)
+               associate (rows => material%given(i)%temperature)
+                  row = rows(merge(size(rows), 1, side > 0.0_dp))
+                  if (size(rows) == 1 .or. side*(there - row) <= margin*(maxval(rows) - &
+                     minval(rows))) cycle
+               end associate
+               left = left//', *'//trim(property_keywords(material%given(i)%kind))//' ('// &
+                  to_text(row)//')'
+               beyond = max(beyond, side*(there - row))
+            end do
+            if (len(left) > 0) call record%warn(body_name(model, model%mesh%node_body(node))// &
+               ' leaves the tables of '//material%name//where//', and their values there are '// &
+               'held: temperature ', there, ' at node '// &
+               to_text(model%mesh%node_number(node))//', time '//to_text(record%time)//'; '// &
+               left(3:), severity=beyond)
+         end associate
+      end subroutine warn_of_end
+   end subroutine warn_of_materials
+
+   !> Those of the conductance of an interface.
+   subroutine warn_of_law(model, i, slave, record)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: i                                 ! index of the interface
+      integer, intent(in) :: slave(:)                          ! (m) slave nodes
+      type(increment_record_type), intent(inout) :: record     ! receives the warnings
+      type(law_by_temperature_type) :: by
+      logical :: closed(size(slave)), opens(size(slave))
+      real(dp) :: gap(size(slave)), mean(size(slave)), pressure(size(slave))
+
+      associate (contact => record%contacts(i), &
+         interaction => model%interactions(model%contacts(i)%interaction))
+         associate (law => interaction%law)
+            if (allocated(law%by_temperature)) by = law%by_temperature
+            closed = contact%contact_state /= contact_open
+            ! The open law at gap 0 is the closed one, or a part of it.
+            opens = contact%conductance > 0.0_dp .and. &
+               (.not. closed .or. law%closed_kind == law_none .or. law%closed_adds)
+            closed = contact%conductance > 0.0_dp .and. closed
+            gap = merge(0.0_dp, contact%gap, closed)
+            pressure = contact%pressure
+            mean = 0.5_dp*(contact%slave_temperature + contact%master_temperature)
+            if (law%closed_kind == law_pressure) call judge('pressure', law%table_pressure, &
+               columns_of(law%closed_omega, by%closed_columns), pressure, closed, .true.)
+            if (law%open_kind == law_clearance) call judge('gap', law%table_gap, &
+               columns_of(law%open_omega, by%open_columns), gap, opens, .not. law%open_ends)
+            if (allocated(law%view_gap)) call judge('gap', law%view_gap, &
+               reshape(law%view_factor, [size(law%view_gap), 1]), gap, opens, .true.)
+         end associate
+      end associate
+      if (allocated(by%gas_temperature)) call judge('mean temperature', by%gas_temperature, &
+         reshape([by%gas_a, by%gas_b], [size(by%gas_a), 2]), mean, opens, .true.)
+      if (allocated(by%open_temperature)) call judge('mean temperature', by%open_temperature, &
+         transpose(by%open_columns), mean, opens, .true.)
+      if (allocated(by%closed_temperature)) call judge('mean temperature', &
+         by%closed_temperature, transpose(by%closed_columns), mean, closed, .true.)
+   contains
+      !> Judges the contact points that are farthest out of the rows of a table.
+      subroutine judge(noun, rows, values, at, counts, holds_last)
+         character(*), intent(in) :: noun         ! what it is over
+         real(dp), intent(in) :: rows(:)          ! ascending
+         real(dp), intent(in) :: values(:, :)     ! (rows, columns)
+         real(dp), intent(in) :: at(:)            ! (m) as the rows
+         logical, intent(in) :: counts(:)         ! (m) points that conduct by it
+         logical, intent(in) :: holds_last        ! whether the last value is held beyond
+
+         real(dp) :: beyond
+         integer :: k, next, row, way
+
+         if (size(rows) == 1 .or. .not. any(counts)) return
+         do way = -1, merge(1, -1, holds_last), 2
+            row = merge(1, size(rows), way < 0)
+            next = row - way
+            k = maxloc(way*at, dim=1, mask=counts)
+            beyond = way*(at(k) - rows(row))
+            if (beyond <= margin*(rows(size(rows)) - rows(1))) cycle
+            ! A table that is level there, or has come down to 0, goes on so.
+            if (all(abs(values(row, :) - values(next, :)) <= 0.0_dp)) cycle
+            if (all(abs(values(row, :)) <= 0.0_dp)) cycle
+            call record%warn('contact pair '//model%contacts(i)%name//' leaves a table of '// &
+               model%interactions(model%contacts(i)%interaction)%name// &
+               trim(merge(' below its first', ' above its last ', way < 0))//' '//noun//', '// &
+               to_text(rows(row))//', and the conductance there is held: '//noun//' ', at(k), &
+               ' at slave node '//to_text(model%mesh%node_number(slave(k)))//', time '// &
+               to_text(record%time), severity=beyond)
+         end do
+      end subroutine judge
+   end subroutine warn_of_law
+
+   !> A table in columns, one for each temperature.
+   pure function columns_of(values, by_temperature) result(columns)
+      real(dp), intent(in) :: values(:)                        ! (rows)
+      !> (rows, columns) those of several temperatures; unallocated for one
+      real(dp), allocatable, intent(in) :: by_temperature(:, :)
+      real(dp), allocatable :: columns(:, :)
+
+      columns = reshape(values, [size(values), 1])
+      if (allocated(by_temperature)) columns = by_temperature
+   end function columns_of
 
 end module increment_checks

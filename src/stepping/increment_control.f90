@@ -44,10 +44,8 @@ module increment_control
       procedure :: enter_step
       procedure :: step_is_over
       procedure :: next_instant
-      procedure :: start_of_step
-      procedure :: present_instant
+      procedure :: instant_at
       procedure :: exchange
-      procedure :: end_at
       procedure :: size_to
       procedure :: goes_too_far
       procedure, private :: useful_size
@@ -132,24 +130,22 @@ contains
       type(step_clock_type) :: clock                      !! the instant
 
       associate (step => model%steps(self%step))
-         clock%step_time = next_end(self%step_time, self%largest, &
+         clock = self%instant_at(model, next_end(self%step_time, self%largest, &
             merge(step%period, step%first_increment, step%grows .or. adapts_increments(step)), &
-            step%period, self%landings, self%spacing)
-         clock%period = step%period
-         clock%total_time = self%step_start + clock%step_time
-         clock%ramped = step%ramped
+            step%period, self%landings, self%spacing))
       end associate
    end function next_instant
 
-   !> The instant at which the step begins.
-   pure function start_of_step(self, model) result(clock)
+   !> The instant at a time of the present step.
+   pure function instant_at(self, model, step_time) result(clock)
       class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
+      real(dp), intent(in) :: step_time                   !! from the start of the step [time]
       type(step_clock_type) :: clock
 
-      clock = step_clock_type(0.0_dp, model%steps(self%step)%period, self%step_start, &
-         model%steps(self%step)%ramped)
-   end function start_of_step
+      clock = step_clock_type(step_time, model%steps(self%step)%period, &
+         self%step_start + step_time, model%steps(self%step)%ramped)
+   end function instant_at
 
    !> Size of an increment that ends at an instant: what differs from the size that is set by the
    !> rounding of times alone is that size, so that its factors serve again.
@@ -160,17 +156,6 @@ contains
       size_to = clock%step_time - self%step_time
       if (abs(size_to - self%largest) <= alike*self%largest) size_to = self%largest
    end function size_to
-
-   !> The end of the last increment.
-   pure function present_instant(self, model) result(clock)
-      class(increment_control_type), intent(in) :: self   !! position in the steps
-      type(model_type), intent(in) :: model
-      type(step_clock_type) :: clock
-
-      clock = self%start_of_step(model)
-      clock%step_time = self%step_time
-      clock%total_time = self%step_start + self%step_time
-   end function present_instant
 
    !> The position within the present step, in either direction.
    subroutine exchange(self, table)
@@ -189,16 +174,6 @@ contains
       self%largest = times(2)
       self%useful = times(3)
    end subroutine exchange
-
-   !> Makes an instant end at another time of the step.
-   pure subroutine end_at(self, step_time, clock)
-      class(increment_control_type), intent(in) :: self   !! position in the steps
-      real(dp), intent(in) :: step_time                   !! from the start of the step [time]
-      type(step_clock_type), intent(inout) :: clock
-
-      clock%step_time = step_time
-      clock%total_time = self%step_start + step_time
-   end subroutine end_at
 
    !> Whether an increment of a transient errs or changes temperatures by more than the step allows,
    !> and may be shorter. Beside temperatures that jump as a step begins none is shorter than heat

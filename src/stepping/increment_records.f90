@@ -81,7 +81,11 @@ contains
                next%stress_temperature - model%initial_temperature, next%history, &
                record%fields%stress, record%stress_error)
          end if
-         call warn_of_floor(step, record)
+         ! The last places of the displacements change omega by more than the tolerance.
+         if (allocated(record%iterations) .and. record%residual_floor > &
+            step%fixed_point%tolerance) call record%warn('the contact conductance is accurate '// &
+            'to ', record%residual_floor, ' only, not TOL='//to_text(step%fixed_point%tolerance)// &
+            ': gaps are differences of far larger displacements, whose rounding changes it')
          call warn_of_slides(model, bodies, record)
          do i = 1, size(record%contacts)
             call note_edges(bodies%interfaces(i), record%contacts(i)%contact_state, record)
@@ -127,19 +131,6 @@ contains
             ' of the result file and the summary have the first '//to_text(edges_kept))
       end subroutine note
    end subroutine note_edges
-
-   !> Warns where the last places of the displacements change omega by more than the tolerance: the
-   !> fixed point was then met no better than this.
-   pure subroutine warn_of_floor(step, record)
-      type(step_type), intent(in) :: step
-      type(increment_record_type), intent(inout) :: record
-
-      if (.not. allocated(record%iterations)) return
-      if (record%residual_floor <= step%fixed_point%tolerance) return
-      call record%warn('the contact conductance is accurate to ', record%residual_floor, &
-         ' only, not TOL='//to_text(step%fixed_point%tolerance)//': gaps are differences of '// &
-         'far larger displacements, whose rounding changes it')
-   end subroutine warn_of_floor
 
    !> Warns of interfaces that slide farther than their contact points allow.
    pure subroutine warn_of_slides(model, bodies, record)

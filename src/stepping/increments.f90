@@ -1,7 +1,8 @@
 !> Increments, of which one call of advance solves one, and their acceptance.
 module increments
    use balances, only: sound_imbalance
-   use due_output, only: stability_is_due
+   use branch_steps, only: accept_point, find_point, shorten_step
+   use due_output, only: is_nth
    use errors, only: error_type, set_error, status_no_convergence
    use increment_attempts, only: attempt_increment, attempt_type, begin_record
    use kinds, only: dp
@@ -52,12 +53,11 @@ contains
          clock = run%control%next_instant(model)
          if (run%branch%points > 0) then
             call begin_record(run, model, clock, record)
-            call run%branch%find_point(model, run%bodies, run%heat_reductions(run%in_use), &
-               run%loads, &
-               run%state, error)
+            call find_point(run%branch, model, run%bodies, run%heat_reductions(run%in_use), &
+               run%loads, run%state, error)
             if (.not. allocated(error)) clock = run%branch%clock_at(run%branch%point%factor)
          end if
-         if (touch%interface > 0) call run%control%end_at(touch%ending, clock)
+         if (touch%interface > 0) clock = run%control%instant_at(model, touch%ending)
          increment_size = clock%step_time - run%control%step_time
          if (.not. allocated(error)) then
             call attempt_increment(run, model, clock, attempt, error)
@@ -78,10 +78,14 @@ contains
       call warn_of_pivot(run, record)
       run%sizes%corrections = run%sizes%corrections + record%corrections
       run%sizes%most_corrections = max(run%sizes%most_corrections, record%corrections)
-      call accept_attempt(attempt, model, record, run)
+      call accept_increment(attempt%next, model, run%state, record)
+      call move_alloc(attempt%known, run%known)
+      call move_alloc(attempt%undecided, run%undecided)
+      if (is_nth(model%steps(record%step)%stability_frequency, record)) run%solved = &
+         attempt%workspace%of_motions()
       call run%control%accept(model, clock, record)
       if (.not. model%steps(run%control%step)%continuation%is_on) return
-      call run%branch%accept(model, record%load_factor)
+      call accept_point(run%branch, record%load_factor)
       run%control%branch_ended = run%branch%is_last
       if (run%branch%is_last) call append(record%notes, 'the branch ends here: '// &
          run%branch%ending)
@@ -104,7 +108,7 @@ contains
             run%runaway_time = record%time
          end if
          if (run%branch%points > 0) then
-            call run%branch%shorten(can_shorten)
+            call shorten_step(run%branch, can_shorten)
          else
             can_shorten = run%control%can_cut_back(model, increment_size)
             if (can_shorten) call run%control%cut_back(model, increment_size)
@@ -114,7 +118,10 @@ contains
             return
          end if
          if (run%branch%points == 0) error%message = error%message//'; '// &
-            run%control%why_not_again(model, increment_size)//runaway_ahead(run, record)
+            run%control%why_not_again(model, increment_size)
+         if (run%branch%points == 0 .and. allocated(run%runaway) .and. &
+            record%time < run%runaway_time) error%message = error%message// &
+            '; an increment to time '//to_text(run%runaway_time)//' ended in '//run%runaway
       end if
       error%message = 'increment '//to_text(record%increment)//' (time '// &
          to_text(record%time)//'): '//error%message
@@ -148,19 +155,6 @@ contains
       end if
    end function keeps
 
-   !> Hands over to the run what an attempt owns.
-   subroutine accept_attempt(attempt, model, record, run)
-      type(attempt_type), intent(inout) :: attempt
-      type(model_type), intent(in) :: model
-      type(increment_record_type), intent(in) :: record
-      type(simulation_type), intent(inout) :: run
-
-      call accept_increment(attempt%next, model, run%state, record)
-      call move_alloc(attempt%known, run%known)
-      call move_alloc(attempt%undecided, run%undecided)
-      if (stability_is_due(record, model)) run%solved = attempt%workspace%of_motions()
-   end subroutine accept_attempt
-
    !> Makes the end of an increment the state of a run, the only place where that changes. A
    !> companion run, of which nothing is reported, has no record.
    pure subroutine accept_increment(next, model, state, record)
@@ -175,17 +169,6 @@ contains
       if (solves_heat(model%steps(record%step)%analysis)) state%is_out_of_balance = &
          record%heat_imbalance_pointwise > sound_imbalance
    end subroutine accept_increment
-
-   !> Says of a failed increment that one that goes further ends in thermal runaway.
-   pure function runaway_ahead(run, record) result(words)
-      type(simulation_type), intent(in) :: run
-      type(increment_record_type), intent(in) :: record
-      character(:), allocatable :: words
-
-      words = ''
-      if (.not. allocated(run%runaway) .or. record%time >= run%runaway_time) return
-      words = '; an increment to time '//to_text(run%runaway_time)//' ended in '//run%runaway
-   end function runaway_ahead
 
    !> Warns of pivots so small that digits are lost which results need, again where it is a tenth.
    subroutine warn_of_pivot(run, record)

@@ -41,7 +41,8 @@ module operator_corrections
       !> Integration points, and points of heat contents
       type(material_points_type), allocatable :: points, contents
       integer, allocatable :: elements(:)
-      type(point_history_type) :: history          !! of the stage
+      type(stage_type) :: stage                    !! that is corrected
+      type(point_history_type) :: history          !! of it
       real(dp), allocatable :: initial_force(:)    !! (2 nodes) of initial stresses, or none [force]
       logical, allocatable :: follows(:)           !! (nodes) of these bodies
       !> (4 nodes) of a stage: rate of heat taken up, heat beyond conduction, forces along x and y
@@ -110,6 +111,7 @@ contains
       logical, intent(in) :: takes_past                      !! whether K T_i stands in eq. (3.4)
       logical :: goes_on
 
+      self%stage = stage
       self%passes = 0
       self%renewed_at = 0
       self%left_over = 0.0_dp
@@ -129,7 +131,7 @@ contains
       if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
          before%temperature)
       if (.not. goes_on) then
-         self%values = corrections_of(self, model, bodies, stage, before%temperature, &
+         self%values = corrections_of(self, model, bodies, before%temperature, &
             before%displacement)
       else
          self%values = before%corrections
@@ -159,21 +161,20 @@ contains
 
    !> Corrects to a solution, unless what is left over is rounding.
    !> Error: no convergence.
-   subroutine correct(self, model, bodies, stage, next, error)
+   subroutine correct(self, model, bodies, next, error)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
-      type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: next          !! solved with the present corrections
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: left_over(:), x(:)
       real(dp) :: last
 
       self%passes = self%passes + 1
-      left_over = corrections_of(self, model, bodies, stage, next%temperature, &
+      left_over = corrections_of(self, model, bodies, next%temperature, &
          next%displacement) - self%values
       if (.not. allocated(self%scale)) self%scale = scales_of(self, model, bodies, &
-         stage, next)
+         next)
       last = self%left_over
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
@@ -194,11 +195,10 @@ contains
    end subroutine correct
 
    !> Goes on with operators that were formed at a solution.
-   subroutine renew(self, model, bodies, stage, before, at)
+   subroutine renew(self, model, bodies, before, at)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies        !! with them
-      type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before        !! state at the start of the stage
       type(solution_state_type), intent(in) :: at            !! the solution
 
@@ -206,7 +206,7 @@ contains
       self%mixing = mixing_type()
       deallocate (self%scale)
       self%heat_before = self%heat_beyond(model, bodies, before%temperature)
-      self%values = corrections_of(self, model, bodies, stage, at%temperature, at%displacement)
+      self%values = corrections_of(self, model, bodies, at%temperature, at%displacement)
    end subroutine renew
 
    !> Keeps the corrections of a stage in its state, for the next one to begin with.
@@ -227,11 +227,10 @@ contains
    end subroutine keep
 
    !> Corrections that temperatures and displacements at the end of a stage ask for.
-   function corrections_of(self, model, bodies, stage, temperature, displacement) result(values)
+   function corrections_of(self, model, bodies, temperature, displacement) result(values)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
-      type(stage_type), intent(in) :: stage
       real(dp), intent(in) :: temperature(:), displacement(:)
       real(dp), allocatable :: values(:)                     ! (4 nodes)
       integer :: n
@@ -240,13 +239,13 @@ contains
       allocate (values(4*n), source=0.0_dp)
       values(n + 1:2*n) = heat_beyond(self, model, bodies, temperature)
       values(2*n + 1:) = forces_beyond(self, model, bodies, temperature, displacement)
-      if (.not. stage%stores_heat) return
-      if (allocated(stage%content)) values(:n) = true_contents(self, model, temperature) - &
-         stage%content - merge(bodies%capacity%multiply(temperature - stage%temperature), 0.0_dp, &
-         self%follows)
+      if (.not. self%stage%stores_heat) return
+      if (allocated(self%stage%content)) values(:n) = true_contents(self, model, temperature) - &
+         self%stage%content - merge(bodies%capacity%multiply(temperature - &
+         self%stage%temperature), 0.0_dp, self%follows)
       if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
          bodies%thermal_load, displacement, temperature) - self%strain_before
-      values(:n) = values(:n)/stage%duration
+      values(:n) = values(:n)/self%stage%duration
    end function corrections_of
 
    !> Heat that K conducts beyond the bodies.
@@ -261,7 +260,7 @@ contains
 
       heat = 0.0_dp
       if (size(self%elements) == 0 .or. .not. allocated(bodies%thermal%matrix%value)) return
-      call set_points(self, model, temperature)
+      call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       heat = bodies%thermal%matrix%multiply(temperature)
       flux = 0.0_dp
       do i = 1, size(self%elements)
@@ -291,7 +290,7 @@ contains
       forces = 0.0_dp
       if (allocated(self%initial_force)) forces = self%initial_force
       if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
-      call set_points(self, model, temperature)
+      call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       warming = temperature - model%initial_temperature
       u = reshape(displacement, shape(u))
       balance = reshape(of_operators(), shape(balance))
@@ -331,7 +330,7 @@ contains
 
       if (.not. allocated(self%history%before)) return
       u = reshape(at%displacement, shape(u))
-      call set_points(self, model, at%temperature)
+      call self%points%set_temperature(model%mesh, at%temperature, model%initial_temperature)
       allocate (tangent(16*size(self%points%materials)), source=0.0_dp)
       do i = 1, size(self%elements)
          associate (e => self%elements(i))
@@ -346,15 +345,6 @@ contains
          end associate
       end do
    end subroutine find_tangents
-
-   !> Gives the integration points the properties at temperatures.
-   subroutine set_points(self, model, temperature)
-      type(corrections_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      real(dp), intent(in) :: temperature(:)
-
-      call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
-   end subroutine set_points
 
    !> Heat contents of the bodies whose materials vary, on the nodes.
    pure function true_contents(self, model, temperature) result(contents)
@@ -372,25 +362,24 @@ contains
 
    !> Largest heat and forces of a solution, by which what is left over is small; at least those of
    !> which the rounding of their terms is the settled part.
-   function scales_of(self, model, bodies, stage, next) result(scale)
+   function scales_of(self, model, bodies, next) result(scale)
       class(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
-      type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: next
       real(dp) :: scale(size(self%values))
       real(dp) :: heat, force, least(2)
 
-      least = rounding/settled*largest_terms(self, model, bodies, stage, next)
+      least = rounding/settled*largest_terms(self, model, bodies, next)
       associate (n => size(next%temperature))
          heat = max(maxval(abs(self%values(:2*n))), least(1))
          if (allocated(bodies%thermal%matrix%value)) heat = max(heat, &
             maxval(abs(bodies%thermal%matrix%multiply(next%temperature))))
-         if (stage%stores_heat) heat = max(heat, maxval(abs(bodies%capacity%multiply( &
-            next%temperature - stage%temperature)))/stage%duration)
+         if (self%stage%stores_heat) heat = max(heat, maxval(abs(bodies%capacity%multiply( &
+            next%temperature - self%stage%temperature)))/self%stage%duration)
          if (allocated(self%strain_before)) heat = max(heat, maxval(abs( &
             bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
-            stage%displacement)))/stage%duration)
+            self%stage%displacement)))/self%stage%duration)
          force = max(maxval(abs(self%values(2*n + 1:))), least(2))
          if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
             maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
@@ -401,11 +390,10 @@ contains
 
    !> Largest terms of which heat and forces are sums. They cancel where a body has one temperature,
    !> or moves as a whole.
-   pure function largest_terms(self, model, bodies, stage, next) result(terms)
+   pure function largest_terms(self, model, bodies, next) result(terms)
       type(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
-      type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: next
       real(dp) :: terms(2)                                   ! [power], [force]
       real(dp) :: shift, stored, thermal_load, warmth
@@ -416,12 +404,12 @@ contains
       if (allocated(bodies%thermal_load%value)) thermal_load = &
          maxval(abs(bodies%thermal_load%value))
       terms(1) = bodies%thermal%largest_entry*warmth
-      if (stage%stores_heat) then
-         stored = max(maxval(abs(stage%content)), maxval(bodies%capacity%multiply( &
+      if (self%stage%stores_heat) then
+         stored = max(maxval(abs(self%stage%content)), maxval(bodies%capacity%multiply( &
             abs(next%temperature))))
-         if (stage%dilates) stored = max(stored, maxval(bodies%capacity%multiply( &
+         if (self%stage%dilates) stored = max(stored, maxval(bodies%capacity%multiply( &
             bodies%dilatation%absolute)), maxval(bodies%dilatation%absolute)*thermal_load*shift)
-         terms(1) = max(terms(1), stored/stage%duration)
+         terms(1) = max(terms(1), stored/self%stage%duration)
       end if
       terms(2) = max(bodies%mechanical%largest_entry*shift, thermal_load*max(warmth, &
          maxval(abs(model%initial_temperature)), maxval(abs(model%materials%no_strain))))

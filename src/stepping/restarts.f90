@@ -4,7 +4,7 @@
 !> enters all steps up to its own and reduces their bodies as the first one did. Loads that were
 !> solved earlier change last digits, so both runs forget them where a restart is written.
 module restarts
-   use due_output, only: restart_is_due
+   use due_output, only: is_nth
    use errors, only: error_type
    use kinds, only: dp
    use load_histories, only: end_of_step
@@ -26,7 +26,7 @@ contains
       type(simulation_type), intent(inout) :: simulation     !! the run, which forgets solved loads
       type(increment_record_type), intent(inout) :: record   !! receives the table
 
-      if (.not. restart_is_due(record, model)) return
+      if (.not. is_nth(model%steps(record%step)%restart_frequency, record)) return
       allocate (record%restart)
       call record%restart%begin()
       call exchange(simulation, record%restart)
@@ -52,8 +52,9 @@ contains
       end do
       if (allocated(error)) return
       call exchange(simulation, table)
-      associate (loads => simulation%loads, state => simulation%state)
-         call loads%move_to(simulation%control%present_instant(model), model)
+      associate (loads => simulation%loads, state => simulation%state, &
+         control => simulation%control)
+         call loads%move_to(control%instant_at(model, control%step_time), model)
          if (any(solves_heat(model%steps%analysis))) then
             state%sources%load = loads%heat_load()
             state%sources%film = loads%film_matrix()

@@ -1,6 +1,6 @@
 !> A run: its reduced bodies, loads and state, and where it is in its steps.
 module simulation
-   use branch_steps, only: branch_type
+   use branch_trials, only: branch_type
    use clock, only: wall_seconds
    use contact_operator, only: law_conductance
    use contact_system, only: contact_open
@@ -89,9 +89,13 @@ contains
    subroutine enter_step(self, model)
       class(simulation_type), intent(inout) :: self       !! the run, started
       type(model_type), intent(in) :: model
+      type(branch_type) :: branch                         ! a new one
 
       call self%control%enter_step(model)
-      call self%branch%begin_step(self%control%step, self%control%start_of_step(model))
+      branch%step = self%control%step
+      branch%start = self%control%instant_at(model, 0.0_dp)
+      branch%asked = model%steps(branch%step)%continuation
+      self%branch = branch
       call self%loads%begin_step(model%steps(self%control%step), self%state%displacement, &
          self%state%temperature)
       call self%bodies%enter_step(model, self%control%step, self%loads)
@@ -126,11 +130,11 @@ contains
          film = heat%added
          if (solves_heat(analysis) .and. (heat%numbering /= bodies%thermal%numbering .or. &
             .not. (allocated(heat%solver) .or. heat%schur%is_sparse()))) then
-            call self%loads%move_to(self%control%next_instant(model), model)
+            clock = self%control%next_instant(model)
+            call self%loads%move_to(clock, model)
             equation = heat_equation_type(model%steps(self%control%step)%scheme, &
                self%state%sources)
             equation%new%film = self%loads%film_matrix()
-            clock = self%control%next_instant(model)
             associate (step => model%steps(self%control%step))
                if (step%is_transient) equation%duration = equation%scheme%a(1)* &
                   self%control%size_to(clock)*merge(stage_part, 1.0_dp, step%scheme%stages == 2)
@@ -164,7 +168,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: at(:)                      ! (nodes) [temperature]
 
-      call self%loads%move_to(self%control%present_instant(model), model)
+      call self%loads%move_to(self%control%instant_at(model, self%control%step_time), model)
       if (.not. allocated(self%bodies%operators_at)) return
       at = model%initial_temperature
       if (allocated(self%state%operators_at)) at = self%state%operators_at

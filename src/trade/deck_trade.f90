@@ -32,10 +32,9 @@ module deck_trade
    use steps, only: solves_heat
    use text, only: counted, few_digits, string_type, to_text
    use trade_reference, only: state_errors
-   use trade_study, only: absent, factors, figure_count, item_quantities, &
-      judge_rows, mesh_rows, most_levels, single_rows, trade_row_type, trade_type
+   use trade_study, only: absent, common_instants, factors, figure_count, instant_at, &
+      item_quantities, judge_rows, mesh_rows, most_levels, single_rows, trade_row_type, trade_type
    use trade_table, only: imbalanced_rows, print_trade, write_trade
-   use variation_instants, only: common_instants, instant_at
    use variations, only: variation_type
    implicit none
    private
@@ -119,6 +118,7 @@ contains
       do i = 1, size(runs)
          runs(i)%task%path = path
          runs(i)%task%command = command
+         if (command%limit <= 0.0_dp) runs(i)%task%command%limit = usual_limit
          runs(i)%task%deck => deck
       end do
       if (.not. allocated(error)) call measure(model, &
@@ -189,7 +189,7 @@ contains
       do contact_level = 0, merge(most, 0, size(model%contacts) > 0)
          do level = 0, most - contact_level
             call mesh_rows(model, highest, level, contact_level, rows)
-            call leave_out_expensive(limit_of(runs(1)%task%command), trade, rows)
+            call leave_out_expensive(runs(1)%task%command%limit, trade, rows)
             call measure_rows(runs, progress, rows, error)
             trade%rows = [trade%rows, rows]
             if (allocated(error)) return
@@ -200,13 +200,6 @@ contains
       trade%rows = [trade%rows, rows]
       call progress%clear()
    end subroutine measure
-
-   !> CPU seconds that a row may take [s].
-   pure real(dp) function limit_of(command)
-      type(command_type), intent(in) :: command
-
-      limit_of = merge(command%limit, usual_limit, command%limit > 0.0_dp)
-   end function limit_of
 
    !> Leaves out the rows that would cost too much, but never the deck as written; rows on meshes
    !> even finer than those are not named.
@@ -293,7 +286,7 @@ contains
       integer :: i
 
       associate (figures => self%task%found%figures)
-         longest = max(patience*limit_of(self%task%command), least_patience)
+         longest = max(patience*self%task%command%limit, least_patience)
          if (self%child%has_ended()) then
             report = self%child%report()
             call self%child%drop_files()
@@ -320,10 +313,11 @@ contains
          i=1, size(row%cpu))])
    end subroutine collect
 
-   !> Solves the row as often as its time asks for.
+   !> Solves the row as often as its time asks for: in a round, or in those of a requested accuracy.
    subroutine execute(self, report)
       class(row_task_type), intent(inout) :: self
       type(report_type), intent(inout) :: report    !! how it ended
+      type(adaptive_rounds_type) :: fresh, rounds
       type(error_type), allocatable :: error
       real(dp) :: ended, began
       integer :: run
@@ -331,7 +325,17 @@ contains
       do run = 1, runs_within(1)
          if (run > runs_within(count(self%found%figures(1, 1) > moments) + 1)) exit
          call cpu_time(began)
-         call solve_once(self, error)
+         rounds = fresh
+         rounds%variation = self%variation
+         do
+            call rounds%begin_round()
+            call solve_round(self, rounds, error)
+            if (allocated(error) .or. .not. rounds%accuracy%goes_on) exit
+         end do
+         if (.not. allocated(error) .and. rounds%accuracy%is_on) then
+            if (.not. rounds%accuracy%is_reached()) call set_error(error, status_verify, &
+               'accuracy not reached: '//rounds%accuracy%reason)
+         end if
          if (allocated(error)) exit
          call cpu_time(ended)
          self%found%figures(run, 1) = max(ended - began, tiny(ended))
@@ -340,24 +344,6 @@ contains
       report%status = int(error%status, c_int)
       call set_reason(report, error%message)
    end subroutine execute
-
-   !> A round, or the rounds of a requested accuracy.
-   !> Errors: as solve_round; status_verify, where the accuracy is not reached.
-   subroutine solve_once(self, error)
-      class(row_task_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: error
-      type(adaptive_rounds_type) :: rounds
-
-      rounds%variation = self%variation
-      do
-         rounds%accuracy%goes_on = .false.
-         call solve_round(self, rounds, error)
-         if (allocated(error) .or. .not. rounds%accuracy%goes_on) exit
-      end do
-      if (allocated(error) .or. .not. rounds%accuracy%is_on) return
-      if (.not. rounds%accuracy%is_reached()) call set_error(error, status_verify, &
-         'accuracy not reached: '//rounds%accuracy%reason)
-   end subroutine solve_once
 
    !> A round, without estimates where no accuracy is requested.
    !> Errors: as prepare_deck and solve_increments.
@@ -408,8 +394,8 @@ contains
       call simulation%bodies%views(interfaces)
       allocate (values(0))
       do i = 1, size(interfaces)
-         values = [values, (contact_values(traded(q)%name, interfaces(i), &
-            record%contacts(i)), q=1, figure_count), &
+         values = [values, (contact_values(traded(q)%name, record%contacts(i)), &
+            q=1, figure_count), &
             closed_length(interfaces(i), record%contacts(i))]
       end do
       if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &

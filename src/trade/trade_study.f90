@@ -1,24 +1,26 @@
-!> A trade-off study: the numbers by which its rows are compared; its rows: the grid over mesh,
-!> increments and elements, meshes that are finer at the contact faces, one thing at a time around
-!> the deck as written; which of them are worth their cost: the Pareto-optimal ones, and the
-!> cheapest for each target.
+!> A trade-off study: the instants and numbers by which its rows are compared; its rows: the grid
+!> over mesh, increments and elements, meshes that are finer at the contact faces, one thing at a
+!> time around the deck as written; which of them are worth their cost: the Pareto-optimal ones, and
+!> the cheapest for each target.
 module trade_study
    use contact_definitions, only: pairing_name, pairing_nodes, pairing_surfaces
    use controls, only: crank_nicolson_scheme, explicit_scheme, galerkin_scheme, implicit_scheme, &
       l_stable_scheme, method_names, solver_mumps, solver_skyline, thermal_scheme_type
    use element_kinds, only: kind_count, linear_kind
+   use increment_control, only: increment_control_type
    use kinds, only: dp
+   use load_histories, only: step_clock_type
    use model, only: model_type
    use no_estimates, only: no_reason, reason_of_deck
    use reported_quantities, only: traded
    use steps, only: analysis_coupled, solves_heat
    use text, only: percent, rounded, string_type, to_text
-   use variations, only: variation_type
+   use variations, only: varied_increment, variation_type
    implicit none
    private
    public :: trade_row_type, trade_type, targets, target_count, quantity_count, figure_count, &
       closed_length, is_there, absent, item_quantities, judge_rows, are_optimal, &
-      same_time, mesh_rows, single_rows, factors, most_levels
+      same_time, mesh_rows, single_rows, factors, most_levels, common_instants, instant_at
 
    integer, parameter :: quantity_count = size(traded)       !! quantities that rows are judged by
    integer, parameter :: figure_count = quantity_count - 1   !! all but the last: the temperatures
@@ -70,6 +72,8 @@ module trade_study
    real(dp), parameter :: factors(5) = [4.0_dp, 2.0_dp, 1.0_dp, 0.5_dp, 0.25_dp]
    logical, parameter :: is_local(5) = [.true., .false., .true., .false., .false.]   !! finer there
    integer, parameter :: most_levels = 3            !! refinements beyond those of the deck
+   integer, parameter :: few = 4             !! instants of comparison: fewer all count
+   integer, parameter :: most_instants = 60  !! of all steps, but at least three in each
    real(dp), parameter :: tolerances(4) = [1.0e-3_dp, 1.0e-5_dp, 1.0e-8_dp, 1.0e-11_dp]
    type(thermal_scheme_type), parameter :: schemes(5) = [l_stable_scheme, implicit_scheme, &
       galerkin_scheme, crank_nicolson_scheme, explicit_scheme]
@@ -269,5 +273,51 @@ contains
          varied = written
       end subroutine add
    end subroutine single_rows
+
+   !> Instants at which variations are compared: ends of the longest increments, which shorter ones
+   !> meet too, of many every n-th; where increments grow, only the instants on which they land. The
+   !> first end of a step is the coarsest part of a path and left out, unless there are few.
+   function common_instants(model, longest_factor) result(times)
+      type(model_type), intent(in) :: model      !! as the deck is written
+      real(dp), intent(in) :: longest_factor     !! on its increments; that of others is halved
+      real(dp), allocatable :: times(:)          !! total times, ascending [time]
+      type(model_type) :: longest
+      type(increment_control_type) :: control
+      type(step_clock_type) :: clock
+      real(dp), allocatable :: ends(:)
+      integer :: s, count
+
+      longest = model
+      allocate (times(0))
+      do s = 1, size(model%steps)
+         associate (step => longest%steps(s), most => max(most_instants/size(model%steps), 2))
+            step%first_increment = varied_increment(step%first_increment, step%period, &
+               longest_factor)
+            count = floor(step%period/step%first_increment + 1.0e-6_dp)
+            step%first_increment = step%first_increment*(1 + (count - 1)/most)
+            if (step%grows) step%first_increment = step%period
+            step%grows = .false.
+         end associate
+         call control%enter_step(longest)
+         allocate (ends(0))
+         do while (.not. control%step_is_over(longest))
+            clock = control%next_instant(longest)
+            call control%accept(longest, clock)
+            ends = [ends, clock%total_time]
+         end do
+         times = [times, ends(merge(2, 1, count >= few .and. .not. model%steps(s)%grows):)]
+         deallocate (ends)
+      end do
+   end function common_instants
+
+   !> Which of some instants a time is; 0 for none.
+   pure integer function instant_at(times, time)
+      real(dp), intent(in) :: times(:)   !! instants [time]
+      real(dp), intent(in) :: time       !! a total time [time]
+
+      do instant_at = size(times), 1, -1
+         if (abs(times(instant_at) - time) <= 1.0e-9_dp*times(size(times))) return
+      end do
+   end function instant_at
 
 end module trade_study

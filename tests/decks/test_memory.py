@@ -59,6 +59,8 @@ def without_checks(source, folder, cards):
 ])
 def test_the_estimate_is_not_under_the_peak_nor_twice_as_much(tmp_path, source, cards):
     deck = without_checks(source, tmp_path, cards)
+    if source == CYLINDER:
+        few_increments(deck)
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
 
 

@@ -180,7 +180,7 @@ def test_recommended_rows_have_the_accuracy_wished_for(case, tmp_path):
     longer rows are, so that 10 % is due."""
     source, *answer = KNOWN[case](tmp_path)
     deck = copied(source, tmp_path)
-    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.1")
+    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.02")
     checked = check_recommendations(rows, deck, *answer)
     target = "recommended_10" if case == "hot_tubes" else "recommended_1"
     due = {(target, key) for key in answer[1] if key != "edge_contact"}
@@ -337,7 +337,7 @@ def test_schemes_are_varied_in_the_steps_that_follow_them(tmp_path):
 def test_increments_by_error_are_varied_by_their_error(tmp_path):
     """Half of the factor takes twice the increments, whose error is a quarter."""
     deck = transients.two_blocks(tmp_path / "deck.inp", how="")
-    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.1")
+    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.01")
     found = {row["increment_factor"]: row for row in rows[:-1] if row["elements"] == "Q8"
              and (row["level"], row["contact_level"], row["varied"]) == ("0", "0", "")}
     for one, other in itertools.pairwise(("4", "2", "1", "0.5", "0.25")):

@@ -7,14 +7,14 @@ module deck_builder
    use controls, only: method_names
    use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities
    use deck_builder_contact, only: build_contacts, build_ties
+   use deck_builder_axes, only: build_orientations, build_transforms
    use deck_builder_bars, only: build_bars
-   use deck_builder_equations, only: build_couplings, build_equations, build_transforms
+   use deck_builder_equations, only: build_couplings, build_equations
    use deck_builder_gap_heat, only: check_friction_heat
    use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures, &
       build_time_points
    use deck_builder_interactions, only: build_interactions
-   use deck_builder_lines, only: build_lines, split_line_sets
-   use deck_builder_materials, only: build_materials, build_orientations, build_sections
+   use deck_builder_materials, only: build_materials, build_sections
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_node_surfaces, only: build_node_surfaces
    use deck_builder_options, only: build_load_axis, build_options, build_regions
@@ -24,12 +24,11 @@ module deck_builder
    use deck_checks, only: check_model, check_usage
    use deck_context, only: deck_type
    use deck_report, only: deck_report_type, heatless
-   use deck_structure, only: card_count, check_structure
+   use deck_structure, only: cards_of, check_structure
    use heat_checks, only: check_heat_paths, check_starts
    use mesh_checks, only: check_folds
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
-   use mesh, only: set_type
    use model, only: model_type
    use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use quantity_types, only: quantity_type
@@ -56,7 +55,7 @@ contains
       integer :: i, why
 
       if (size(cards%keywords) == 0) return
-      call deck%take_over(report)
+      deck%deck_report_type = report
       deck%cards => cards
       deck%model => model
       deck%mesh => model%mesh
@@ -103,42 +102,36 @@ contains
       if (.not. allocated(deck%notes)) allocate (deck%notes(0))
       call move_alloc(deck%notes, model%notes)
       model%warnings = deck%warnings()
-      call report%take_over(deck)
+      report = deck%deck_report_type
    end subroutine build_model
 
    !> Builds nodes and elements, their sets and surfaces. The sets of nodes come last: they may
    !> consist of the nodes of the others.
    subroutine build_mesh(deck)
       type(deck_type), intent(inout) :: deck
-      type(set_type), allocatable :: sets(:)
       integer, allocatable :: corners(:, :)
       integer :: errors
 
       call build_nodes(deck)
-      call build_lines(deck)
       call build_elements(deck)
       ! ORDER=1 drops nodes between corners; refined elements have those of the deck at corners.
       allocate (corners(2, size(deck%mesh%node_number)), source=0)
       if (deck%order == 1 .and. deck%levels == 0) corners = side_corners(deck%mesh)
       deck%dropped = corners(1, :) > 0
       errors = deck%error_count()
-      call build_sets('element', deck, sets)
-      call split_line_sets(size(deck%mesh%element_number), sets, deck%line_sets)
-      call move_alloc(sets, deck%mesh%element_sets)
-      deck%sets_sound = deck%error_count() == errors .and. .not. deck%has_lost('element')
+      call build_sets('element', deck)
+      if (deck%error_count() > errors .or. deck%has_lost('element')) call deck%lose('set')
       call build_surfaces(deck)
       errors = deck%error_count()
-      call build_sets('node', deck, sets)
-      call move_alloc(sets, deck%mesh%node_sets)
+      call build_sets('node', deck)
       call build_node_surfaces(deck)
-      deck%sets_sound = deck%sets_sound .and. deck%error_count() == errors .and. &
-         .not. deck%has_lost('node set')
+      if (deck%error_count() > errors .or. deck%has_lost('node set')) call deck%lose('set')
    end subroutine build_mesh
 
    !> Puts the loads and supports of a sound deck on its mesh, and checks what that shows.
    subroutine complete_model(deck)
       type(deck_type), intent(inout) :: deck
-      integer :: s
+      integer :: n, s
 
       call find_bodies(deck%mesh)
       call check_folds(deck)
@@ -156,7 +149,19 @@ contains
       deck%model%deck_equations = size(deck%model%equations)
       deck%model%written_levels = deck%levels
       deck%model%written_order = deck%order
-      call take_requests(deck)
+      allocate (deck%model%requests)
+      deck%model%requests%supports = deck%boundaries
+      deck%model%requests%loads = deck%loads
+      deck%model%requests%temperatures = deck%temperatures
+      call collect_fields(deck%model)
+      n = 0
+      if (deck%boundaries%count > 0) n = deck%boundaries%items(deck%boundaries%count)%card
+      allocate (deck%model%boundary_places(n))
+      do n = 1, deck%boundaries%count
+         associate (request => deck%boundaries%items(n))
+            deck%model%boundary_places(request%card)%value = deck%source%words_of(request%place)
+         end associate
+      end do
       call apply_requests(deck%model)
       call check_amplitudes(deck)
       call check_starts(deck)
@@ -170,26 +175,6 @@ contains
       end if
       call note_defaults(deck)
    end subroutine complete_model
-
-   !> Gives a model what its deck asks for, and the places of the supports in words.
-   subroutine take_requests(deck)
-      type(deck_type), intent(in) :: deck
-      integer :: i, n
-
-      allocate (deck%model%requests)
-      deck%model%requests%supports = deck%boundaries
-      deck%model%requests%loads = deck%loads
-      deck%model%requests%temperatures = deck%temperatures
-      call collect_fields(deck%model)
-      n = 0
-      if (deck%boundaries%count > 0) n = deck%boundaries%items(deck%boundaries%count)%card
-      allocate (deck%model%boundary_places(n))
-      do i = 1, deck%boundaries%count
-         associate (request => deck%boundaries%items(i))
-            deck%model%boundary_places(request%card)%value = deck%source%words_of(request%place)
-         end associate
-      end do
-   end subroutine take_requests
 
    !> Notes the defaults of what the deck does not say at all.
    subroutine note_defaults(deck)
@@ -211,7 +196,7 @@ contains
          any(deck%model%steps%is_transient)) call deck%note('*SPECIFIC HEAT is ignored: no '// &
          'step stores heat')
       if (.not. any(solves_heat(deck%model%steps%analysis))) return
-      if (card_count(deck%cards, 'THERMAL SCHEME') == 0) then
+      if (size(cards_of(deck%cards, 'THERMAL SCHEME')) == 0) then
          if (any(deck%model%steps%is_transient)) call deck%note('no *THERMAL SCHEME: L-STABLE '// &
             'where heat is stored')
          if (any(solves_heat(deck%model%steps%analysis) .and. .not. &

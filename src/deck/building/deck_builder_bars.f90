@@ -1,7 +1,7 @@
 !> *SPRING, and *SOLID SECTION of trusses -> springs and trusses.
 module deck_builder_bars
    use bars, only: bar_type
-   use card_values, only: need_field, read_row
+   use card_values, only: read_field, read_row
    use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
@@ -62,7 +62,7 @@ contains
       if (has_dofs .and. valid) then
          associate (data => card%data(1))
             do k = 1, maxval(deck%line_kind(members)) - ground_spring + 1
-               call need_field(data, k, 'degree of freedom', deck, dof(k), valid)
+               call read_field(data, k, 'degree of freedom', deck, dof(k), valid)
                associate (ends => deck%line_nodes(k, members))
                   if (valid) dof(k) = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
                      pack(ends, ends > 0), dof(k))

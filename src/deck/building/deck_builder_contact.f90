@@ -1,12 +1,11 @@
 !> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied;
 !> *CHANGE FRICTION, *MODEL CHANGE and *CONTACT INTERFERENCE -> what a step changes of contact.
 module deck_builder_contact
-   use card_parameters, only: choice, need_parameter, take_parameter, take_within
-   use card_values, only: check_extra, need_field
+   use card_parameters, only: choice, need_parameter, needed_choice, take_parameter
+   use card_values, only: check_extra, read_field
    use cards, only: data_card_type, keyword_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
-      friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces, &
-      tie_definition_type
+      friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces
    use deck_builder_interactions, only: build_friction
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
@@ -25,7 +24,9 @@ contains
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       type(contact_definition_type) :: common
-      integer :: i, k, n
+      character(:), allocatable :: text
+      real(dp) :: value
+      integer :: i, k, master, n, slave
 
       places = cards_of(deck%cards, 'CONTACT PAIR')
       allocate (deck%model%contacts(data_count(deck%cards, places)))
@@ -43,31 +44,23 @@ contains
       end do
       places = cards_of(deck%cards, 'CLEARANCE')
       do n = 1, size(places)
-         call build_clearance(deck%cards%keywords(places(n)), deck)
+         associate (card => deck%cards%keywords(places(n)))
+            call deck%need_named(card, 'MASTER', 'surface', master)
+            call deck%need_named(card, 'SLAVE', 'surface', slave)
+            call need_parameter(card, 'VALUE', deck, text)
+            value = 0.0_dp
+            call take_parameter(card, 'VALUE', deck, value)
+            call find_contact(slave, master, card%place, deck, i)
+            if (i == 0) cycle
+            associate (contact => deck%model%contacts(i))
+               if (contact%has_clearance) call deck%error(card%place, 'the clearance of '// &
+                  'contact pair '//contact%name//' is given twice')
+               contact%has_clearance = .true.
+               contact%clearance = value
+            end associate
+         end associate
       end do
    end subroutine build_contacts
-
-   !> Reads a clearance, for the interface of the two surfaces that it names.
-   subroutine build_clearance(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: text
-      real(dp) :: value
-      integer :: i, master, slave
-
-      call deck%need_named(card, 'MASTER', 'surface', master)
-      call deck%need_named(card, 'SLAVE', 'surface', slave)
-      call need_parameter(card, 'VALUE', deck, text)
-      value = 0.0_dp
-      call take_parameter(card, 'VALUE', deck, value)
-      call find_contact(slave, master, card%place, deck, i)
-      if (i == 0) return
-      if (deck%model%contacts(i)%has_clearance) call deck%error(card%place, 'the clearance of '// &
-         'contact pair '//deck%model%contacts(i)%name//' is given twice')
-      if (deck%model%contacts(i)%has_clearance) return
-      deck%model%contacts(i)%has_clearance = .true.
-      deck%model%contacts(i)%clearance = value
-   end subroutine build_clearance
 
    !> The interface of two surfaces; 0 after an error, and where a surface is 0.
    subroutine find_contact(slave, master, place, deck, contact)
@@ -119,8 +112,8 @@ contains
       character(*), parameter :: held = 'let it be the master, and the face of the body the slave'
       character(*), parameter :: tied = 'nodes that it holds are TIE NSET= of *RIGID BODY        '
 
-      call deck%need_surface(data, 1, 'slave surface', faces%slave)
-      call deck%need_surface(data, 2, 'master surface', faces%master)
+      call deck%need_item(data, 1, 'surface', 'slave surface', faces%slave)
+      call deck%need_item(data, 2, 'surface', 'master surface', faces%master)
       call check_extra(data, 2, 'slave surface, master surface', deck)
       if (faces%slave > 0 .and. faces%slave == faces%master) call deck%error(data%place(2), &
          'a surface cannot be '// &
@@ -177,7 +170,13 @@ contains
       n = 0
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
-            call check_tie_card(card, deck%model%ties(:n), deck)
+            if (choice(card, 'ADJUST', 'YES/NO', deck, 'NO') == 'YES') call deck%note('*TIE, '// &
+               'ADJUST=YES: nodes are not moved, an initial gap is not closed')
+            do i = 1, n
+               if (card%has('NAME') .and. to_upper(deck%model%ties(i)%faces%name) == to_upper( &
+                  card%text('NAME'))) call deck%error(card%place_of('NAME'), &
+                  deck%model%ties(i)%faces%title()//' is defined twice')
+            end do
             do i = 1, size(card%data)
                n = n + 1
                associate (tie => deck%model%ties(n))
@@ -186,30 +185,13 @@ contains
                   tie%faces%name = card%text('NAME')
                   tie%has_tolerance = card%has('POSITION TOLERANCE')
                   tie%faces%either_side = tie%has_tolerance
-                  call take_within('>=0', card, 'POSITION TOLERANCE', deck, tie%tolerance)
+                  call take_parameter(card, 'POSITION TOLERANCE', deck, tie%tolerance, '>=0')
                   call read_faces(card, card%data(i), deck, tie%faces)
                end associate
             end do
          end associate
       end do
    end subroutine build_ties
-
-   !> Checks that a card has a name of its own; no node is moved.
-   subroutine check_tie_card(card, ties, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(tie_definition_type), intent(in) :: ties(:)     ! those of the cards before
-      type(deck_type), intent(inout) :: deck
-      integer :: i
-
-      if (choice(card, 'ADJUST', 'YES/NO', deck, 'NO') == 'YES') call deck%note('*TIE, '// &
-         'ADJUST=YES: nodes are not moved, an initial gap is not closed')
-      if (.not. card%has('NAME')) return
-      do i = 1, size(ties)
-         if (to_upper(ties(i)%faces%name) /= to_upper(card%text('NAME'))) cycle
-         call deck%error(card%place_of('NAME'), ties(i)%faces%title()//' is defined twice')
-         return
-      end do
-   end subroutine check_tie_card
 
    !> Reads one card of a step.
    subroutine build_contact_change(k, step, deck)
@@ -218,60 +200,45 @@ contains
       type(deck_type), intent(inout) :: deck
       type(contact_changes_type) :: changes
       type(friction_change_type) :: change
+      type(pair_change_type) :: pair
+      integer :: j
 
       if (step == 0) return
       changes = deck%model%steps(step)%changes
-      select case (deck%cards%keywords(k)%name)
-      case ('CHANGE FRICTION')
-         if (is_keyword(deck%cards, k + 1, 'FRICTION')) return
-         call deck%error(deck%cards%keywords(k)%place, '*CHANGE FRICTION needs a *FRICTION '// &
-            'after it')
-      case ('FRICTION')
-         if (is_keyword(deck%cards, k - 1, 'CHANGE FRICTION')) then
-            call build_friction(deck%cards%keywords(k), deck, change%friction)
-            call deck%need_named(deck%cards%keywords(k - 1), 'INTERACTION', 'surface interaction', &
-               change%interaction)
-            if (change%interaction == 0) return
-            if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
-            changes%frictions = [changes%frictions, change]
-         else
-            call deck%error(deck%cards%keywords(k)%place, '*FRICTION in a step needs *CHANGE '// &
-               'FRICTION, INTERACTION= before it')
-         end if
-      case ('MODEL CHANGE')
-         call change_pairs(deck%cards%keywords(k), deck, changes)
-      case default
-         call change_interferences(deck%cards%keywords(k), step, deck, changes)
-      end select
+      associate (card => deck%cards%keywords(k))
+         select case (card%name)
+         case ('CHANGE FRICTION')
+            if (.not. is_keyword(deck%cards, k + 1, 'FRICTION')) call deck%error(card%place, &
+               '*CHANGE FRICTION needs a *FRICTION after it')
+         case ('FRICTION')
+            if (is_keyword(deck%cards, k - 1, 'CHANGE FRICTION')) then
+               call build_friction(card, deck, change%friction)
+               call deck%need_named(deck%cards%keywords(k - 1), 'INTERACTION', 'surface '// &
+                  'interaction', change%interaction)
+               if (change%interaction == 0) return
+               if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
+               changes%frictions = [changes%frictions, change]
+            else
+               call deck%error(card%place, '*FRICTION in a step needs *CHANGE FRICTION, '// &
+                  'INTERACTION= before it')
+            end if
+         case ('MODEL CHANGE')
+            if (needed_choice(card, 'TYPE', 'CONTACT PAIR', deck) == '') return
+            pair%removes = card%has('REMOVE')
+            if ((pair%removes .eqv. card%has('ADD')) .and. .not. card%flawed) call deck%error( &
+               card%place, '*MODEL CHANGE needs either ADD or REMOVE')
+            if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
+            do j = 1, size(card%data)
+               call read_contact(card%data(j), 2, 'slave surface, master surface', deck, &
+                  pair%contact)
+               if (pair%contact > 0) changes%pairs = [changes%pairs, pair]
+            end do
+         case default
+            call change_interferences(card, step, deck, changes)
+         end select
+      end associate
       deck%model%steps(step)%changes = changes
    end subroutine build_contact_change
-
-   !> The interfaces that *MODEL CHANGE removes or adds.
-   subroutine change_pairs(card, deck, changes)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(contact_changes_type), intent(inout) :: changes
-      type(pair_change_type) :: change
-      character(:), allocatable :: kind
-      integer :: j
-
-      call need_parameter(card, 'TYPE', deck, kind)
-      if (kind == 'ELEMENT') then
-         call deck%error(card%place_of('TYPE'), 'TYPE=ELEMENT is refused: elements are the '// &
-            'same in all steps')
-         return
-      end if
-      kind = choice(card, 'TYPE', 'CONTACT PAIR', deck, '')
-      change%removes = card%has('REMOVE')
-      if ((change%removes .eqv. card%has('ADD')) .and. .not. card%flawed) then
-         call deck%error(card%place, '*MODEL CHANGE needs either ADD or REMOVE')
-      end if
-      if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
-      do j = 1, size(card%data)
-         call read_contact(card%data(j), 2, 'slave surface, master surface', deck, change%contact)
-         if (change%contact > 0) changes%pairs = [changes%pairs, change]
-      end do
-   end subroutine change_pairs
 
    !> The interferences of some interfaces.
    subroutine change_interferences(card, step, deck, changes)
@@ -303,7 +270,7 @@ contains
          else
             call read_contact(card%data(j), 3, 'slave surface, master surface, interference', &
                deck, given%contact)
-            call need_field(card%data(j), 3, 'interference', deck, given%value, valid)
+            call read_field(card%data(j), 3, 'interference', deck, given%value, valid)
          end if
          if (given%contact == 0 .or. .not. valid) cycle
          changes%interferences = [changes%interferences, given]
@@ -348,8 +315,8 @@ contains
       integer, intent(out) :: contact
       integer :: master, slave
 
-      call deck%need_surface(data, 1, 'slave surface', slave)
-      call deck%need_surface(data, 2, 'master surface', master)
+      call deck%need_item(data, 1, 'surface', 'slave surface', slave)
+      call deck%need_item(data, 2, 'surface', 'master surface', master)
       call check_extra(data, most, layout, deck)
       call find_contact(slave, master, data%place(1), deck, contact)
    end subroutine read_contact

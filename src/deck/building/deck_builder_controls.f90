@@ -1,8 +1,8 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choice, needed_choice, take_from, take_parameter, take_within
-   use card_values, only: need_field, read_row
+   use card_parameters, only: choice, needed_choice, take_parameter
+   use card_values, only: read_row
    use cards, only: data_card_type, keyword_card_type
    use controls, only: continuation_type, crank_nicolson_scheme, explicit_scheme, &
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
@@ -14,7 +14,7 @@ module deck_builder_controls
    use print_requests, only: print_displacement, print_force, print_heat, &
       print_heat_flux, print_position, print_request_type, print_stress, print_temperature
    use spelling, only: known_choices
-   use text, only: append, string_type, to_text, to_upper
+   use text, only: split_words, string_type, to_text, to_upper
    use time_points, only: time_points_type
    implicit none
    private
@@ -23,29 +23,15 @@ module deck_builder_controls
 
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
 
-   integer, parameter :: not_computed = 0   !! meaning of keys that only CalculiX has
-
-   !> A key of a card.
-   type :: print_key_type
-      character(5) :: name = ''
-      integer :: quantity = not_computed    !! print_displacement, ...
-   end type print_key_type
-
-   type(print_key_type), parameter :: node_keys(*) = [ &
-      print_key_type('U', print_displacement), print_key_type('NT', print_temperature), &
-      print_key_type('TS', print_temperature), print_key_type('RF', print_force), &
-      print_key_type('RFL', print_heat), print_key_type('PN'), print_key_type('PS'), &
-      print_key_type('PT'), print_key_type('PSF'), print_key_type('PTF'), print_key_type('TSF'), &
-      print_key_type('TTF'), print_key_type('TT'), print_key_type('V'), print_key_type('VF'), &
-      print_key_type('MF'), print_key_type('MACH'), print_key_type('CP'), &
-      print_key_type('DEPF'), print_key_type('TURB')]
-   type(print_key_type), parameter :: element_keys(*) = [ &
-      print_key_type('S', print_stress), print_key_type('HFL', print_heat_flux), &
-      print_key_type('COORD', print_position), print_key_type('SVF'), print_key_type('E'), &
-      print_key_type('ME'), print_key_type('PEEQ'), print_key_type('CEEQ'), &
-      print_key_type('ENER'), print_key_type('SDV'), print_key_type('HFLF'), &
-      print_key_type('ELSE'), print_key_type('ELKE'), print_key_type('EVOL'), &
-      print_key_type('EMAS'), print_key_type('EBHE'), print_key_type('CENT')]
+   ! Keys of a card: those that are computed, what they are, and those that only CalculiX has.
+   character(*), parameter :: node_keys = 'U/NT/TS/RF/RFL', element_keys = 'S/HFL/COORD'
+   integer, parameter :: node_quantities(5) = [print_displacement, print_temperature, &
+      print_temperature, print_force, print_heat]
+   integer, parameter :: element_quantities(3) = [print_stress, print_heat_flux, print_position]
+   character(*), parameter :: foreign_node_keys = &
+      '/PN/PS/PT/PSF/PTF/TSF/TTF/TT/V/VF/MF/MACH/CP/DEPF/TURB/'
+   character(*), parameter :: foreign_element_keys = &
+      '/SVF/E/ME/PEEQ/CEEQ/ENER/SDV/HFLF/ELSE/ELKE/EVOL/EMAS/EBHE/CENT/'
 
 contains
 
@@ -58,10 +44,10 @@ contains
 
       method = choice(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', deck, '')
       if (method /= '') fixed_point%method = findloc(method_names == method, .true., dim=1)
-      call take_within('>0', card, 'TOL', deck, fixed_point%tolerance)
-      call take_from(1, card, 'MAXITER', deck, fixed_point%max_iterations)
-      call take_within('>0 <=1', card, 'G', deck, fixed_point%g)
-      call take_from(0, card, 'CONSTANT', deck, fixed_point%constant)
+      call take_parameter(card, 'TOL', deck, fixed_point%tolerance, '>0')
+      call take_parameter(card, 'MAXITER', deck, fixed_point%max_iterations, '>=1')
+      call take_parameter(card, 'G', deck, fixed_point%g, '>0 <=1')
+      call take_parameter(card, 'CONSTANT', deck, fixed_point%constant, '>=0')
    end subroutine build_fixed_point
 
    !> Reads what one *RESTART says of writing; where to go on from is read before the steps are.
@@ -73,8 +59,8 @@ contains
 
       place = 1
       if (card%has('READ')) then
-         call take_from(1, card, 'STEP', deck, place)
-         call take_from(1, card, 'INC', deck, place)
+         call take_parameter(card, 'STEP', deck, place, '>=1')
+         call take_parameter(card, 'INC', deck, place, '>=1')
          if (card%has('INC') .and. .not. card%has('STEP')) call deck%error(card%place_of('INC'), &
             'INC= needs STEP=')
       else
@@ -89,7 +75,7 @@ contains
          return
       end if
       controls%restart_frequency = 1
-      call take_from(0, card, 'FREQUENCY', deck, controls%restart_frequency)
+      call take_parameter(card, 'FREQUENCY', deck, controls%restart_frequency, '>=0')
       controls%overlays_restarts = card%has('OVERLAY')
    contains
       subroutine report_alone(parameter, other)
@@ -105,50 +91,43 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
+      type(thermal_scheme_type), parameter :: schemes(*) = [implicit_scheme, galerkin_scheme, &
+         crank_nicolson_scheme, explicit_scheme, l_stable_scheme]
       character(:), allocatable :: kind
+      real(dp) :: given(8), sums(3)
+      integer :: i
+      logical :: valid
 
       kind = needed_choice(card, 'TYPE', &
          'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', deck)
-      if (kind == 'FREE') then
-         if (size(card%data) == 0) then
-            call deck%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
+      i = findloc(schemes%name == kind, .true., dim=1)
+      if (i > 0) scheme = schemes(i)
+      if (i > 0 .and. size(card%data) > 0) call deck%error(card%data(1)%place(1), 'extra data '// &
+         'card; *THERMAL SCHEME has one with TYPE=FREE only')
+      if (kind /= 'FREE') return
+      if (size(card%data) == 0) then
+         call deck%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
+         return
+      end if
+      ! Coefficients of eq. (3.4) as the card gives them; multiples of them are the same scheme.
+      associate (data => card%data(1))
+         call read_row(data, 'a1 >0/a2 >=0/a3 >=0/b1/b2/b3/c1/c2', deck, given, valid)
+         if (.not. valid) return
+         sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
+         if (given(2) + given(3) <= 0.0_dp) then
+            call deck%error(data%place(2), 'a2 + a3 must be positive')
+         else if (sums(1) <= 0.0_dp) then
+            call deck%error(data%place(4), 'a1 + b1 must be positive')
+         else if (any(abs(sums - sums(1)) > consistent*sums(1))) then
+            call deck%error(data%place(1), 'a steady state would not stay: a1 + b1 = '// &
+               to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
+               to_text(sums(3))//' must be equal')
          else
-            call build_free_scheme(card%data(1), deck, scheme)
+            scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), &
+               given(7:8)/sums(1))
          end if
-      else if (size(card%data) > 0 .and. kind /= '') then
-         call deck%error(card%data(1)%place(1), 'extra data card; *THERMAL SCHEME has one with '// &
-            'TYPE=FREE only')
-      end if
-      if (kind == 'IMPLICIT') scheme = implicit_scheme
-      if (kind == 'L-STABLE') scheme = l_stable_scheme
-      if (kind == 'GALERKIN') scheme = galerkin_scheme
-      if (kind == 'CRANK-NICOLSON') scheme = crank_nicolson_scheme
-      if (kind == 'EXPLICIT') scheme = explicit_scheme
+      end associate
    end subroutine build_thermal_scheme
-
-   !> Coefficients of eq. (3.4) as the card gives them; multiples of them are the same scheme.
-   subroutine build_free_scheme(data, deck, scheme)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      type(thermal_scheme_type), intent(inout) :: scheme
-      real(dp) :: given(8), sums(3)
-      logical :: valid
-
-      call read_row(data, 'a1 >0/a2 >=0/a3 >=0/b1/b2/b3/c1/c2', deck, given, valid)
-      if (.not. valid) return
-      sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
-      if (given(2) + given(3) <= 0.0_dp) then
-         call deck%error(data%place(2), 'a2 + a3 must be positive')
-      else if (sums(1) <= 0.0_dp) then
-         call deck%error(data%place(4), 'a1 + b1 must be positive')
-      else if (any(abs(sums - sums(1)) > consistent*sums(1))) then
-         call deck%error(data%place(1), 'a steady state would not stay: a1 + b1 = '// &
-            to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
-            to_text(sums(3))//' must be equal')
-      else
-         scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), given(7:8)/sums(1))
-      end if
-   end subroutine build_free_scheme
 
    !> Reads one *CONTINUATION.
    subroutine build_continuation(card, deck, continuation)
@@ -157,10 +136,10 @@ contains
       type(continuation_type), intent(out) :: continuation
 
       continuation%is_on = .true.
-      call take_from(2, card, 'POINTS', deck, continuation%most_points)
+      call take_parameter(card, 'POINTS', deck, continuation%most_points, '>=2')
       call take_parameter(card, 'LOWEST', deck, continuation%range(1))
       call take_parameter(card, 'HIGHEST', deck, continuation%range(2))
-      call take_within('>0', card, 'ARC', deck, continuation%longest_step)
+      call take_parameter(card, 'ARC', deck, continuation%longest_step, '>0')
       continuation%rises = choice(card, 'DIRECTION', 'UP/DOWN', deck, 'UP') == 'UP'
       if (continuation%range(1) < continuation%range(2)) return
       call deck%error(card%place_of('HIGHEST'), 'LOWEST='//to_text(continuation%range(1))// &
@@ -172,73 +151,64 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(start_type), intent(inout) :: start           !! receives the start
+      real(dp) :: given(size(deck%model%contacts)), value(2)
       character(:), allocatable :: from
+      integer :: i, k
+      logical :: sound, valid
 
       from = needed_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', deck)
-      if (from == 'GIVEN') then
-         call build_given(card, deck, start)
-      else if (size(card%data) > 0 .and. from /= '') then
-         call deck%error(card%data(1)%place(1), 'extra data card; *START has them with '// &
-            'FROM=GIVEN only')
-      end if
+      if (from /= 'GIVEN' .and. size(card%data) > 0 .and. from /= '') call deck%error( &
+         card%data(1)%place(1), 'extra data card; *START has them with FROM=GIVEN only')
       if (from == 'PREVIOUS') start%kind = start_previous
       if (from == 'OPEN') start%kind = start_open
       if (from == 'CLOSED') start%kind = start_closed
       if (from == 'BOTH') start%kind = start_both
-   end subroutine build_start
-
-   !> Interface and conductance, a card each.
-   subroutine build_given(card, deck, start)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(start_type), intent(inout) :: start
-      real(dp) :: given(size(deck%model%contacts)), value(2)
-      character(:), allocatable :: name
-      integer :: i, k
-      logical :: sound, valid
-
+      if (from /= 'GIVEN') return
       given = 0.0_dp
       sound = .true.
       do k = 1, size(card%data)
          associate (data => card%data(k))
             call read_row(data, '@contact pair/conductance >0', deck, value, valid)
-            call need_field(data, 1, 'contact pair', deck, name, valid)
-            i = 0
-            if (len(name) > 0) call deck%look_up('contact pair', name, data%place(1), i)
-            valid = valid .and. i > 0
-            if (valid) given(i) = value(2)
-            sound = sound .and. valid
+            call deck%need_item(data, 1, 'contact pair', 'contact pair', i)
+            if (valid .and. i > 0) given(i) = value(2)
+            sound = sound .and. valid .and. i > 0
          end associate
       end do
       if (.not. sound) return
-      do i = 1, size(given)
-         if (given(i) > 0.0_dp) cycle
+      i = findloc(given > 0.0_dp, .false., dim=1)
+      if (i == 0) then
+         start = start_type(kind=start_given, conductance=given)
+      else
          call deck%error(card%place, '*START, FROM=GIVEN gives no conductance to '// &
             deck%model%contacts(i)%name)
-         return
-      end do
-      start = start_type(kind=start_given, conductance=given)
-   end subroutine build_given
+      end if
+   end subroutine build_start
 
    !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
    !> former steps.
-   subroutine build_print(card, is_first, deck, requests)
+   subroutine build_print(card, is_later, deck, requests)
       type(keyword_card_type), intent(in) :: card
-      logical, intent(in) :: is_first                     !! first of its keyword in its step
+      logical, intent(inout) :: is_later   !! whether its step has one before; becomes true
       type(deck_type), intent(inout) :: deck
       type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
       type(print_request_type) :: request
       character(:), allocatable :: totals
-      type(print_key_type), allocatable :: keys(:)
       integer :: i, j
       logical :: is_known     ! whether the set is
 
-      if (is_first .and. allocated(requests)) deallocate(requests)
-      keys = element_keys
+      if (allocated(requests) .and. .not. is_later) deallocate(requests)
+      is_later = .true.
       if (card%name == 'NODE PRINT') then
-         keys = node_keys
          call take_set(card, 'NSET', 'node set', deck, request%set, is_known)
-         if (is_dropped(card, deck, request%set)) is_known = .false.
+         if (request%set > 0) then
+            associate (set => deck%mesh%node_sets(request%set))
+               if (size(set%members) > 0 .and. all(deck%dropped(set%members))) then
+                  call deck%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
+                     set%name//', because none is a corner: nothing is printed')
+                  is_known = .false.
+               end if
+            end associate
+         end if
          totals = choice(card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
          request%each_node = totals /= 'ONLY'
          request%totals = totals /= 'NO'
@@ -258,7 +228,7 @@ contains
       allocate(request%quantities(0))
       do j = 1, size(card%data)
          do i = 1, size(card%data(j)%fields)
-            if (card%data(j)%has(i)) call take_quantity(card, card%data(j), i, keys, deck, &
+            if (card%data(j)%has(i)) call take_quantity(card, card%data(j), i, deck, &
                request%quantities)
          end do
       end do
@@ -276,54 +246,43 @@ contains
       integer, intent(inout) :: set
       logical, intent(out) :: is_known
 
-      if (deck%sets_sound .or. deck%index_of(noun, card%text(parameter)) > 0) call &
+      if (.not. deck%has_lost('set') .or. deck%index_of(noun, card%text(parameter)) > 0) call &
          deck%take_named(card, parameter, noun, set)
       is_known = set > 0 .or. card%lacks(parameter)
    end subroutine take_set
 
-   !> Whether ORDER=1 leaves no node of a set, which is warned of: there is nothing to print.
-   logical function is_dropped(card, deck, set)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      integer, intent(in) :: set      ! 0 for all nodes
-
-      is_dropped = .false.
-      if (set == 0) return
-      associate (members => deck%mesh%node_sets(set)%members)
-         is_dropped = size(members) > 0
-         if (is_dropped) is_dropped = all(deck%dropped(members))
-      end associate
-      if (is_dropped) call deck%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
-         deck%mesh%node_sets(set)%name//', because none is a corner: nothing is printed')
-   end function is_dropped
-
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.
-   subroutine take_quantity(card, data, position, keys, deck, quantities)
+   subroutine take_quantity(card, data, position, deck, quantities)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position
-      type(print_key_type), intent(in) :: keys(:)
       type(deck_type), intent(inout) :: deck
       integer, allocatable, intent(inout) :: quantities(:)
       type(string_type), allocatable :: known(:)
-      character(:), allocatable :: key
+      character(:), allocatable :: foreign, key
+      integer, allocatable :: meanings(:)
       integer :: i
 
+      if (card%name == 'NODE PRINT') then
+         known = split_words(node_keys)
+         meanings = node_quantities
+         foreign = foreign_node_keys
+      else
+         known = split_words(element_keys)
+         meanings = element_quantities
+         foreign = foreign_element_keys
+      end if
       key = to_upper(data%text(position))
-      allocate(known(0))
-      do i = 1, size(keys)
-         if (keys(i)%quantity /= not_computed) call append(known, trim(keys(i)%name))
-         if (keys(i)%name /= key) cycle
-         if (keys(i)%quantity == not_computed) then
-            call deck%warning(data%place(position), key//' of *'//card%name//' is not '// &
-               'computed: it is not printed')
-         else if (.not. any(quantities == keys(i)%quantity)) then
-            quantities = [quantities, keys(i)%quantity]
-         end if
-         return
-      end do
-      call deck%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
-         ' is not printed'//known_choices(key, known))
+      i = findloc([(known(i)%value == key, i=1, size(known))], .true., dim=1)
+      if (i > 0) then
+         if (all(quantities /= meanings(i))) quantities = [quantities, meanings(i)]
+      else if (index(foreign, '/'//key//'/') > 0) then
+         call deck%warning(data%place(position), key//' of *'//card%name//' is not '// &
+            'computed: it is not printed')
+      else
+         call deck%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
+            ' is not printed'//known_choices(key, known))
+      end if
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.
@@ -341,7 +300,7 @@ contains
          points = deck%time_points(i)
          frequency = huge(frequency)   ! the last increment is written besides
       end if
-      call take_from(0, card, 'FREQUENCY', deck, frequency)
+      call take_parameter(card, 'FREQUENCY', deck, frequency, '>=0')
    end subroutine read_frequency
 
 end module deck_builder_controls

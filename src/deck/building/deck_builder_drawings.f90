@@ -1,7 +1,7 @@
 !> Lines of rigid bodies: the lines and arcs of *SURFACE, TYPE=SEGMENTS, and surfaces of R2D2 and
 !> RAX2 elements; what all of them are checked for.
 module deck_builder_drawings
-   use card_values, only: check_extra, need_field, read_row
+   use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
@@ -22,13 +22,14 @@ module deck_builder_drawings
 
 contains
 
-   !> Reads the cards START, LINE and CIRCL of a surface.
+   !> Reads the cards START, LINE and CIRCL of a surface: the end of a piece and, of an arc, its
+   !> centre.
    subroutine build_drawing(card, deck, surface)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface         !! receives the drawing
       type(drawn_line_type) :: line
-      real(dp) :: last(2), x(2, 2)
+      real(dp) :: given(5), last(2), x(2, 2)
       integer :: errors, j
       character(:), allocatable :: word
       logical :: valid
@@ -43,8 +44,20 @@ contains
                   'cards behind it are LINE, x, y and CIRCL, x, y, x and y of the centre')
                exit
             end if
-            call read_points(data, word, deck, x, valid)
+            given = 0.0_dp
+            valid = .false.
+            select case (word)
+            case ('START', 'LINE')
+               call read_row(data, '@'//word//'/x/y', deck, given(:3), valid)
+            case ('CIRCL')
+               call read_row(data, '@CIRCL/x of its end/y of its end/x of its centre/'// &
+                  'y of its centre', deck, given, valid)
+            case default
+               call deck%error(data%place(1), ''''//data%text(1)//''' is no piece of a '// &
+                  'drawing; known are START, LINE and CIRCL')
+            end select
             if (.not. valid) exit
+            x = reshape(given(2:), shape(x))
             if (word /= 'START') then
                line%start = reshape([line%start, last], [2, size(line%is_arc) + 1])
                line%finish = reshape([line%finish, x(:, 1)], shape(line%start))
@@ -66,30 +79,6 @@ contains
       call turn_round(line)
       surface%drawing = line
    end subroutine build_drawing
-
-   !> The end of a piece and, of an arc, its centre.
-   subroutine read_points(data, word, deck, x, valid)
-      type(data_card_type), intent(in) :: data
-      character(*), intent(in) :: word
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(out) :: x(2, 2)
-      logical, intent(out) :: valid
-      real(dp) :: given(5)
-
-      given = 0.0_dp
-      valid = .false.
-      select case (word)
-      case ('START', 'LINE')
-         call read_row(data, '@'//word//'/x/y', deck, given(:3), valid)
-      case ('CIRCL')
-         call read_row(data, '@CIRCL/x of its end/y of its end/x of its centre/y of its centre', &
-            deck, given, valid)
-      case default
-         call deck%error(data%place(1), ''''//data%text(1)//''' is no piece of a drawing; '// &
-            'known are START, LINE and CIRCL')
-      end select
-      x = reshape(given(2:), shape(x))
-   end subroutine read_points
 
    !> A piece has a length, and an arc one radius and less than half a turn.
    subroutine check_piece(data, line, deck)
@@ -194,7 +183,7 @@ contains
       allocate (lines(0), ends(2, 0))
       do j = 1, size(card%data)
          valid = .true.
-         call need_field(card%data(j), 2, 'side SPOS or SNEG', deck, side, valid)
+         call read_field(card%data(j), 2, 'side SPOS or SNEG', deck, side, valid)
          call check_extra(card%data(j), 2, 'element or set, side', deck)
          if (.not. valid) return
          side = to_upper(side)

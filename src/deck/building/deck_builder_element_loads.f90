@@ -1,11 +1,12 @@
 !> Data cards of loads with a label: *DLOAD, *DFLUX and *FILM with an element, a set or a surface,
 !> *DSLOAD, *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
 module deck_builder_element_loads
-   use card_values, only: need_field, plane_vector, read_row
+   use card_values, only: read_field, plane_vector, read_row
    use cards, only: data_card_type
    use deck_builder_rigid, only: need_faces
+   use deck_builder_sets, only: check_face
    use deck_context, only: deck_type
-   use element_kinds, only: axisymmetric, element_corner_count, side_nodes
+   use element_kinds, only: axisymmetric, side_nodes
    use kinds, only: dp
    use load_requests, only: request_type
    use spelling, only: known_choices
@@ -65,20 +66,20 @@ contains
       known = .true.
       if (of_surfaces) then
          target = 'surface'
-         call deck%need_surface(data, 1, target, surface)
+         call deck%need_item(data, 1, 'surface', target, surface)
          advice = 'prescribe the temperature of its reference node'
          if (keyword == 'DSLOAD') advice = 'load its reference node by *CLOAD'
          call need_faces(data%place(1), advice, deck, surface)
          known = surface > 0
       else
          target = 'element or set'
-         surface = named_surface(data, deck)
+         call find_surface(data, deck, surface)
          if (surface == 0) call deck%need_target('element', data, 1, request%target_type, known)
       end if
       names = names_of(keyword, of_surfaces)
       what = 'label of the load'
       if (of_surfaces) what = names
-      call need_field(data, 2, what, deck, label, known)
+      call read_field(data, 2, what, deck, label, known)
       if (len(label) == 0) return
       label = to_upper(label)
       if (surface > 0 .and. .not. of_surfaces) then
@@ -131,28 +132,29 @@ contains
          if (of_surfaces .or. labels(i)%component > 0) then
             names = names//'/'//trim(labels(i)%name)
          else
-            names = names//repeat('/'//trim(labels(i)%name)//'#', 4)
+            do side = 1, 4
+               names = names//'/'//trim(labels(i)%name)//to_text(side)
+            end do
          end if
-      end do
-      do side = 1, 4
-         i = index(names, '#')
-         if (i > 0) names(i:i) = to_text(side)
       end do
       names = names(2:)
    end function names_of
 
    !> Index of the surface that a card names in place of an element or a set; else 0.
-   integer function named_surface(data, deck)
+   subroutine find_surface(data, deck, surface)
       type(data_card_type), intent(in) :: data
-      type(deck_type), intent(in) :: deck
+      type(deck_type), intent(inout) :: deck
+      integer, intent(out) :: surface
       integer :: set
 
-      named_surface = deck%index_of('surface', data%text(1))
-      if (.not. data%has(1)) named_surface = 0
+      surface = 0
       set = deck%index_of('element set', data%text(1))
-      if (set == 0) return
-      if (.not. deck%mesh%element_sets(set)%of_lines) named_surface = 0
-   end function named_surface
+      if (set > 0) then
+         if (.not. deck%mesh%element_sets(set)%of_lines) return
+      end if
+      if (data%has(1)) surface = deck%index_of('surface', data%text(1))
+      if (surface > 0) call deck%look_up('surface', data%text(1), data%place(1), surface)
+   end subroutine find_surface
 
    !> Every element of the request has the side of a label, or the plane.
    subroutine check_elements(data, label, request, deck, valid)
@@ -162,7 +164,6 @@ contains
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       integer, allocatable :: elements(:)
-      integer :: i
 
       if (.not. valid) return
       elements = request%members(deck%mesh%element_sets)
@@ -171,17 +172,7 @@ contains
          if (.not. valid) call deck%error(data%place(2), 'BR and BZ are forces on axisymmetric '// &
             'elements; those of a plane are BX and BY')
       end if
-      if (scan(label, '1234') == 0) return
-      do i = 1, size(elements)
-         if (.not. deck%element_valid(elements(i))) cycle
-         associate (sides => element_corner_count(deck%mesh%element_kind(elements(i))))
-            if (request%component <= sides) cycle
-            call deck%error(data%place(2), 'element '// &
-               to_text(deck%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
-         end associate
-         valid = .false.
-         return
-      end do
+      if (scan(label, '1234') > 0) call check_face(data, elements, request%component, deck, valid)
    end subroutine check_elements
 
    !> Adds a load, of a surface to each of its faces.

@@ -1,24 +1,22 @@
-!> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom;
-!> *TRANSFORM -> nodes with axes of their own, and what cards say of them.
+!> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom.
 module deck_builder_equations
-   use card_parameters, only: choice, need_parameter
-   use card_values, only: need_field, read_row
-   use cards, only: data_card_type, keyword_card_type
+   use card_parameters, only: need_parameter
+   use card_values, only: read_field, read_row
+   use cards, only: keyword_card_type
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use equations, only: coupling_type, equation_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
-   use deck_structure, only: card_count, cards_of, is_keyword
+   use deck_structure, only: cards_of, is_keyword
    use kinds, only: dp
-   use mesh, only: extent_of
    use load_requests, only: target_type
    use sorting, only: sort_order
    use steps, only: dof_temperature
    use text, only: read_integer, to_text
-   use transforms, only: axis_in_plane, transform_type
+   use transforms, only: axis_in_plane
    implicit none
    private
-   public :: build_equations, build_couplings, build_transforms, find_reference
+   public :: build_equations, build_couplings, find_reference
 
    integer, parameter :: term_fields = 3   !! node or set, degree of freedom, coefficient
 
@@ -28,8 +26,6 @@ module deck_builder_equations
       real(dp) :: coefficient = 0.0_dp
       type(place_type) :: place                    !! where it is
    end type term_type
-
-   real(dp), parameter :: negligible = 1.0e-9_dp   !! part of a direction or of the model
 
 contains
 
@@ -61,16 +57,18 @@ contains
       deck%model%equations = list(:count)
    end subroutine build_equations
 
-   !> Reads one equation: the number of its terms, then the terms, any number on a card.
+   !> Reads one equation: the number of its terms, then the terms, any number on a card, each a node
+   !> or set, degree of freedom, coefficient.
    subroutine read_terms(card, data, deck, terms)
       type(keyword_card_type), intent(in) :: card
       integer, intent(inout) :: data               ! its first data card; then that behind it
       type(deck_type), intent(inout) :: deck
       type(term_type), allocatable, intent(out) :: terms(:)   ! unallocated after an error
       type(term_type), allocatable :: found(:)
+      type(term_type) :: term
       type(place_type) :: place
       real(dp) :: given(1)
-      integer :: i, n
+      integer :: dof, i, n
       logical :: valid
 
       place = card%data(data)%place(1)
@@ -80,7 +78,19 @@ contains
       allocate (found(0))
       do while (valid .and. size(found) < n .and. data <= size(card%data))
          do i = 1, size(card%data(data)%fields), term_fields
-            call read_term(card%data(data), i, deck, found, valid)
+            associate (row => card%data(data))
+               term%place = row%place(i)
+               call deck%need_target('node', row, i, term%target_type, valid)
+               call read_field(row, i + 1, 'degree of freedom', deck, dof, valid)
+               call read_field(row, i + 2, 'coefficient', deck, term%coefficient, valid)
+               if (.not. valid) cycle
+               term%dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
+                  term%members(deck%mesh%node_sets), dof)
+               valid = any(term%dof == [1, 2, dof_temperature])
+               if (.not. valid) call deck%error(row%place(i + 1), 'degree of freedom '// &
+                  to_text(dof)//'; an equation relates 1 and 2, or 11')
+               found = [found, term]
+            end associate
          end do
          data = data + 1
       end do
@@ -94,60 +104,31 @@ contains
       end if
    end subroutine read_terms
 
-   !> Reads one term: node or set, degree of freedom, coefficient.
-   subroutine read_term(card, position, deck, terms, valid)
-      type(data_card_type), intent(in) :: card
-      integer, intent(in) :: position
-      type(deck_type), intent(inout) :: deck
-      type(term_type), allocatable, intent(inout) :: terms(:)
-      logical, intent(inout) :: valid
-      type(term_type) :: term
-      integer :: dof
-
-      term%place = card%place(position)
-      call deck%need_target('node', card, position, term%target_type, valid)
-      call need_field(card, position + 1, 'degree of freedom', deck, dof, valid)
-      call need_field(card, position + 2, 'coefficient', deck, term%coefficient, valid)
-      if (.not. valid) return
-      term%dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
-         term%members(deck%mesh%node_sets), dof)
-      if (all(term%dof /= [1, 2, dof_temperature])) then
-         call deck%error(card%place(position + 1), 'degree of freedom '//to_text(dof)//'; an '// &
-            'equation relates 1 and 2, or 11')
-         valid = .false.
-      end if
-      terms = [terms, term]
-   end subroutine read_term
-
    !> Displacements and temperatures are solved one after the other; sets have one length; the first
    !> term, which the others determine, is there.
    subroutine check_terms(terms, deck, valid)
       type(term_type), intent(in) :: terms(:)
       type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
-      integer :: i, lengths(size(terms))
+      logical, intent(out) :: valid
+      integer :: errors, i, lengths(size(terms))
 
+      errors = deck%error_count()
       lengths = 1
       do i = 1, size(lengths)
          lengths(i) = size(terms(i)%members(deck%mesh%node_sets))
-         if (lengths(i) == 0) valid = .false.   ! its card has an error
          if (lengths(i) == 1 .or. maxval(lengths(:i - 1)) <= 1) cycle
-         if (lengths(i) == maxval(lengths(:i - 1))) cycle
-         call deck%error(terms(i)%place, 'the node sets of an equation must have the same '// &
-            'number of nodes, or one node: '//to_text(maxval(lengths(:i - 1)))//' and '// &
-            to_text(lengths(i)))
-         valid = .false.
+         if (lengths(i) /= maxval(lengths(:i - 1))) call deck%error(terms(i)%place, 'the node '// &
+            'sets of an equation must have the same number of nodes, or one node: '// &
+            to_text(maxval(lengths(:i - 1)))//' and '//to_text(lengths(i)))
       end do
       i = findloc((terms%dof == dof_temperature) .neqv. (terms(1)%dof == dof_temperature), &
          .true., dim=1)
-      if (i > 0) then
-         call deck%error(terms(i)%place, 'an equation relates displacements or temperatures, '// &
-            'not both')
-         valid = .false.
-      end if
-      if (abs(terms(1)%coefficient) > 0.0_dp) return
-      call deck%error(terms(1)%place, 'the coefficient of the first term must not be 0')
-      valid = .false.
+      if (i > 0) call deck%error(terms(i)%place, 'an equation relates displacements or '// &
+         'temperatures, not both')
+      if (abs(terms(1)%coefficient) <= 0.0_dp) call deck%error(terms(1)%place, 'the '// &
+         'coefficient of the first term must not be 0')
+      ! A set without nodes has an error on its card.
+      valid = all(lengths > 0) .and. deck%error_count() == errors
    end subroutine check_terms
 
    !> Adds the equation, or one for each member of its sets in the order of the node numbers.
@@ -199,54 +180,48 @@ contains
       integer :: errors, k, n
 
       errors = deck%error_count()
-      allocate (deck%model%couplings(card_count(deck%cards, 'COUPLING') + card_count(deck%cards, &
-         'RIGID BODY')))
+      allocate (deck%model%couplings(size(cards_of(deck%cards, 'COUPLING')) + &
+         size(cards_of(deck%cards, 'RIGID BODY'))))
       n = 0
       do k = 1, size(deck%cards%keywords)
-         if (deck%cards%keywords(k)%name == 'RIGID BODY') then
-            n = n + 1
-            call begin_coupling(deck%cards%keywords(k), n, deck)
-            if (deck%cards%keywords(k)%has('ROT NODE')) call find_reference('ROT NODE', &
-               deck%cards%keywords(k), deck, deck%model%couplings(n)%rotation_node)
-            call build_rigid_body(deck%cards%keywords(k), deck, deck%model%couplings(n))
-         else if (deck%cards%keywords(k)%name == 'COUPLING') then
-            n = n + 1
-            call begin_coupling(deck%cards%keywords(k), n, deck)
-            call deck%need_named(deck%cards%keywords(k), 'SURFACE', 'surface', &
-               deck%model%couplings(n)%surface)
-            call need_faces(deck%cards%keywords(k)%place_of('SURFACE'), 'it follows the '// &
-               'reference node of its *RIGID BODY', deck, deck%model%couplings(n)%surface)
-            if (is_keyword(deck%cards, k + 1, 'KINEMATIC')) cycle
-            call deck%error(deck%cards%keywords(k)%place, '*KINEMATIC is missing: it must '// &
-               'directly follow *COUPLING and name the degrees of freedom')
-         else if (deck%cards%keywords(k)%name == 'KINEMATIC') then
-            if (is_keyword(deck%cards, k - 1, 'COUPLING')) then
-               call read_degrees(deck%cards%keywords(k), deck, deck%model%couplings(n))
-            else
-               call deck%error(deck%cards%keywords(k)%place, '*KINEMATIC must directly follow '// &
-                  '*COUPLING')
+         associate (card => deck%cards%keywords(k))
+            if (any(card%name == [character(10) :: 'RIGID BODY', 'COUPLING'])) then
+               n = n + 1
+               associate (coupling => deck%model%couplings(n), nodes => deck%mesh%node_number)
+                  coupling%rotation = size(nodes) - size(deck%model%couplings) + n
+                  coupling%card = card%place%image
+                  coupling%title = '*'//card%name//', '//deck%source%words_of(card%place)
+                  call find_reference('REF NODE', card, deck, coupling%reference)
+                  if (coupling%reference > 0) deck%mesh%coordinates(:, coupling%rotation) = &
+                     deck%mesh%coordinates(:, coupling%reference)
+               end associate
             end if
-         end if
+            select case (card%name)
+            case ('RIGID BODY')
+               if (card%has('ROT NODE')) call find_reference('ROT NODE', card, deck, &
+                  deck%model%couplings(n)%rotation_node)
+               call build_rigid_body(card, deck, deck%model%couplings(n))
+            case ('COUPLING')
+               call deck%need_named(card, 'SURFACE', 'surface', deck%model%couplings(n)%surface)
+               call need_faces(card%place_of('SURFACE'), 'it follows the reference node of its '// &
+                  '*RIGID BODY', deck, deck%model%couplings(n)%surface)
+               if (.not. is_keyword(deck%cards, k + 1, 'KINEMATIC')) call deck%error(card%place, &
+                  '*KINEMATIC is missing: it must directly follow *COUPLING and name the '// &
+                  'degrees of freedom')
+            case ('KINEMATIC')
+               if (is_keyword(deck%cards, k - 1, 'COUPLING')) then
+                  call read_degrees(card, deck, deck%model%couplings(n))
+               else
+                  call deck%error(card%place, '*KINEMATIC must directly follow *COUPLING')
+               end if
+            case default
+               cycle
+            end select
+         end associate
       end do
       if (deck%error_count() > errors) call deck%lose('equation')
       call check_rigid_masters(deck)
    end subroutine build_couplings
-
-   !> Title and reference node of a coupling, and the node of its rotation.
-   subroutine begin_coupling(card, n, deck)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: n                     ! index of the coupling
-      type(deck_type), intent(inout) :: deck
-
-      associate (coupling => deck%model%couplings(n))
-         coupling%rotation = size(deck%mesh%node_number) - size(deck%model%couplings) + n
-         coupling%card = card%place%image
-         coupling%title = '*'//card%name//', '//deck%source%words_of(card%place)
-         call find_reference('REF NODE', card, deck, coupling%reference)
-         if (coupling%reference > 0) deck%mesh%coordinates(:, coupling%rotation) = &
-            deck%mesh%coordinates(:, coupling%reference)
-      end associate
-   end subroutine begin_coupling
 
    !> The node that a parameter names, which the card must have: its number, or a set of one node.
    subroutine find_reference(parameter, card, deck, node)
@@ -284,151 +259,39 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling
-      integer :: j
+      real(dp) :: range(2)
+      integer :: dof, j
+      logical :: valid
 
       if (size(card%data) == 0) then
          coupling%follows = .true.
          call deck%note('*KINEMATIC without data: displacements along x and y follow')
       end if
       do j = 1, size(card%data)
-         call read_range(card%data(j), deck, coupling)
-      end do
-   end subroutine read_degrees
-
-   subroutine read_range(data, deck, coupling)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      type(coupling_type), intent(inout) :: coupling
-      real(dp) :: range(2)
-      integer :: dof, first, last
-      logical :: valid
-
-      call read_row(data, '#first degree of freedom/#last degree of freedom?', deck, range, valid)
-      first = nint(range(1))
-      last = first
-      if (data%has(2)) last = nint(range(2))
-      if (.not. valid) return
-      if (last < first) then
-         call deck%error(data%place(2), 'the last degree of freedom is below the first')
-         return
-      end if
-      do dof = first, last
-         select case (dof)
-         case (1, 2)
-            coupling%follows(dof) = .true.
-         case (3:6)
-            call deck%note('*KINEMATIC: degrees of freedom 3 to 6, which nodes of a face do '// &
-               'not have, are ignored')
-         case (dof_temperature)
-            coupling%is_warm = .true.
-         case default
-            call deck%error(data%place(merge(1, 2, dof == first)), 'degree of freedom '// &
-               to_text(dof)//'; faces follow in 1, 2 and 11')
-            return
-         end select
-      end do
-   end subroutine read_range
-
-   !> Builds all transforms.
-   subroutine build_transforms(deck)
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
-      integer :: n
-
-      places = cards_of(deck%cards, 'TRANSFORM')
-      allocate (deck%model%transforms(size(places)))
-      do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)), transform => deck%model%transforms(n))
-            transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
-            transform%card = card%place%image
-            call deck%need_named(card, 'NSET', 'node set', transform%set)
-            transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
-            if (size(card%data) > 0) call read_points(card%data(1), deck, transform)
-            call check_nodes(card, n, deck)
+         associate (data => card%data(j))
+            call read_row(data, '#first degree of freedom/#last degree of freedom?', deck, range, &
+               valid)
+            if (.not. valid) cycle
+            if (.not. data%has(2)) range(2) = range(1)
+            if (range(2) < range(1)) call deck%error(data%place(2), 'the last degree of '// &
+               'freedom is below the first')
+            do dof = nint(range(1)), nint(range(2))
+               select case (dof)
+               case (1, 2)
+                  coupling%follows(dof) = .true.
+               case (3:6)
+                  call deck%note('*KINEMATIC: degrees of freedom 3 to 6, which nodes of a face '// &
+                     'do not have, are ignored')
+               case (dof_temperature)
+                  coupling%is_warm = .true.
+               case default
+                  call deck%error(data%place(merge(1, 2, dof == nint(range(1)))), 'degree of '// &
+                     'freedom '//to_text(dof)//'; faces follow in 1, 2 and 11')
+                  exit
+               end select
+            end do
          end associate
       end do
-   end subroutine build_transforms
-
-   !> Two points: on the first axis and in the plane of the first two; or on the axis of a cylinder.
-   subroutine read_points(data, deck, transform)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      type(transform_type), intent(inout) :: transform
-      real(dp) :: given(6), x(3, 2)
-      logical :: valid
-
-      call read_row(data, 'x of point a/y of point a/z of point a?/x of point b/y of point b/'// &
-         'z of point b?', deck, given, valid)
-      x = reshape(given, shape(x))
-      if (.not. valid) return
-      transform%point = x(:2, 1)
-      if (transform%cylindrical) then
-         x(:, 2) = x(:, 2) - x(:, 1)
-         transform%sense = sign(1.0_dp, x(3, 2))
-         if (norm2(x(:2, 2)) > negligible*norm2(x(:, 2)) .or. &
-            norm2(x(:, 2)) <= 0.0_dp) call deck%error(data%place(1), 'TYPE=C of a plane is '// &
-            'round an axis along z, such as 0., 0., 0., 0., 0., 1.')
-      else
-         call set_axes(x, transform, valid)
-         if (.not. valid) call deck%error(data%place(1), 'TYPE=R of a plane has two points, '// &
-            'not in line with the origin, that put one of the three axes along z, such as 1., '// &
-            '1., 0., -1., 1., 0.')
-      end if
-   end subroutine read_points
-
-   !> The axes in the plane of two points, TYPE=R. One of the three axes must be along z.
-   pure subroutine set_axes(x, transform, valid)
-      real(dp), intent(in) :: x(3, 2)
-      type(transform_type), intent(inout) :: transform
-      logical, intent(out) :: valid
-      real(dp) :: axes(3, 3)
-
-      valid = all(norm2(x, dim=1) > 0.0_dp)
-      if (.not. valid) return
-      axes(:, 1) = x(:, 1)/norm2(x(:, 1))
-      axes(:, 2) = x(:, 2)/norm2(x(:, 2))
-      axes(:, 2) = axes(:, 2) - dot_product(axes(:, 1), axes(:, 2))*axes(:, 1)
-      valid = norm2(axes(:, 2)) > negligible
-      if (.not. valid) return
-      axes(:, 2) = axes(:, 2)/norm2(axes(:, 2))
-      axes(:, 3) = cshift(axes(:, 1), 1)*cshift(axes(:, 2), 2) - &
-         cshift(axes(:, 1), 2)*cshift(axes(:, 2), 1)
-      transform%out_of_plane = maxloc(abs(axes(3, :)), dim=1)
-      valid = norm2(axes(:2, transform%out_of_plane)) <= negligible
-      associate (first => axes(:2, merge(2, 1, transform%out_of_plane == 1)), &
-         second => axes(:2, merge(2, 3, transform%out_of_plane == 3)))
-         transform%point = first
-         transform%sense = sign(1.0_dp, first(1)*second(2) - first(2)*second(1))
-      end associate
-   end subroutine set_axes
-
-   !> A node has one transform, and is not on the axis of it.
-   subroutine check_nodes(card, n, deck)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: n
-      type(deck_type), intent(inout) :: deck
-      integer :: i, k
-
-      if (deck%model%transforms(n)%set == 0) return
-      associate (members => deck%mesh%node_sets(deck%model%transforms(n)%set)%members, number => &
-         deck%mesh%node_number, x => deck%mesh%coordinates)
-         do i = 1, size(members)
-            do k = 1, n - 1
-               if (deck%model%transforms(k)%set == 0) cycle
-               if (all(deck%mesh%node_sets(deck%model%transforms(k)%set)%members /= &
-                  members(i))) cycle
-               call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' '// &
-                  'has axes of its own by '//deck%model%transforms(k)%title//' already')
-               return
-            end do
-            if (.not. deck%model%transforms(n)%cylindrical) cycle
-            if (norm2(x(:, members(i)) - deck%model%transforms(n)%point) > &
-               negligible*extent_of(x)) cycle
-            call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' is '// &
-               'on the axis, where no direction is radial')
-            return
-         end do
-      end associate
-   end subroutine check_nodes
+   end subroutine read_degrees
 
 end module deck_builder_equations

@@ -1,7 +1,7 @@
 !> *GAP CONDUCTANCE: a table of conductance over the pressure, or over the clearance, at one mean
 !> temperature of the faces or at several.
 module deck_builder_gap_conductance
-   use card_values, only: check_unneeded_temperature, decimal_comma, read_rows, report_decimal_comma
+   use card_values, only: check_unneeded, decimal_comma, read_rows, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
       line_value
@@ -84,37 +84,30 @@ contains
 
    !> Whether a table is over the clearance: it says so, or it is one of Abaqus, which has no
    !> parameter there. Without one it is over the pressure in CalculiX, but that of Abaqus if the
-   !> interaction has another one that says PRESSURE, or if the conductance falls along it.
+   !> interaction has another one that says PRESSURE, or if the conductance falls along its rows and
+   !> rises nowhere, at each temperature.
    logical function is_of_clearance(card, has_pressure)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: has_pressure    !! whether a card of the interaction says PRESSURE
+      real(dp) :: conductance(size(card%data))
+      integer :: i
+      logical :: falls, valid
 
       is_of_clearance = card%has('CLEARANCE')
       if (is_of_clearance .or. card%has('PRESSURE')) return
-      is_of_clearance = has_pressure .or. falls(card%data)
-   end function is_of_clearance
-
-   !> Whether the conductance falls along rows, and rises nowhere, at each temperature.
-   pure logical function falls(rows)
-      type(data_card_type), intent(in) :: rows(:)
-      real(dp) :: conductance(size(rows))
-      integer :: i
-      logical :: valid
-
       falls = .false.
-      do i = 1, size(rows)
-         call read_real(rows(i)%text(1), conductance(i), valid)
-         if (.not. valid) return
+      do i = 1, size(card%data)
+         call read_real(card%data(i)%text(1), conductance(i), valid)
+         if (.not. valid) exit
+         associate (before => max(i - 1, 1))
+            if (card%data(i)%text(3) /= card%data(before)%text(3)) cycle
+            valid = conductance(i) <= conductance(before)
+            falls = falls .or. conductance(i) < conductance(before)
+         end associate
+         if (.not. valid) exit
       end do
-      do i = 2, size(rows)
-         if (rows(i)%text(3) /= rows(i - 1)%text(3)) cycle
-         if (conductance(i) > conductance(i - 1)) then
-            falls = .false.
-            return
-         end if
-         falls = falls .or. conductance(i) < conductance(i - 1)
-      end do
-   end function falls
+      is_of_clearance = has_pressure .or. (falls .and. valid)
+   end function is_of_clearance
 
    !> Warns of a table that conducts nothing, and of one without a parameter that is taken as one of
    !> clearance, or that may be meant so.
@@ -150,23 +143,6 @@ contains
          'CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
    end subroutine check_columns
 
-   !> Refuses a table that ends at other gaps at other temperatures: between them it would end at
-   !> none.
-   subroutine check_last_gaps(rows, gap, temperature, deck)
-      type(data_card_type), intent(in) :: rows(:)
-      real(dp), intent(in) :: gap(:), temperature(:)       ! (rows)
-      type(deck_type), intent(inout) :: deck
-      integer :: i
-
-      do i = 1, size(rows)
-         if (any(temperature(i + 1:) <= temperature(i))) cycle
-         if (abs(gap(i) - maxval(gap, mask=temperature <= temperature(1))) > 0.0_dp) call &
-            deck%error(rows(i)%place(2), 'the table ends at a different gap than at the first '// &
-            'temperature; no heat crosses beyond the end, which must be the same at all '// &
-            'temperatures')
-      end do
-   end subroutine check_last_gaps
-
    !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
    !> it and are in groups of one temperature.
    subroutine read_table(card, noun, deck, table)
@@ -175,8 +151,9 @@ contains
       type(deck_type), intent(inout) :: deck
       type(gap_table_type), intent(out) :: table
       character(:), allocatable :: layout
+      real(dp), allocatable :: grid(:)
       real(dp) :: values(3, size(card%data))
-      integer :: i
+      integer :: i, k
       logical :: valid
 
       layout = 'conductance >=0/'//noun//' >=0'
@@ -197,8 +174,26 @@ contains
             table%columns = reshape(table%omega, [size(table%omega), 1])
             return
          end if
-         if (noun == 'gap') call check_last_gaps(card%data, table%abscissa, temperature, deck)
-         call make_columns(temperature, table)
+         do i = 1, size(temperature)
+            ! Between temperatures at which it ends at other gaps, a table would end at none.
+            if (noun /= 'gap' .or. any(temperature(i + 1:) <= temperature(i))) cycle
+            if (abs(table%abscissa(i) - maxval(table%abscissa, mask=temperature <= &
+               temperature(1))) > 0.0_dp) call deck%error(card%data(i)%place(2), 'the table '// &
+               'ends at a different gap than at the first temperature; no heat crosses beyond '// &
+               'the end, which must be the same at all temperatures')
+         end do
+         ! One column for each temperature, with the conductance at all gaps or pressures.
+         grid = ascending(table%abscissa)
+         table%temperature = ascending(temperature)
+         allocate (table%columns(size(grid), size(table%temperature)))
+         do k = 1, size(table%temperature)
+            associate (here => abs(temperature - table%temperature(k)) <= 0.0_dp)
+               table%columns(:, k) = [(line_value(pack(table%abscissa, here), &
+                  pack(table%omega, here), grid(i)), i=1, size(grid))]
+            end associate
+         end do
+         call move_alloc(grid, table%abscissa)
+         table%omega = table%columns(:, 1)
       end associate
    end subroutine read_table
 
@@ -232,30 +227,10 @@ contains
          return
       end do
       if (differ .or. .not. valid) return
-      call check_unneeded_temperature(rows(1), 3, deck)
+      call check_unneeded(rows(1), 3, 'a temperature', deck)
       if (any([(rows(i)%has(3), i=1, size(rows))])) call deck%note('*GAP CONDUCTANCE: the '// &
          'temperature, the same in every row, is ignored')
    end subroutine check_temperatures
-
-   !> One column for each temperature.
-   subroutine make_columns(temperature, table)
-      real(dp), intent(in) :: temperature(:)               ! (rows as written) ascending
-      type(gap_table_type), intent(inout) :: table
-      real(dp), allocatable :: grid(:)
-      logical :: here(size(temperature))
-      integer :: i, k
-
-      grid = ascending(table%abscissa)
-      table%temperature = ascending(temperature)
-      allocate (table%columns(size(grid), size(table%temperature)))
-      do k = 1, size(table%temperature)
-         here = abs(temperature - table%temperature(k)) <= 0.0_dp
-         table%columns(:, k) = [(line_value(pack(table%abscissa, here), &
-            pack(table%omega, here), grid(i)), i=1, size(grid))]
-      end do
-      call move_alloc(grid, table%abscissa)
-      table%omega = table%columns(:, 1)
-   end subroutine make_columns
 
    !> Each of some values once.
    pure function ascending(values) result(sorted)

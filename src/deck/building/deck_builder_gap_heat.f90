@@ -1,15 +1,14 @@
 !> *GAP HEAT GENERATION -> the heat of friction of a surface interaction; *GAP RADIATION ->
 !> radiation in its gap.
 module deck_builder_gap_heat
-   use card_parameters, only: take_within
-   use card_values, only: read_row, read_rows
-   use cards, only: data_card_type, keyword_card_type
+   use card_parameters, only: take_parameter
+   use card_values, only: check_ascending, read_row, read_rows
+   use cards, only: keyword_card_type
    use conductance_laws, only: conductance_law_type, law_gas, law_none
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric
    use friction_laws, only: friction_heat_type, rough_coefficient
    use kinds, only: dp
-   use model, only: model_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
    implicit none
@@ -39,7 +38,7 @@ contains
       end if
       if (.not. card%has('ANGULAR VELOCITY')) return
       if (any(deck%mesh%element_plane == axisymmetric)) then
-         call take_within('>0', card, 'ANGULAR VELOCITY', deck, heat%angular_velocity)
+         call take_parameter(card, 'ANGULAR VELOCITY', deck, heat%angular_velocity, '>0')
       else
          call deck%error(card%place_of('ANGULAR VELOCITY'), 'ANGULAR VELOCITY= needs '// &
             'axisymmetric elements, which turn about their axis; give a sliding speed')
@@ -57,7 +56,15 @@ contains
          associate (card => deck%cards%keywords(k))
             if (card%name == 'SURFACE INTERACTION') n = n + 1
             if (card%name /= 'GAP HEAT GENERATION' .or. n == 0) cycle
-            largest = largest_friction(deck%model, n)
+            ! The largest coefficient that the interaction has in any step.
+            largest = deck%model%interactions(n)%friction%coefficient
+            do s = 1, size(deck%model%steps)
+               if (.not. allocated(deck%model%steps(s)%changes%frictions)) cycle
+               associate (changes => deck%model%steps(s)%changes%frictions)
+                  largest = max(largest, maxval([0.0_dp, pack(changes%friction%coefficient, &
+                     changes%interaction == n)]))
+               end associate
+            end do
             if (largest <= 0.0_dp) call deck%missing(card%place, 'interaction '// &
                deck%model%interactions(n)%name//' makes no heat of friction: it has no '// &
                '*FRICTION above 0', '*FRICTION')
@@ -75,78 +82,46 @@ contains
       end do
    end subroutine check_friction_heat
 
-   !> Largest coefficient of friction that an interaction has in any step.
-   pure real(dp) function largest_friction(model, interaction) result(largest)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: interaction
-      integer :: i, s
-
-      largest = model%interactions(interaction)%friction%coefficient
-      do s = 1, size(model%steps)
-         if (.not. allocated(model%steps(s)%changes%frictions)) cycle
-         do i = 1, size(model%steps(s)%changes%frictions)
-            associate (change => model%steps(s)%changes%frictions(i))
-               if (change%interaction == interaction) largest = max(largest, &
-                  change%friction%coefficient)
-            end associate
-         end do
-      end do
-   end function largest_friction
-
-   !> Reads one *GAP RADIATION: emissivities of both faces, then view factors over the clearance.
+   !> Reads one *GAP RADIATION: emissivities of both faces, then view factors over the clearance, 1
+   !> at all clearances where there are none.
    !> Two large grey faces exchange sigma/(1/e1 + 1/e2 - 1) (T1^4 - T2^4), times the view factor.
    subroutine build_gap_radiation(card, deck, law)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives radiation in the open gap
-      real(dp) :: emissivity(2)
-      real(dp), allocatable :: gap(:), view_factor(:)
+      real(dp) :: emissivity(2), values(2, max(size(card%data) - 1, 1))
       logical :: valid
 
       call read_row(card%data(1), 'emissivity >0 <=1 =1/emissivity >0 <=1 =1', deck, &
          emissivity, valid)
-      call read_view_factors(card%data(2:), deck, gap, view_factor)
-      if (size(card%data) > 1 .and. view_factor(size(view_factor)) > 0.0_dp) call deck%note( &
-         '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last view '// &
-         'factor')
-      if (.not. deck%model%constants%has_radiation) call deck%error(card%place, '*GAP '// &
-         'RADIATION needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
-      if (law%open_kind == law_none) law%open_kind = law_gas
-      if (allocated(law%by_temperature)) then
-         if (law%by_temperature%radiance > 0.0_dp) call deck%error(card%place, '*GAP RADIATION '// &
-            'beside EMISSIVITY= of *GAP LAW: leave one of them out')
-      end if
-      if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%radiance = deck%model%constants%stefan_boltzmann*maxval(view_factor)/( &
-         1.0_dp/emissivity(1) + 1.0_dp/emissivity(2) - 1.0_dp)
-      law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
-      if (minval(view_factor) >= maxval(view_factor)) return
-      law%view_gap = gap
-      law%view_factor = view_factor/maxval(view_factor)
-   end subroutine build_gap_radiation
-
-   !> Rows of view factor and clearance; 1 at all clearances where there are none.
-   subroutine read_view_factors(rows, deck, gap, view_factor)
-      type(data_card_type), intent(in) :: rows(:)
-      type(deck_type), intent(inout) :: deck
-      real(dp), allocatable, intent(out) :: gap(:), view_factor(:)   ! (rows)
-      real(dp) :: values(2, max(size(rows), 1))
-      integer :: i
-      logical :: valid
-
       values(1, :) = 1.0_dp
       values(2, :) = 0.0_dp
-      call read_rows(rows, 'view factor >=0 <=1 =1/clearance? >=0', deck, values, valid)
-      view_factor = values(1, :)
-      gap = values(2, :)
-      do i = 2, size(rows)
-         if (valid .and. gap(i) <= gap(i - 1)) call deck%error(rows(i)%place(2), &
-            'clearances must ascend')
-      end do
-      if (maxval(view_factor) > 0.0_dp) return
-      call deck%error(rows(1)%place(1), 'all view factors are 0: the faces do not radiate; '// &
-         'leave *GAP RADIATION out')
-      view_factor = 1.0_dp
-   end subroutine read_view_factors
+      associate (rows => card%data(2:), view_factor => values(1, :), gap => values(2, :))
+         call read_rows(rows, 'view factor >=0 <=1 =1/clearance? >=0', deck, values, valid)
+         if (valid) call check_ascending(rows, 2, 'clearances', gap, deck)
+         if (maxval(view_factor) <= 0.0_dp) then
+            call deck%error(rows(1)%place(1), 'all view factors are 0: the faces do not '// &
+               'radiate; leave *GAP RADIATION out')
+            view_factor = 1.0_dp
+         end if
+         if (size(rows) > 0 .and. view_factor(size(view_factor)) > 0.0_dp) call deck%note( &
+            '*GAP RADIATION: faces radiate at all clearances, also beyond that of the last '// &
+            'view factor')
+         if (.not. deck%model%constants%has_radiation) call deck%error(card%place, '*GAP '// &
+            'RADIATION needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
+         if (law%open_kind == law_none) law%open_kind = law_gas
+         if (allocated(law%by_temperature)) then
+            if (law%by_temperature%radiance > 0.0_dp) call deck%error(card%place, '*GAP '// &
+               'RADIATION beside EMISSIVITY= of *GAP LAW: leave one of them out')
+         end if
+         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
+         law%by_temperature%radiance = deck%model%constants%stefan_boltzmann*maxval(view_factor)/( &
+            1.0_dp/emissivity(1) + 1.0_dp/emissivity(2) - 1.0_dp)
+         law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
+         if (minval(view_factor) >= maxval(view_factor)) return
+         law%view_gap = gap
+         law%view_factor = view_factor/maxval(view_factor)
+      end associate
+   end subroutine build_gap_radiation
 
 end module deck_builder_gap_heat

@@ -1,7 +1,7 @@
 !> *GAP LAW -> one side of the conductance of a surface interaction.
 module deck_builder_gap_laws
-   use card_parameters, only: needed_choice, take_within
-   use card_values, only: read_row
+   use card_parameters, only: needed_choice, take_parameter
+   use card_values, only: check_ascending, read_row
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
    use deck_builder_gap_conductance, only: gap_table_type, note_ends, read_table
@@ -32,7 +32,9 @@ contains
       type(conductance_law_type), intent(inout) :: law     !! receives one side
       type(gap_table_type) :: table
       character(:), allocatable :: kind
+      real(dp) :: values(3)
       integer :: i
+      logical :: valid
 
       kind = needed_choice(card, 'TYPE', 'GAS/POWER/CLEARANCE/CMY/ROSS-STOUTE', deck)
       if (kind == '') return
@@ -63,27 +65,17 @@ contains
          'LAW, TYPE='//kind//' has one')
       law%closed_kind = law_power
       if (kind == 'POWER') then
-         call build_power_law(card%data(1), deck, law)
+         ! omega = C0 + C1 p^n.
+         call read_row(card%data(1), 'C0 >=0/C1 >=0/n >0', deck, values, valid)
+         if (valid .and. values(3) > largest_exponent) call deck%error(card%data(1)%place(3), &
+            'n must not exceed '//to_text(largest_exponent)//'; for rough faces it is about 0.95')
+         law%power_c0 = values(1)
+         law%power_c1 = values(2)
+         law%power_n = min(values(3), largest_exponent)
       else
          call build_solid_spots(card%data(1), kind, deck, law)
       end if
    end subroutine build_gap_law
-
-   !> omega = C0 + C1 p^n.
-   subroutine build_power_law(data, deck, law)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      type(conductance_law_type), intent(inout) :: law
-      real(dp) :: values(3)
-      logical :: valid
-
-      call read_row(data, 'C0 >=0/C1 >=0/n >0', deck, values, valid)
-      if (valid .and. values(3) > largest_exponent) call deck%error(data%place(3), &
-         'n must not exceed '//to_text(largest_exponent)//'; for rough faces it is about 0.95')
-      law%power_c0 = values(1)
-      law%power_c1 = values(2)
-      law%power_n = min(values(3), largest_exponent)
-   end subroutine build_power_law
 
    !> Reads one data card. With ks = 2 k1 k2/(k1 + k2), CMY is 1.25 ks (m/sigma) (p/H)^0.95 and
    !> ROSS-STOUTE ks p/(a0 sqrt(R) H).
@@ -138,15 +130,24 @@ contains
       type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives the open side
       character(:), allocatable :: layout
-      real(dp) :: added(2), values(3, size(card%data))
+      real(dp) :: added(2), emissivity, values(3, size(card%data))
       integer :: i
       logical :: valid
 
       added = 0.0_dp
-      call take_within('>=0', card, 'JUMP', deck, added(1))
-      call take_within('>=0', card, 'ROUGHNESS', deck, added(2))
+      call take_parameter(card, 'JUMP', deck, added(1), '>=0')
+      call take_parameter(card, 'ROUGHNESS', deck, added(2), '>=0')
       law%added_length = sum(added)
-      call take_emissivity(card, deck, law)
+      if (card%has('EMISSIVITY')) then
+         emissivity = 1.0_dp
+         call take_parameter(card, 'EMISSIVITY', deck, emissivity, '>0 <=1')
+         if (.not. deck%model%constants%has_radiation) call deck%error(card%place_of( &
+            'EMISSIVITY'), 'EMISSIVITY= needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN '// &
+            'BOLTZMANN=')
+         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
+         law%by_temperature%radiance = emissivity*deck%model%constants%stefan_boltzmann
+         law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
+      end if
       layout = 'A >0/B >=0'
       if (card%has('EMISSIVITY')) layout = 'A >=0/B >=0'
       if (law%added_length > 0.0_dp) layout = layout(:index(layout, 'B'))//'? >=0'
@@ -164,9 +165,8 @@ contains
             end if
          end associate
          if (values(2, i) + law%added_length <= 0.0_dp) values(2, i) = 1.0_dp
-         if (valid .and. any(values(3, :i - 1) >= values(3, i))) call deck%error( &
-            card%data(i)%place(3), 'temperatures must ascend')
       end do
+      if (valid) call check_ascending(card%data, 3, 'temperatures', values(3, :), deck)
       law%gas_a = values(1, 1)
       law%gas_b = values(2, 1)
       if (size(card%data) == 1) return
@@ -176,22 +176,5 @@ contains
       law%by_temperature%gas_b = values(2, :)
       call note_ends('*GAP LAW, TYPE=GAS', name, 'mean temperatures', values(3, :), deck)
    end subroutine build_gas_law
-
-   !> sigma eps of the radiation between the faces.
-   subroutine take_emissivity(card, deck, law)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(conductance_law_type), intent(inout) :: law
-      real(dp) :: emissivity
-
-      if (.not. card%has('EMISSIVITY')) return
-      emissivity = 1.0_dp
-      call take_within('>0 <=1', card, 'EMISSIVITY', deck, emissivity)
-      if (.not. deck%model%constants%has_radiation) call deck%error(card%place_of('EMISSIVITY'), &
-         'EMISSIVITY= needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
-      if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
-      law%by_temperature%radiance = emissivity*deck%model%constants%stefan_boltzmann
-      law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
-   end subroutine take_emissivity
 
 end module deck_builder_gap_laws

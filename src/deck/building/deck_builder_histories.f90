@@ -3,15 +3,15 @@
 !> points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choice, chosen, take_parameter, take_within
-   use card_values, only: decimal_comma, need_field, read_row, report_decimal_comma
+   use card_parameters, only: choice, chosen, need_parameter, take_parameter
+   use card_values, only: decimal_comma, read_field, read_row, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_kinds, only: kind_count, plane_stress
    use kinds, only: dp
    use load_requests, only: request_type, target_type
-   use text, only: read_integer, read_real, to_text, to_upper
+   use text, only: read_integer, to_text
    implicit none
    private
    public :: build_amplitudes, build_time_points, build_temperatures, build_initial_stresses
@@ -34,14 +34,40 @@ contains
    !> Builds all amplitudes.
    subroutine build_amplitudes(deck)
       type(deck_type), intent(inout) :: deck
+      character(:), allocatable :: kind, none
       integer, allocatable :: places(:)
-      integer :: n
+      real(dp) :: begin, interval
+      integer :: errors, i, n
 
       places = cards_of(deck%cards, 'AMPLITUDE')
       allocate(deck%model%amplitudes(size(places)))
       do n = 1, size(places)
          call deck%take_name(places(n), 'amplitude', deck%model%amplitudes(n)%name)
-         call build_amplitude(deck%cards%keywords(places(n)), deck, deck%model%amplitudes(n))
+         associate (card => deck%cards%keywords(places(n)), amplitude => deck%model%amplitudes(n))
+            amplitude%total_time = &
+               choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
+            none = choice(card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
+            errors = deck%error_count()
+            kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
+            amplitude%smooth = kind == 'SMOOTH STEP'
+            if (deck%error_count() > errors) then
+               allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
+            else if (kind == 'EQUALLY SPACED') then
+               begin = 0.0_dp
+               interval = 1.0_dp
+               call take_parameter(card, 'BEGIN', deck, begin)
+               call need_parameter(card, 'FIXED INTERVAL', deck, none)
+               call take_parameter(card, 'FIXED INTERVAL', deck, interval, '>0')
+               amplitude%values = values_of(card, 'value', deck)
+               amplitude%times = [(begin + i*interval, i=0, size(amplitude%values) - 1)]
+            else
+               if (card%has('FIXED INTERVAL')) call deck%error(card%place_of('FIXED INTERVAL'), &
+                  'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
+               if (card%has('BEGIN')) call deck%error(card%place_of('BEGIN'), 'BEGIN= needs '// &
+                  'DEFINITION=EQUALLY SPACED')
+               call read_points(card, deck, amplitude)
+            end if
+         end associate
       end do
    end subroutine build_amplitudes
 
@@ -70,87 +96,41 @@ contains
                      'points go up from the start to the end by a positive interval')
                   if (valid .and. values(3) > 0.0_dp) points%times = [points%times, (values(1) + &
                      i*values(3), i=0, floor((values(2) - values(1))/values(3) + 1.0e-6_dp))]
-                  cycle
                end if
-               do i = 1, size(card%data(j)%fields)
-                  call need_field(card%data(j), i, 'time', deck, values(1), valid)
-                  if (valid) points%times = [points%times, values(1)]
-               end do
             end do
+            if (.not. card%has('GENERATE')) points%times = values_of(card, 'time', deck)
             if (any(points%times(2:) <= points%times(:size(points%times) - 1))) call deck%error( &
                card%place, 'time points must ascend')
          end associate
       end do
    end subroutine build_time_points
 
-   !> Parameters of the card, then its points.
-   subroutine build_amplitude(card, deck, amplitude)
+   !> All fields of a card as numbers, without those that cannot be read.
+   function values_of(card, what, deck) result(values)
       type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: what
       type(deck_type), intent(inout) :: deck
-      type(amplitude_type), intent(inout) :: amplitude
-      character(:), allocatable :: kind
-
-      amplitude%total_time = &
-         choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
-      kind = choice(card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
-      kind = to_upper(card%text('DEFINITION'))
-      select case (kind)
-      case ('PERIODIC', 'MODULATED', 'DECAY', 'SOLUTION DEPENDENT', 'ACTUATOR', 'SPECTRUM', &
-         'USER', 'BUBBLE')
-         call deck%error(card%place_of('DEFINITION'), 'DEFINITION='//kind//' is refused; give '// &
-            'times and values')
-         kind = ''
-      case default
-         kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
-      end select
-      amplitude%smooth = kind == 'SMOOTH STEP'
-      if (len(kind) == 0) then
-         allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
-      else if (kind == 'EQUALLY SPACED') then
-         call read_values(card, deck, amplitude)
-      else
-         if (card%has('FIXED INTERVAL')) call deck%error(card%place_of('FIXED INTERVAL'), &
-            'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
-         if (card%has('BEGIN')) call deck%error(card%place_of('BEGIN'), 'BEGIN= needs '// &
-            'DEFINITION=EQUALLY SPACED')
-         call read_points(card, deck, amplitude)
-      end if
-   end subroutine build_amplitude
-
-   !> Values at equal intervals, any number of them a card.
-   subroutine read_values(card, deck, amplitude)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(amplitude_type), intent(inout) :: amplitude
-      real(dp) :: begin, interval
-      integer :: j, i, n
+      real(dp), allocatable :: values(:)
+      real(dp) :: value
+      integer :: i, j
       logical :: valid
 
-      begin = 0.0_dp
-      interval = 1.0_dp
-      call take_parameter(card, 'BEGIN', deck, begin)
-      call take_within('>0', card, 'FIXED INTERVAL', deck, interval)
-      if (card%lacks('FIXED INTERVAL')) call deck%error(card%place, 'DEFINITION=EQUALLY SPACED '// &
-         'needs FIXED INTERVAL=')
-      n = sum([(size(card%data(j)%fields), j=1, size(card%data))])
-      allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
-      n = 0
+      allocate (values(0))
       do j = 1, size(card%data)
          do i = 1, size(card%data(j)%fields)
-            n = n + 1
-            amplitude%times(n) = begin + (n - 1)*interval
             valid = .true.
-            call need_field(card%data(j), i, 'value', deck, amplitude%values(n), valid)
+            call read_field(card%data(j), i, what, deck, value, valid)
+            if (valid) values = [values, value]
          end do
       end do
-   end subroutine read_values
+   end function values_of
 
    !> Pairs of time and value, any number of them a card.
    subroutine read_points(card, deck, amplitude)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(amplitude_type), intent(inout) :: amplitude
-      integer :: j, i, n
+      integer :: errors, j, i, n
       logical :: valid
 
       n = 0
@@ -160,41 +140,22 @@ contains
       allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
       n = 0
       do j = 1, size(card%data)
-         i = decimal_comma(card%data(j))
-         if (i > 0 .and. .not. is_history(card%data(j), amplitude%times(:n))) then
-            call report_decimal_comma(card%data(j), i, deck)
-            return
-         end if
+         errors = deck%error_count()
          do i = 1, size(card%data(j)%fields), 2
             n = n + 1
             valid = .true.
-            call need_field(card%data(j), i, 'time', deck, amplitude%times(n), valid)
-            call need_field(card%data(j), i + 1, 'value', deck, amplitude%values(n), valid)
+            call read_field(card%data(j), i, 'time', deck, amplitude%times(n), valid)
+            call read_field(card%data(j), i + 1, 'value', deck, amplitude%values(n), valid)
             if (n < 2 .or. .not. valid) cycle
-            if (amplitude%times(n) <= amplitude%times(n - 1)) then
-               call deck%error(card%data(j)%place(i), 'times must ascend')
-            end if
+            if (amplitude%times(n) <= amplitude%times(n - 1)) call deck%error( &
+               card%data(j)%place(i), 'times must ascend')
          end do
+         i = decimal_comma(card%data(j))
+         if (deck%error_count() == errors .or. i == 0) cycle
+         call report_decimal_comma(card%data(j), i, deck)
+         return
       end do
    end subroutine read_points
-
-   !> Whether a data card has pairs of time and value, and times that ascend behind those before.
-   pure logical function is_history(data, before)
-      type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: before(:)
-      real(dp) :: last, time
-      integer :: i
-
-      last = -huge(last)
-      if (size(before) > 0) last = before(size(before))
-      is_history = mod(size(data%fields), 2) == 0
-      do i = 1, size(data%fields), 2
-         if (.not. is_history) return
-         call read_real(data%fields(i)%text, time, is_history)
-         is_history = is_history .and. time > last
-         last = time
-      end do
-   end function is_history
 
    !> Reads all initial temperatures.
    subroutine build_temperatures(deck)

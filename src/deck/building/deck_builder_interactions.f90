@@ -1,8 +1,8 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
    use card_parameters, only: choice, take_parameter
-   use card_values, only: check_unneeded, read_row, read_rows
-   use cards, only: cards_type, data_card_type, keyword_card_type
+   use card_values, only: check_ascending, check_unneeded, read_row, read_rows
+   use cards, only: keyword_card_type
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
@@ -12,12 +12,11 @@ module deck_builder_interactions
    use deck_context, only: deck_type
    use deck_report, only: frictionless
    use deck_source, only: place_type
-   use deck_structure, only: card_count
+   use deck_structure, only: cards_of
    use friction_laws, only: friction_law_type, rough_coefficient
    use kinds, only: dp
    use overlap_laws, only: overlap_law_type
-   use temperature_laws, only: face_temperatures_type, largest_jump, law_at, &
-      radiation_ends
+   use temperature_laws, only: face_temperatures_type, largest_jump, law_at, radiation_ends
    use text, only: to_text, to_upper
    implicit none
    private
@@ -37,7 +36,7 @@ contains
       integer :: k, n, errors
       logical :: valid
 
-      allocate(deck%model%interactions(card_count(deck%cards, 'SURFACE INTERACTION')))
+      allocate(deck%model%interactions(size(cards_of(deck%cards, 'SURFACE INTERACTION'))))
       n = 0
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
@@ -78,37 +77,43 @@ contains
       type(deck_type), intent(inout) :: deck
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
-      integer :: behavior, friction, heat, k, radiation, table
+      character(*), parameter :: once(4) = [character(19) :: 'FRICTION', 'SURFACE BEHAVIOR', &
+         'GAP HEAT GENERATION', 'GAP RADIATION']
+      character(*), parameter :: ends(2) = ['SURFACE INTERACTION', 'STEP               ']
+      integer :: i, k, table, taken(0:size(once))
+      logical :: says_pressure
 
-      behavior = 0
-      friction = 0
-      heat = 0
-      radiation = 0
+      taken = 0
       table = 0
+      says_pressure = .false.
+      do k = place + 1, size(deck%cards%keywords)
+         if (any(deck%cards%keywords(k)%name == ends)) exit
+         says_pressure = says_pressure .or. deck%cards%keywords(k)%has('PRESSURE')
+      end do
       do k = place + 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
-            if (any(card%name == ['SURFACE INTERACTION', 'STEP               '])) exit
+            if (any(card%name == ends)) exit
             if (size(card%data) == 0 .and. all(card%name /= [character(19) :: 'FRICTION', &
                'GAP HEAT GENERATION', 'SURFACE BEHAVIOR'])) cycle
             if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
                law_place = card%data(1)%place(1)
             end if
+            i = findloc(once == card%name, .true., dim=1)
+            if (i > 0 .and. taken(i) > 0) call deck%error(card%place, 'a second *'//card%name// &
+               ' in one surface interaction; the first is on '// &
+               deck%source%words_of(deck%cards%keywords(taken(i))%place)//': leave one of them out')
+            taken(i) = k
             select case (card%name)
             case ('FRICTION')
-               call count_once(k, friction, deck)
                call build_friction(card, deck, interaction%friction)
             case ('SURFACE BEHAVIOR')
-               call count_once(k, behavior, deck)
                call build_behavior(card, deck, interaction%overlap)
             case ('GAP HEAT GENERATION')
-               call count_once(k, heat, deck)
                call build_friction_heat(card, deck, interaction%heat)
-            case ('GAP RADIATION')
-               call count_once(k, radiation, deck)
             case ('GAP LAW')
                call build_gap_law(card, interaction%name, deck, interaction%law)
             case ('GAP CONDUCTANCE')
-               if (is_of_clearance(card, has_pressure(deck%cards, place))) then
+               if (is_of_clearance(card, says_pressure)) then
                   call build_gap_conductance(card, interaction%name, .true., deck, interaction%law)
                else
                   if (table > 0) then
@@ -126,46 +131,19 @@ contains
       end do
       if (table > 0) call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
          .false., deck, interaction%law)
-      if (radiation > 0) call build_gap_radiation(deck%cards%keywords(radiation), deck, &
+      if (taken(4) > 0) call build_gap_radiation(deck%cards%keywords(taken(4)), deck, &
          interaction%law)
    end subroutine build_laws
-
-   !> Whether the laws behind a *SURFACE INTERACTION have a *GAP CONDUCTANCE, PRESSURE.
-   pure logical function has_pressure(cards, place)
-      type(cards_type), intent(in) :: cards
-      integer, intent(in) :: place
-      integer :: k
-
-      has_pressure = .false.
-      do k = place + 1, size(cards%keywords)
-         if (any(cards%keywords(k)%name == ['SURFACE INTERACTION', 'STEP               '])) return
-         has_pressure = has_pressure .or. cards%keywords(k)%has('PRESSURE')
-      end do
-   end function has_pressure
-
-   !> Takes the keyword card of a law that a surface interaction has once.
-   subroutine count_once(k, taken, deck)
-      integer, intent(in) :: k
-      integer, intent(inout) :: taken         ! the card before, 0 for none; receives this one
-      type(deck_type), intent(inout) :: deck
-
-      associate (card => deck%cards%keywords(k))
-         if (taken > 0) call deck%error(card%place, 'a second *'//card%name//' in one surface '// &
-            'interaction; the first is on '// &
-            deck%source%words_of(deck%cards%keywords(taken)%place)//': leave one of them out')
-      end associate
-      taken = k
-   end subroutine count_once
 
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
    subroutine build_friction(card, deck, friction)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(friction_law_type), intent(out) :: friction
+      real(dp) :: values(2)
+      logical :: valid
 
-      call take_parameter(card, 'TAUMAX', deck, friction%largest_shear)
-      if (friction%largest_shear <= 0.0_dp) call deck%error(card%place_of('TAUMAX'), 'TAUMAX= '// &
-         'must be positive; without friction leave out the card')
+      call take_parameter(card, 'TAUMAX', deck, friction%largest_shear, '>0')
       if (card%has('ROUGH')) then
          friction%coefficient = rough_coefficient
          if (card%has('TAUMAX')) call deck%error(card%place_of('ROUGH'), 'TAUMAX= and ROUGH '// &
@@ -173,33 +151,24 @@ contains
          if (size(card%data) > 0) call deck%error(card%data(1)%place(1), '*FRICTION, ROUGH has '// &
             'no data')
       else if (size(card%data) > 0) then
-         call read_coefficient(card%data(1), deck, friction%coefficient)
+         associate (data => card%data(1), coefficient => friction%coefficient)
+            call read_row(data, 'coefficient of friction >=0/stick slope?', deck, values, valid)
+            coefficient = values(1)
+            ! With a larger one a pressure is lost in the last places of mu times it.
+            if (coefficient > rough_coefficient) then
+               call deck%error(data%place(1), 'the coefficient of friction must not exceed '// &
+                  to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
+            else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then
+               call deck%warning(data%place(1), 'a coefficient of friction of '// &
+                  to_text(coefficient)//' is unusual: is it in per cent? Use ROUGH for faces '// &
+                  'that never slip while closed')
+            end if
+            if (size(data%fields) == 1) return
+            call deck%note('*FRICTION: the stick slope is ignored')
+            call check_unneeded(data, 2, 'a stick slope', deck, frictionless)
+         end associate
       end if
    end subroutine build_friction
-
-   !> The coefficient, which is not so large that a pressure is lost in the last places of mu times
-   !> it; a stick slope behind it is not needed.
-   subroutine read_coefficient(data, deck, coefficient)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(inout) :: coefficient
-      real(dp) :: values(2)
-      logical :: valid
-
-      call read_row(data, 'coefficient of friction >=0/stick slope?', deck, values, valid)
-      coefficient = values(1)
-      if (coefficient > rough_coefficient) then
-         call deck%error(data%place(1), 'the coefficient of friction must not exceed '// &
-            to_text(rough_coefficient)//'; use ROUGH for faces that never slip while closed')
-      else if (coefficient > largest_usual .and. coefficient < rough_coefficient) then
-         call deck%warning(data%place(1), 'a coefficient of friction of '//to_text(coefficient)// &
-            ' is unusual: is it in per cent? Use ROUGH for faces that never slip while closed')
-      end if
-      if (size(data%fields) > 1) then
-         call deck%note('*FRICTION: the stick slope is ignored')
-         call check_unneeded(data, 2, 'a stick slope', deck, frictionless)
-      end if
-   end subroutine read_coefficient
 
    !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
    subroutine check_law(card, law_place, interaction, deck)
@@ -244,7 +213,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(overlap_law_type), intent(out) :: law           !! of hard faces, or of soft ones
       character(:), allocatable :: kind
-      real(dp) :: values(2)
+      real(dp) :: rows(2, size(card%data)), values(2)
       logical :: valid
 
       kind = to_upper(card%text('PRESSURE-OVERCLOSURE'))
@@ -258,8 +227,7 @@ contains
       case ('EXPONENTIAL', 'TABULAR')
          if (size(card%data) == 0) then
             call deck%error(card%place, '*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE='//kind// &
-               ' has no data: '//trim(merge('c0, p0                                ', &
-               'pressure, overlap; a card for each row', kind == 'EXPONENTIAL')))
+               ' needs data: one card c0, p0, or rows of pressure, overlap')
          else if (kind == 'EXPONENTIAL') then
             ! The pressure at the clearance c0 is a hundredth of p0.
             call read_row(card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)
@@ -268,38 +236,21 @@ contains
             if (size(card%data) > 1) call deck%error(card%data(2)%place(1), &
                'an exponential law has one card: c0, p0')
          else
-            call read_table(card%data, deck, law)
+            ! Rows of pressure, from 0 on, and overlap.
+            call read_rows(card%data, 'pressure/overlap', deck, rows, valid)
+            law%pressure = rows(1, :)
+            law%overlap = rows(2, :)
+            if (.not. valid) return
+            if (abs(law%pressure(1)) > 0.0_dp) call deck%error(card%data(1)%place(1), 'the '// &
+               'first row must have pressure 0, and the overlap from which faces press')
+            if (size(card%data) == 1) call deck%error(card%data(1)%place(1), 'a table of '// &
+               'pressure and overlap needs two rows or more')
+            call check_ascending(card%data, 1, 'pressures', law%pressure, deck)
+            call check_ascending(card%data, 2, 'overlaps', law%overlap, deck)
          end if
       case default
          call deck%note('*SURFACE BEHAVIOR is ignored: contact is exact')
       end select
    end subroutine build_behavior
-
-   !> Rows of pressure, from 0 on, and overlap; both rise.
-   subroutine read_table(rows, deck, law)
-      type(data_card_type), intent(in) :: rows(:)
-      type(deck_type), intent(inout) :: deck
-      type(overlap_law_type), intent(inout) :: law
-      real(dp) :: values(2, size(rows))
-      integer :: i
-      logical :: valid
-
-      call read_rows(rows, 'pressure/overlap', deck, values, valid)
-      law%pressure = values(1, :)
-      law%overlap = values(2, :)
-      if (.not. valid) return
-      if (abs(law%pressure(1)) > 0.0_dp) call deck%error(rows(1)%place(1), 'the first row must '// &
-         'have pressure 0, and the overlap from which faces press')
-      if (size(rows) == 1) call deck%error(rows(1)%place(1), 'a table of pressure and overlap '// &
-         'needs two rows or more')
-      do i = 2, size(rows)
-         if (law%pressure(i) <= law%pressure(i - 1)) call deck%error(rows(i)%place(1), &
-            'pressures must rise: '//to_text(law%pressure(i))//' follows '// &
-            to_text(law%pressure(i - 1)))
-         if (law%overlap(i) <= law%overlap(i - 1)) call deck%error(rows(i)%place(2), 'overlaps '// &
-            'must rise: '//to_text(law%overlap(i))//' follows '//to_text(law%overlap(i - 1))// &
-            '; each card is pressure, overlap')
-      end do
-   end subroutine read_table
 
 end module deck_builder_interactions

@@ -1,7 +1,7 @@
 !> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
    use card_parameters, only: choice
-   use card_values, only: check_extra, need_field, read_row, take_field
+   use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_element_loads, only: build_element_load
    use deck_context, only: deck_type
@@ -11,7 +11,7 @@ module deck_builder_loads
    use spelling, only: is_slip
    use steps, only: dof_temperature, load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
-      load_pressure, load_temperature, load_traction, step_type
+      load_pressure, load_temperature, load_traction
    use text, only: read_real, to_text, to_upper
    use transforms, only: axis_in_plane
    implicit none
@@ -76,9 +76,8 @@ contains
             call build_element_load(card%name, card%data(j), request, film_amplitude, deck)
          end select
       end do
-      if (card%name == 'BOUNDARY' .and. (card%flawed .or. deck%error_count() > errors)) then
-         deck%boundaries_sound = .false.
-      end if
+      if (card%name == 'BOUNDARY' .and. (card%flawed .or. deck%error_count() > errors)) call &
+         deck%lose('boundary')
    end subroutine build_load_card
 
    !> OP=NEW on the first card of its keyword in a step ends what former steps gave by it.
@@ -98,17 +97,10 @@ contains
             card%name//' of a step')
          return
       end if
-      call end_loads(card%name, deck%model%steps(step))
-   end subroutine read_operation
-
-   pure subroutine end_loads(keyword, step)
-      character(*), intent(in) :: keyword
-      type(step_type), intent(inout) :: step
-
-      associate (ends => step%ends_loads)
-         select case (keyword)
+      associate (ends => deck%model%steps(step)%ends_loads)
+         select case (card%name)
          case ('BOUNDARY')
-            step%ends_boundaries = .true.
+            deck%model%steps(step)%ends_boundaries = .true.
          case ('CLOAD')
             ! In CalculiX it ends all that acts on nodes, while that of *CFLUX ends heat alone.
             ends([load_force, load_nodal_heat]) = .true.
@@ -131,29 +123,24 @@ contains
             return
          end select
       end associate
-   end subroutine end_loads
+   end subroutine read_operation
 
-   !> Notes what coefficient and sink of a film do where the card gives no amplitude.
+   !> Notes what coefficient and sink of a film do where one of them has no amplitude.
    subroutine note_film(card, ramped, deck)
       type(keyword_card_type), intent(in) :: card
       logical, intent(in) :: ramped
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: coefficient
+      character(:), allocatable :: coefficient, sink
 
       if (card%has('AMPLITUDE') .and. card%has('FILM AMPLITUDE')) return
-      coefficient = 'the coefficient acts fully at once'
-      if (ramped) coefficient = 'the coefficient ramps over the step'
-      if (card%has('AMPLITUDE')) then
-         call deck%note('*'//card%name//', AMPLITUDE='//to_upper(card%text('AMPLITUDE'))// &
-            ': the sink temperature follows it, '//coefficient)
-      else if (card%has('FILM AMPLITUDE')) then
-         call deck%note('*'//card%name//', FILM AMPLITUDE='// &
-            to_upper(card%text('FILM AMPLITUDE'))// &
-            ': the coefficient follows it, the sink temperature acts fully at once')
-      else
-         call deck%note('*'//card%name//' without amplitudes: '//coefficient//', the sink '// &
-            'temperature acts fully at once')
-      end if
+      coefficient = 'acts fully at once'
+      sink = coefficient
+      if (ramped) coefficient = 'ramps over the step'
+      if (card%has('FILM AMPLITUDE')) coefficient = 'follows '//to_upper(card%text( &
+         'FILM AMPLITUDE'))
+      if (card%has('AMPLITUDE')) sink = 'follows '//to_upper(card%text('AMPLITUDE'))
+      call deck%note('*'//card%name//': the coefficient '//coefficient//', the sink '// &
+         'temperature '//sink)
    end subroutine note_film
 
    !> *CLOAD, *CFLUX: node or set, degree of freedom, value; *TEMPERATURE: node or set, value.
@@ -164,6 +151,7 @@ contains
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: layout
       real(dp) :: given(3)
+      integer, allocatable :: nodes(:)
       integer :: dof
       logical :: valid
 
@@ -185,10 +173,18 @@ contains
       if (keyword /= 'TEMPERATURE') dof = nint(given(2))
       request%value = given(merge(2, 3, keyword == 'TEMPERATURE'))
       request%component = dof
+      nodes = rotations_of(dof, request, deck%model)
       if (keyword == 'CLOAD') request%component = place_in_plane(request, deck%model, dof)
-      if (keyword == 'CLOAD' .and. (dof == dof_rotation .or. (dof == dof_turn .and. &
-         names_rotation(request, deck%model)))) then
-         call add_moment(data, request, deck)
+      if (keyword == 'CLOAD' .and. (dof == dof_rotation .or. size(nodes) > 0)) then
+         if (size(nodes) == 0 .or. size(request%members(deck%mesh%node_sets)) /= 1) then
+            call deck%error(data%place(2), 'a moment acts on the reference node of a *COUPLING '// &
+               'or *RIGID BODY; forces act on 1 and 2')
+            return
+         end if
+         request%set = 0
+         request%item = nodes(1)
+         request%component = 1
+         call deck%loads%add(request)
       else if (keyword == 'CLOAD' .and. all(request%component /= [1, 2])) then
          call deck%error(data%place(2), 'a force acts on degree of freedom 1 or 2')
       else if (keyword == 'CFLUX' .and. dof /= dof_temperature) then
@@ -198,27 +194,6 @@ contains
          call deck%loads%add(request)
       end if
    end subroutine build_nodal_load
-
-   !> Puts a moment on the rotation of the reference node of a coupling.
-   subroutine add_moment(data, request, deck)
-      type(data_card_type), intent(in) :: data
-      type(request_type), intent(inout) :: request
-      type(deck_type), intent(inout) :: deck
-      integer :: i, node
-
-      node = single_node(request, deck%model)
-      i = findloc((deck%model%couplings%reference == node .or. deck%model%couplings%rotation_node &
-         == node) .and. .not. deck%model%couplings%is_section(), .true., dim=1)
-      if (i == 0 .or. node == 0) then
-         call deck%error(data%place(2), 'a moment acts on the reference node of a *COUPLING or '// &
-            '*RIGID BODY; forces act on 1 and 2')
-         return
-      end if
-      request%set = 0
-      request%item = deck%model%couplings(i)%rotation
-      request%component = 1
-      call deck%loads%add(request)
-   end subroutine add_moment
 
    !> Takes one data card: node or set, first and last degree of freedom, value; or node or set and
    !> the name of a support.
@@ -256,7 +231,10 @@ contains
       integer, allocatable, intent(out) :: dofs(:)
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
+      character(:), allocatable :: advice
+      real(dp) :: given
       integer :: dof, first, i, last
+      logical :: is_number
 
       dofs = [integer ::]
       i = findloc(support_names == to_upper(data%text(2)), .true., dim=1)
@@ -273,31 +251,22 @@ contains
       valid = valid .and. i == 0
       if (.not. valid) return
       first = 0
-      call need_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
+      call read_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
          deck, first, valid)
       last = first
       if (.not. valid) return
-      call take_field(data, 3, 'last degree of freedom'//value_advice(data), deck, last, valid)
-      call take_field(data, 4, 'value', deck, value, valid)
+      advice = ''
+      call read_real(data%text(3), given, is_number)
+      if (is_number .and. size(data%fields) == 3) advice = '; the value is the fourth field: '// &
+         data%text(1)//', '//data%text(2)//', '//data%text(2)//', '//data%text(3)
+      call read_field(data, 3, 'last degree of freedom'//advice//'?', deck, last, valid)
+      call read_field(data, 4, 'value?', deck, value, valid)
       call check_extra(data, 4, 'node or set, first and last degree of freedom, value', deck)
       dofs = [(dof, dof=first, last)]
       if (last >= first .or. .not. valid) return
       call deck%error(data%place(3), 'the last degree of freedom is below the first')
       valid = .false.
    end subroutine read_degrees
-
-   !> Shows where a value belongs that stands in the place of the last degree of freedom.
-   pure function value_advice(data) result(advice)
-      type(data_card_type), intent(in) :: data
-      character(:), allocatable :: advice
-      real(dp) :: value
-      logical :: is_number
-
-      advice = ''
-      call read_real(data%text(3), value, is_number)
-      if (is_number .and. size(data%fields) == 3) advice = '; the value is the fourth field: '// &
-         data%text(1)//', '//data%text(2)//', '//data%text(2)//', '//data%text(3)
-   end function value_advice
 
    !> Requests a degree of freedom. 0 on 3 to 6, which a plane does not have, is ignored.
    subroutine add_support(data, dof, request, deck, valid)
@@ -307,15 +276,25 @@ contains
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
       character(*), parameter :: ignored = '*BOUNDARY: 0 on degrees of freedom 3 to 6 is ignored'
+      type(request_type) :: rotation
+      integer, allocatable :: nodes(:)
+      integer :: i
 
-      if (is_rotation(dof, request, deck%model)) then
-         call add_rotations(request, deck)
+      nodes = rotations_of(dof, request, deck%model)
+      if (size(nodes) > 0) then
+         rotation = request
+         rotation%set = 0
+         rotation%component = 1
+         do i = 1, size(nodes)
+            rotation%item = nodes(i)
+            call deck%boundaries%add(rotation)
+         end do
          if (abs(request%value) > large_turn) call deck%warning(data%place(4), 'a rotation of '// &
             to_text(request%value)//' rad is large: points move along their tangents, and gaps '// &
             'and normals stay those of the undeformed model; turn the drawing, and let the '// &
             'rotation be below '//to_text(large_turn))
          return
-      else if (names_rotation(request, deck%model)) then
+      else if (size(rotations_of(dof_turn, request, deck%model)) > 0) then
          call deck%note(ignored)
          return
       end if
@@ -351,64 +330,27 @@ contains
          request%members(model%mesh%node_sets), dof)
    end function place_in_plane
 
-   !> Whether a degree of freedom of a request is the rotation of a coupling.
-   pure logical function is_rotation(dof, request, model)
+   !> Nodes of the rotations that a degree of freedom of a request is.
+   pure function rotations_of(dof, request, model) result(nodes)
       integer, intent(in) :: dof
       type(request_type), intent(in) :: request
       type(model_type), intent(in) :: model
-
-      is_rotation = dof == dof_rotation .and. any(is_target(model%couplings%reference, request, &
-         model) .and. .not. model%couplings%is_section())
-      if (names_rotation(request, model)) is_rotation = dof == dof_turn
-   end function is_rotation
-
-   !> Whether a request is for the ROT NODE= of a rigid body.
-   pure logical function names_rotation(request, model)
-      type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-      integer :: node
-
-      node = single_node(request, model)
-      names_rotation = node > 0 .and. any(model%couplings%rotation_node == node)
-   end function names_rotation
-
-   !> The node of a request for no other; else 0.
-   pure integer function single_node(request, model) result(node)
-      type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-
-      node = 0
-      associate (members => request%members(model%mesh%node_sets))
-         if (size(members) == 1) node = members(1)
-      end associate
-   end function single_node
-
-   elemental logical function is_target(node, request, model)
-      integer, intent(in) :: node
-      type(request_type), intent(in) :: request
-      type(model_type), intent(in) :: model
-
-      is_target = node > 0 .and. node == request%item
-      if (request%set > 0) is_target = any(model%mesh%node_sets(request%set)%members == node)
-   end function is_target
-
-   !> Requests the rotations of reference nodes.
-   subroutine add_rotations(request, deck)
-      type(request_type), intent(in) :: request
-      type(deck_type), intent(inout) :: deck
-      type(request_type) :: rotation
+      integer, allocatable :: nodes(:)
       integer :: i
+      logical :: turns
 
-      rotation = request
-      rotation%set = 0
-      rotation%component = 1
-      do i = 1, size(deck%model%couplings)
-         if (deck%model%couplings(i)%is_section()) cycle
-         if (.not. (is_target(deck%model%couplings(i)%reference, request, deck%model) .or. &
-            is_target(deck%model%couplings(i)%rotation_node, request, deck%model))) cycle
-         rotation%item = deck%model%couplings(i)%rotation
-         call deck%boundaries%add(rotation)
-      end do
-   end subroutine add_rotations
+      allocate (nodes(0))
+      associate (members => request%members(model%mesh%node_sets))
+         do i = 1, size(model%couplings)
+            associate (coupling => model%couplings(i))
+               if (coupling%is_section()) cycle
+               turns = dof == dof_rotation .and. any(members == coupling%reference)
+               if (dof == dof_turn .and. size(members) == 1) turns = members(1) == &
+                  coupling%rotation_node
+               if (turns) nodes = [nodes, coupling%rotation]
+            end associate
+         end do
+      end associate
+   end function rotations_of
 
 end module deck_builder_loads

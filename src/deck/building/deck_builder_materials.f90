@@ -1,37 +1,35 @@
-!> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *ORIENTATION and
-!> *SOLID SECTION, which give elements their material, its axes and their thickness.
+!> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *SOLID SECTION, which gives
+!> elements their material, its axes and their thickness.
 module deck_builder_materials
    use card_parameters, only: choice, take_parameter
-   use card_values, only: check_unneeded, check_unneeded_temperature, read_row
-   use cards, only: data_card_type, keyword_card_type
+   use card_values, only: check_ascending, check_unneeded, read_row
+   use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
-   use deck_structure, only: card_count, cards_of, has_stand_in
+   use deck_structure, only: cards_of, has_stand_in
    use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
       is_positive_definite, orthotropic_elasticity
    use element_kinds, only: axisymmetric
    use element_types, only: truss
    use kinds, only: dp
-   use materials, only: anisotropic, engineering, isotropic, material_type, orientation_type, &
-      orthotropic, property_keywords, property_type, set_property
+   use materials, only: anisotropic, engineering, isotropic, material_type, orthotropic, &
+      property_keywords, property_type, set_property
    use text, only: split_words, string_type, to_text
    implicit none
    private
-   public :: build_materials, build_orientations, build_sections
+   public :: build_materials, build_sections
 
-   ! Constants of *ELASTIC, as read_row.
+   ! Constants of *ELASTIC, as read_row; one layout a card.
    character(*), parameter :: isotropic_layout = 'Young''s modulus >0/Poisson''s ratio'
-   character(*), parameter :: engineering_layout = &
-      'E1 >0/E2 >0/E3 >0/nu12/nu13/nu23/G12 >0/G13 >0/G23 >0'
-   character(*), parameter :: orthotropic_layout = &
-      'D1111/D1122/D2222/D1133/D2233/D3333/D1212/D1313/D2323'
-   character(*), parameter :: anisotropic_layout = &
-      'D1111/D1122/D2222/D1133/D2233/D3333/D1112/D2212/D3312/D1212/D1113/D2213/D3313/D1213/'// &
-      'D1313/D1123/D2223/D3323/D1223/D1323/D2323'
+   character(*), parameter :: engineering_layout(2) = [character(51) :: &
+      'E1 >0/E2 >0/E3 >0/nu12/nu13/nu23/G12 >0/G13 >0', 'G23 >0']
+   character(*), parameter :: orthotropic_layout(2) = [character(47) :: &
+      'D1111/D1122/D2222/D1133/D2233/D3333/D1212/D1313', 'D2323']
+   character(*), parameter :: anisotropic_layout(3) = [character(47) :: &
+      'D1111/D1122/D2222/D1133/D2233/D3333/D1112/D2212', &
+      'D3312/D1212/D1113/D2213/D3313/D1213/D1313/D1123', 'D2223/D3323/D1223/D1323/D2323']
 
    integer, parameter :: per_card = 8   !! constants of a property on a card
-
-   real(dp), parameter :: degree = acos(-1.0_dp)/180
 
 contains
 
@@ -40,7 +38,7 @@ contains
       type(deck_type), intent(inout) :: deck
       integer :: k, n
 
-      n = card_count(deck%cards, 'MATERIAL')
+      n = size(cards_of(deck%cards, 'MATERIAL'))
       allocate(deck%model%materials(n), deck%material_place(n))
       n = 0
       do k = 1, size(deck%cards%keywords)
@@ -84,9 +82,9 @@ contains
       case ('EXPANSION')
          material%has_expansion = .true.
          if (is_isotropic(card, deck)) then
-            call read_property('coefficient of expansion', card, deck, property, valid)
+            call read_property(['coefficient of expansion'], card, deck, property, valid)
          else
-            call read_property('alpha11/alpha22/alpha33', card, deck, property, valid)
+            call read_property(['alpha11/alpha22/alpha33'], card, deck, property, valid)
          end if
          call take_parameter(card, 'ZERO', deck, material%no_strain)
          if (valid .and. card%has('ZERO')) then
@@ -96,16 +94,16 @@ contains
       case ('CONDUCTIVITY')
          material%has_conductivity = .true.
          if (is_isotropic(card, deck)) then
-            call read_property('conductivity >0', card, deck, property, valid)
+            call read_property(['conductivity >0'], card, deck, property, valid)
          else
             call build_conductivity(card, deck, property, valid)
          end if
       case ('SPECIFIC HEAT')
          material%has_specific_heat = .true.
-         call read_property('specific heat >0', card, deck, property, valid)
+         call read_property(['specific heat >0'], card, deck, property, valid)
       case default
          material%has_density = .true.
-         call read_property('density >0', card, deck, property, valid)
+         call read_property(['density >0'], card, deck, property, valid)
       end select
       if (valid) call set_property(material, property)
    end subroutine build_property
@@ -127,7 +125,7 @@ contains
       type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                       ! whether it has no errors
       character(:), allocatable :: kind
-      integer :: cards, row
+      integer :: row
 
       kind = choice(card, 'TYPE', 'ISO/ISOTROPIC/ENGINEERING CONSTANTS/ORTHO/ORTHOTROPIC/'// &
          'ANISO/ANISOTROPIC', deck, '')
@@ -144,12 +142,11 @@ contains
          property%symmetry = anisotropic
          call read_property(anisotropic_layout, card, deck, property, valid)
       case default
-         call read_property(isotropic_layout, card, deck, property, valid)
+         call read_property([isotropic_layout], card, deck, property, valid)
       end select
-      cards = cards_of_row(property)
       do row = 1, size(property%temperature)
          if (.not. valid .and. property%symmetry /= isotropic) exit
-         associate (data => card%data(1 + (row - 1)*cards))
+         associate (data => card%data(1 + (row - 1)*((size(property%names) - 1)/per_card + 1)))
             call check_elasticity(data%place(merge(2, 1, property%symmetry == isotropic)), &
                property, row, deck, valid)
          end associate
@@ -203,8 +200,8 @@ contains
 
       fields = size(card%data(1)%fields)
       n = min(max(fields, 2), 3)
-      if (n == 2) call read_property('K11 >0/K22 >0', card, deck, property, valid)
-      if (n == 3) call read_property('K11 >0/K22 >0/K33', card, deck, property, valid)
+      if (n == 2) call read_property(['K11 >0/K22 >0'], card, deck, property, valid)
+      if (n == 3) call read_property(['K11 >0/K22 >0/K33'], card, deck, property, valid)
       if (n == 3) call deck%note('*CONDUCTIVITY: K33 is ignored')
       if (.not. valid) return
       if (n == 3) then
@@ -220,159 +217,64 @@ contains
       property%values = property%values(:2, :)
    end subroutine build_conductivity
 
-   pure integer function cards_of_row(property)
-      type(property_type), intent(in) :: property          ! with its names
-
-      cards_of_row = 1 + (size(property%names) - 1)/per_card
-   end function cards_of_row
-
-   !> Reads the rows of a property: constants, eight on a card, and the temperature behind the last.
-   subroutine read_property(layout, card, deck, property, valid)
-      character(*), intent(in) :: layout                    ! of the constants, as read_row
+   !> Reads the rows of a property: constants, eight on a card, and the temperature behind the last,
+   !> which means nothing where there is one row.
+   subroutine read_property(layouts, card, deck, property, valid)
+      character(*), intent(in) :: layouts(:)                ! of the cards of a row, as read_row
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(property_type), intent(inout) :: property
       logical, intent(out) :: valid                         ! whether all could be read
       type(string_type), allocatable :: fields(:)
-      integer :: i, n, row
-
-      fields = split_words(layout)
-      allocate (property%names(size(fields)))
-      do i = 1, size(fields)
-         property%names(i) = fields(i)%value(:index(fields(i)%value//' >', ' >') - 1)
-      end do
-      n = (size(card%data) - 1)/cards_of_row(property) + 1
-      allocate (property%values(size(fields), n), property%temperature(n), source=0.0_dp)
-      valid = .not. card%flawed
-      do row = 1, merge(n, 0, valid)
-         call read_property_row(fields, row, card, deck, property, valid)
-      end do
-   end subroutine read_property
-
-   !> Reads one row, whose temperature means nothing where it is the only one.
-   subroutine read_property_row(fields, row, card, deck, property, valid)
-      type(string_type), intent(in) :: fields(:)            ! (constants)
-      integer, intent(in) :: row
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(property_type), intent(inout) :: property
-      logical, intent(inout) :: valid                       ! false after an error
-      character(:), allocatable :: layout
+      character(:), allocatable :: ending
+      integer :: c, errors, i, n, rows
       real(dp) :: given(per_card + 1)
-      integer :: i, first, last, place
       logical :: sound
 
-      place = (row - 1)*cards_of_row(property)
-      do first = 1, size(fields), per_card
-         place = place + 1
-         if (place > size(card%data)) then
+      n = 0
+      allocate (property%names(per_card*size(layouts)))
+      do c = 1, size(layouts)
+         fields = split_words(trim(layouts(c)))
+         do i = 1, size(fields)
+            n = n + 1
+            property%names(n) = fields(i)%value(:index(fields(i)%value//' >', ' >') - 1)
+         end do
+      end do
+      property%names = property%names(:n)
+      rows = (size(card%data) - 1)/size(layouts) + 1
+      allocate (property%values(n, rows), property%temperature(rows), source=0.0_dp)
+      valid = .not. card%flawed
+      if (.not. valid) return
+      ending = ''
+      do i = 1, rows*size(layouts)
+         c = modulo(i - 1, size(layouts)) + 1
+         n = per_card*(c - 1)                               ! constants on the cards before
+         if (i > size(card%data)) then
             call deck%error(card%data(size(card%data))%end, 'a card is missing after this one: '// &
-               trim(property%names(first)))
+               trim(property%names(n + 1)))
             valid = .false.
             return
          end if
-         last = min(first + per_card - 1, size(fields))
-         layout = fields(first)%value
-         do i = first + 1, last
-            layout = layout//'/'//fields(i)%value
-         end do
-         if (last == size(fields)) layout = layout//'/temperature'// &
-            trim(merge('?', ' ', size(property%temperature) == 1))
-         call read_row(card%data(place), layout, deck, given, sound)
-         property%values(first:last, row) = given(:last - first + 1)
-         property%temperature(row) = given(last - first + 2)
+         if (c == size(layouts)) ending = '/temperature'//trim(merge('?', ' ', rows == 1))
+         call read_row(card%data(i), trim(layouts(c))//ending, deck, given, sound)
+         ending = ''
          valid = valid .and. sound
-      end do
-      associate (data => card%data(place), behind => size(fields) - per_card* &
-         (cards_of_row(property) - 1) + 1, temperature => property%temperature)
-         if (size(temperature) == 1 .and. data%has(behind)) then
-            call deck%note('the temperature field of a single property row is ignored')
-            call check_unneeded_temperature(data, behind, deck)
-         else if (row > 1 .and. valid) then
-            valid = temperature(row) > temperature(row - 1)
-            if (.not. valid) call deck%error(data%place(behind), 'the temperatures of the rows '// &
-               'must ascend: '//to_text(temperature(row))//' follows '// &
-               to_text(temperature(row - 1)))
-         end if
-      end associate
-   end subroutine read_property_row
-
-   !> Builds all orientations.
-   subroutine build_orientations(deck)
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
-      integer :: n
-
-      places = cards_of(deck%cards, 'ORIENTATION')
-      allocate(deck%model%orientations(size(places)))
-      do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)))
-            call deck%take_name(places(n), 'orientation', deck%model%orientations(n)%name)
-            if (size(card%data) > 0) call build_axes(card, deck%model%orientations(n), deck)
+         associate (row => (i - 1)/size(layouts) + 1, last => min(n + per_card, size( &
+            property%names)))
+            property%values(n + 1:last, row) = given(:last - n)
+            property%temperature(row) = given(last - n + 1)
+            if (c == size(layouts) .and. rows == 1 .and. card%data(i)%has(last - n + 1)) then
+               call deck%note('the temperature field of a single property row is ignored')
+               call check_unneeded(card%data(i), last - n + 1, 'a temperature', deck)
+            end if
          end associate
       end do
-   end subroutine build_orientations
-
-   !> Two points. a lies on axis 1, b in the plane of axes 1 and 2 on the side of axis 2; or both
-   !> lie on the axis of a cylinder, along which axis 3 points from a to b.
-   subroutine build_axes(card, orientation, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(orientation_type), intent(inout) :: orientation
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: system
-      real(dp) :: a(3), b(3), given(6), turn
-      logical :: valid
-
-      system = choice(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, 'RECTANGULAR')
-      associate (data => card%data(1))
-         call read_row(data, 'x of a/y of a/z of a/x of b/y of b/z of b', deck, given, valid)
-         a = given(:3)
-         b = given(4:)
-         if (.not. valid) return
-         orientation%cylindrical = system == 'CYLINDRICAL'
-         turn = a(1)*b(2) - a(2)*b(1)
-         if (orientation%cylindrical) then
-            if (norm2(b(1:2) - a(1:2)) > 0.0_dp .or. &
-               .not. abs(b(3) - a(3)) > 0.0_dp) call deck%error(data%place(4), 'the axis '// &
-               'through a and b must be parallel to z')
-            orientation%centre = a(1:2)
-            orientation%orientation_sign = sign(1.0_dp, b(3) - a(3))
-         else if (abs(a(3)) > 0.0_dp .or. abs(b(3)) > 0.0_dp) then
-            call deck%error(data%place(merge(3, 6, abs(a(3)) > 0.0_dp)), 'axes 1 and 2 lie in '// &
-               'the plane: the z components of a and b must be 0')
-         else if (.not. abs(turn) > epsilon(turn)*norm2(a)*norm2(b)) then
-            call deck%error(data%place(1), 'a and b must not lie on one line')
-         else
-            orientation%direction = a(1:2)/norm2(a(1:2))
-            orientation%orientation_sign = sign(1.0_dp, turn)
-         end if
-      end associate
-      if (size(card%data) > 1) then
-         call turn_axes(card%data(2), orientation, deck)
-      end if
-   end subroutine build_axes
-
-   !> The second card: a turn round axis 3, from axis 1 towards axis 2.
-   subroutine turn_axes(data, orientation, deck)
-      type(data_card_type), intent(in) :: data
-      type(orientation_type), intent(inout) :: orientation
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: angle, given(2)
-      logical :: valid
-
-      call read_row(data, '#axis/angle in degrees?', deck, given, valid)
       if (.not. valid) return
-      if (nint(given(1)) /= 3) then
-         call deck%error(data%place(1), 'a turn about axis 1 or 2 leaves the plane: only axis 3')
-         return
-      end if
-      angle = given(2)*degree
-      associate (first => orientation%direction, &
-         second => orientation%orientation_sign*[-orientation%direction(2), &
-         orientation%direction(1)])
-         orientation%direction = cos(angle)*first + sin(angle)*second
-      end associate
-   end subroutine turn_axes
+      errors = deck%error_count()
+      call check_ascending(card%data(size(layouts)::size(layouts)), modulo(size(property%names) - &
+         1, per_card) + 2, 'the temperatures of the rows', property%temperature, deck)
+      valid = deck%error_count() == errors
+   end subroutine read_property
 
    !> Builds all sections, and gives the elements theirs.
    subroutine build_sections(deck)

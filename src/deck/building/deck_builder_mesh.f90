@@ -1,25 +1,28 @@
-!> *NODE and *ELEMENT -> nodes and elements of the mesh.
+!> *NODE and *ELEMENT -> nodes and elements of the mesh, and lines. Mesh generators write these for
+!> the curves of a drawing: they are no elements of the mesh, but their sets name nodes, and the
+!> faces under them.
 module deck_builder_mesh
    use card_parameters, only: need_parameter
-   use card_values, only: check_extra, check_unneeded, may_be_decimals, need_field, take_field
-   use cards, only: data_card_type
-   use deck_builder_lines, only: element_cards, read_node
+   use card_values, only: check_extra, check_unneeded, may_be_decimals, read_field
+   use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type, plane_by_element
    use deck_reader, only: keyword_of
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count
    use element_kinds, only: element_corner_count, element_node_count, plane_strain, plane_stress, &
       quad8
-   use element_types, only: take_element_type
+   use element_types, only: drawn_line, line_kind, line_node_count, take_element_type
    use kinds, only: dp
    use mesh, only: add_node, extent_of, nodes_per_element
    use sorting, only: repeated
-   use text, only: read_integer, to_text
+   use text, only: to_text, to_upper
    implicit none
    private
-   public :: build_nodes, build_elements
+   public :: build_nodes, build_elements, is_line_card
 
    character(*), parameter :: gmsh_comment = '******* E L E M E N T S'   !! before the first element
+
+   integer, parameter :: nodes_per_line = 3
 
    real(dp), parameter :: height_rounding = 1.0e-9_dp   !! of z, by the extent of the model
 
@@ -29,6 +32,7 @@ contains
    subroutine build_nodes(deck)
       type(deck_type), intent(inout) :: deck
       real(dp), allocatable :: heights(:)
+      real(dp) :: place(2)
       integer, allocatable :: places(:)
       integer :: j, k, n
       logical :: told
@@ -58,7 +62,14 @@ contains
       if (n == 0) call deck%lose('node')
       deck%node_index%noun = 'node'
       call deck%node_index%build(deck%mesh%node_number)
-      call add_rotations(deck)
+      ! A node for the rotation of each coupling and rigid body, which no card can name.
+      do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
+         if (all(deck%cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
+         place = deck%mesh%coordinates(:, 1)
+         call add_node(deck%mesh, place)
+         deck%node_place = [deck%node_place, deck%cards%keywords(k)%place]
+         deck%node_valid = [deck%node_valid, .true.]
+      end do
    end subroutine build_nodes
 
    !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
@@ -92,22 +103,6 @@ contains
       deck%node_height = deck%node_height(kept)
    end subroutine drop_repeated
 
-   !> Adds a node for the rotation of each coupling and rigid body, which no card can name.
-   subroutine add_rotations(deck)
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: place(2)
-      integer :: k
-
-      if (size(deck%mesh%node_number) == 0) return
-      do k = 1, size(deck%cards%keywords)
-         if (all(deck%cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
-         place = deck%mesh%coordinates(:, 1)
-         call add_node(deck%mesh, place)
-         deck%node_place = [deck%node_place, deck%cards%keywords(k)%place]
-         deck%node_valid = [deck%node_valid, .true.]
-      end do
-   end subroutine add_rotations
-
    !> Number, x, y and z. A coordinate that is left out is 0, as in CalculiX; what is behind z
    !> is the direction of a normal in Abaqus.
    subroutine build_node(data, deck, number, coordinates, z, valid)
@@ -125,12 +120,12 @@ contains
       z = 0.0_dp
       call read_number(data, 'node', deck, number)
       do i = 1, 2
-         call take_field(data, i + 1, names(i:i), deck, coordinates(i), valid)
+         call read_field(data, i + 1, names(i:i)//'?', deck, coordinates(i), valid)
          if (data%has(i + 1) .or. data%is_undefined(i + 1) .or. number == 0) cycle
          call deck%warning(data%place(i + 1), 'node '//to_text(number)//' has no '//names(i:i)// &
             ': 0 is used')
       end do
-      call take_field(data, 4, 'z', deck, z, valid)
+      call read_field(data, 4, 'z?', deck, z, valid)
       if (data%has(4)) then
          call deck%note('*NODE: third coordinates are ignored')
       end if
@@ -143,11 +138,9 @@ contains
    !> drawing or of a rigid body.
    subroutine check_heights(deck)
       type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
       logical :: has_element(0:size(deck%mesh%node_number))
       real(dp) :: rounding
-      integer :: e, i, j, k, number
-      logical :: valid
+      integer :: e, i
 
       if (size(deck%mesh%node_number) == 0) return
       rounding = height_rounding*extent_of(deck%mesh%coordinates)
@@ -155,21 +148,10 @@ contains
       do e = 1, size(deck%mesh%element_number)
          if (deck%element_valid(e)) has_element(deck%mesh%element_nodes(:, e)) = .true.
       end do
-      has_element(0) = .false.
-      if (.not. any(has_element(1:size(deck%node_height)) .and. &
-         abs(deck%node_height) > rounding)) return
-      places = cards_of(deck%cards, 'NODE')
-      do k = 1, size(places)
-         associate (rows => deck%cards%keywords(places(k))%data)
-            do j = 1, size(rows)
-               call read_integer(rows(j)%text(1), number, valid)
-               i = deck%node_index%find(number)
-               if (.not. has_element(i)) cycle
-               if (abs(deck%node_height(i)) <= rounding) cycle
-               if (rows(j)%end%image == deck%node_place(i)%image) call deck%error( &
-                  rows(j)%place(4), 'models are two-dimensional: z must be 0', 'z')
-            end do
-         end associate
+      do i = 1, size(deck%node_height)
+         if (has_element(i) .and. abs(deck%node_height(i)) > rounding) call deck%error( &
+            deck%node_place(i), 'node '//to_text(deck%mesh%node_number(i))//' of an element is '// &
+            'out of the plane; models are two-dimensional: z must be 0', 'z')
       end do
    end subroutine check_heights
 
@@ -183,7 +165,7 @@ contains
 
       number = 0
       valid = .true.
-      call need_field(data, 1, noun//' number', deck, number, valid)
+      call read_field(data, 1, noun//' number', deck, number, valid)
       if (valid .and. number < 1) then
          call deck%error(data%place(1), 'numbers begin with 1')
          number = 0
@@ -191,77 +173,118 @@ contains
       if (number == 0) call deck%lose(noun)
    end subroutine read_number
 
-   !> Reports elements that are given twice: one of the two may stand for one that is missing.
-   subroutine check_repeated(places, numbers, deck)
-      type(place_type), intent(in) :: places(:)        ! where each is
-      integer, intent(in) :: numbers(:)
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: second(:)                ! indexes into numbers
-      integer :: i
+   !> Whether a keyword card begins elements that are lines.
+   pure logical function is_line_card(card)
+      type(keyword_card_type), intent(in) :: card   !! any card
 
-      second = repeated(numbers)
-      second = pack(second, numbers(second) > 0)
-      do i = 1, size(second)
-         call deck%twice(places(second(i)), 'element '//to_text(numbers(second(i))), &
-            places(findloc(numbers, numbers(second(i)), dim=1)))
-      end do
-      if (size(second) > 0) call deck%lose('element')
-   end subroutine check_repeated
+      is_line_card = .false.
+      if (card%name == 'ELEMENT') is_line_card = line_node_count(to_upper(card%text('TYPE'))) > 0
+   end function is_line_card
 
-   !> Builds the elements, in the order of the deck; one of a type that cannot be used keeps its
-   !> number only.
+   !> Builds the elements and the lines, in the order of the deck.
    subroutine build_elements(deck)
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: name, message, note
-      integer, allocatable :: places(:)
-      integer :: i, k, j, kind, n, plane
+      integer, allocatable :: numbers(:), places(:), second(:)
+      type(place_type), allocatable :: places_of(:)
+      logical, allocatable :: of_lines(:)
+      integer :: e, k, line, n
 
-      places = element_cards(deck%cards, of_lines=.false.)
-      n = data_count(deck%cards, places)
-      allocate(deck%mesh%element_number(n), deck%mesh%element_section(n))
-      allocate(deck%mesh%element_nodes(nodes_per_element, n), source=0)
-      allocate(deck%mesh%element_kind(n), source=quad8)
-      allocate(deck%mesh%element_plane(n), source=plane_strain)
-      allocate(deck%element_place(n))
-      allocate(deck%element_valid(n), source=.false.)
-      deck%mesh%element_section = 0
-      n = 0
-      do i = 1, size(places)
-         k = places(i)
-         call need_parameter(deck%cards%keywords(k), 'TYPE', deck, name)
-         message = ''
-         if (len(name) > 0) then
-            call take_element_type(name, kind, plane, message, note)
-            if (len(note) > 0) call deck%note(note)
-         end if
-         if (plane == plane_stress .and. deck%plane == plane_by_element) call warn_of_gmsh( &
-            deck%cards%keywords(k)%place_of('TYPE'), deck)
-         if (deck%plane /= plane_by_element) plane = deck%plane
-         if (len(message) > 0) call deck%error(deck%cards%keywords(k)%place_of('TYPE'), message)
-         do j = 1, size(deck%cards%keywords(k)%data)
-            n = n + 1
-            deck%element_place(n) = deck%cards%keywords(k)%data(j)%place(1)
-            call read_number(deck%cards%keywords(k)%data(j), 'element', deck, &
-               deck%mesh%element_number(n))
-            if (len(name) == 0 .or. len(message) > 0) cycle
-            deck%mesh%element_kind(n) = kind
-            deck%mesh%element_plane(n) = plane
-            call read_element_nodes(deck%cards%keywords(k)%data(j), deck, &
-               deck%mesh%element_nodes(:element_node_count(kind), n), deck%element_valid(n))
-            call check_layout(deck%cards%keywords(k)%data(j), kind, deck%cards%keywords(k)%place, &
-               deck)
-         end do
+      places = cards_of(deck%cards, 'ELEMENT')
+      of_lines = [(is_line_card(deck%cards%keywords(places(k))), k=1, size(places))]
+      n = data_count(deck%cards, pack(places, of_lines))
+      allocate (deck%line_number(n), deck%line_nodes(nodes_per_line, n), source=0)
+      allocate (deck%line_kind(n), source=drawn_line)
+      allocate (deck%line_place(n))
+      n = data_count(deck%cards, pack(places, .not. of_lines))
+      allocate (deck%mesh%element_number(n), deck%mesh%element_section(n), source=0)
+      allocate (deck%mesh%element_nodes(nodes_per_element, n), source=0)
+      allocate (deck%mesh%element_kind(n), source=quad8)
+      allocate (deck%mesh%element_plane(n), source=plane_strain)
+      allocate (deck%element_place(n))
+      allocate (deck%element_valid(n), source=.false.)
+      e = 0
+      line = 0
+      do k = 1, size(places)
+         associate (card => deck%cards%keywords(places(k)))
+            if (of_lines(k)) call add_lines(card, deck, line)
+            if (.not. of_lines(k)) call add_elements(card, deck, e)
+         end associate
       end do
+      k = findloc(of_lines, .true., dim=1)
+      if (n == 0 .and. k > 0) call deck%missing(deck%cards%keywords(places(k))%place_of('TYPE'), &
+         'the deck has lines, but no elements')
       call check_heights(deck)
       if (n == 0) call deck%lose('element')
       deck%element_index%noun = 'element'
       call deck%element_index%build(deck%mesh%element_number)
       ! Elements and lines have different numbers.
-      call check_repeated([deck%element_place, deck%line_place], [deck%mesh%element_number, &
-         deck%line_number], deck)
+      numbers = [deck%mesh%element_number, deck%line_number]
+      places_of = [deck%element_place, deck%line_place]
+      second = repeated(numbers)
+      second = pack(second, numbers(second) > 0)
+      do k = 1, size(second)
+         call deck%error(places_of(second(k)), 'element '//to_text(numbers(second(k)))//' is '// &
+            'defined twice, first on '//deck%source%words_of(places_of(findloc(numbers, &
+            numbers(second(k)), dim=1))))
+      end do
+      ! One of the two may stand for one that is missing.
+      if (size(second) > 0) call deck%lose('element')
       deck%member_index%noun = 'element'
-      call deck%member_index%build([deck%mesh%element_number, deck%line_number])
+      call deck%member_index%build(numbers)
    end subroutine build_elements
+
+   !> Adds the lines of a card.
+   subroutine add_lines(card, deck, n)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      integer, intent(inout) :: n        ! lines so far
+      character(:), allocatable :: name
+      integer :: j
+      logical :: valid
+
+      name = to_upper(card%text('TYPE'))
+      if (line_kind(name) == drawn_line) call deck%note('*ELEMENT, TYPE='//name//': lines are '// &
+         'ignored, except for sets and surfaces that are made of them')
+      do j = 1, size(card%data)
+         n = n + 1
+         deck%line_kind(n) = line_kind(name)
+         deck%line_place(n) = card%data(j)%place(1)
+         call read_number(card%data(j), 'element', deck, deck%line_number(n))
+         call read_nodes(card%data(j), 'line, '//to_text(line_node_count(name))//' nodes', &
+            card%place, deck, deck%line_nodes(:line_node_count(name), n), valid)
+      end do
+   end subroutine add_lines
+
+   !> Adds the elements of a card; those of a type that cannot be used keep their numbers only.
+   subroutine add_elements(card, deck, n)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      integer, intent(inout) :: n        ! elements so far
+      character(:), allocatable :: layout, message, name, note
+      integer :: corners, j, kind, midsides, plane
+
+      call need_parameter(card, 'TYPE', deck, name)
+      call take_element_type(name, kind, plane, message, note)
+      if (len(name) > 0 .and. len(message) > 0) call deck%error(card%place_of('TYPE'), message)
+      if (len(note) > 0) call deck%note(note)
+      if (plane == plane_stress .and. deck%plane == plane_by_element) call &
+         warn_of_gmsh(card%place_of('TYPE'), deck)
+      if (deck%plane /= plane_by_element) plane = deck%plane
+      corners = element_corner_count(kind)
+      midsides = element_node_count(kind) - corners
+      layout = 'element, '//to_text(corners)//' corners'
+      if (midsides > 0) layout = layout//', '//to_text(midsides)//' midside nodes'
+      do j = 1, size(card%data)
+         n = n + 1
+         deck%element_place(n) = card%data(j)%place(1)
+         call read_number(card%data(j), 'element', deck, deck%mesh%element_number(n))
+         if (len(message) > 0) cycle
+         deck%mesh%element_kind(n) = kind
+         deck%mesh%element_plane(n) = plane
+         call read_nodes(card%data(j), layout, card%place, deck, &
+            deck%mesh%element_nodes(:corners + midsides, n), deck%element_valid(n))
+      end do
+   end subroutine add_elements
 
    !> Warns of plane stress that gmsh wrote, which calls all elements so; once.
    subroutine warn_of_gmsh(place, deck)
@@ -279,51 +302,45 @@ contains
          'is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')
    end subroutine warn_of_gmsh
 
-   subroutine read_element_nodes(data, deck, nodes, valid)
+   !> Indexes of the nodes of an element or a line; one that does not exist is an error, and 0. Of
+   !> the elements of a keyword card that have too many fields or too few, the first is reported:
+   !> its TYPE= may be wrong.
+   subroutine read_nodes(data, layout, keyword, deck, nodes, valid)
       type(data_card_type), intent(in) :: data
+      character(*), intent(in) :: layout               ! what the card is
+      type(place_type), intent(in) :: keyword          ! where the *ELEMENT card is
       type(deck_type), intent(inout) :: deck
-      integer, intent(inout) :: nodes(:)
-      logical, intent(out) :: valid
-      integer :: q
+      integer, intent(inout) :: nodes(:)               ! 0 before
+      logical, intent(out) :: valid                    ! whether the places of all are known
+      integer :: fields, number, q
       logical :: is_number
 
-      valid = .true.
-      do q = 1, min(size(nodes), size(data%fields) - 1)
+      fields = size(data%fields) - 1
+      valid = fields == size(nodes)
+      if (fields > size(nodes)) then
+         call deck%error(data%place(size(nodes) + 2), 'extra field; the card is '//layout, &
+            'extra fields of '//to_text(keyword%image))
+      else if (.not. (valid .or. data%is_undefined(fields + 1))) then
+         call deck%error(data%place(fields + 2), 'missing field: node '//to_text(fields + 1), &
+            'missing fields of '//to_text(keyword%image))
+      end if
+      do q = 1, min(size(nodes), fields)
          is_number = .true.
-         call read_node(data, q, deck, nodes(q), is_number)
+         call read_field(data, q + 1, 'node '//to_text(q), deck, number, is_number)
+         if (is_number) then
+            nodes(q) = deck%node_index%find(number)
+            if (nodes(q) == 0) call deck%missing(data%place(q + 1), 'there is no node '// &
+               to_text(number), 'node', to_text(number))
+         end if
          valid = valid .and. nodes(q) > 0
          if (nodes(q) > 0) valid = valid .and. deck%node_valid(nodes(q))
       end do
-      if (size(data%fields) /= size(nodes) + 1) valid = .false.
       if (.not. valid) return
       do q = 2, size(nodes)
          if (all(nodes(:q - 1) /= nodes(q))) cycle
          call deck%error(data%place(q + 1), 'a node appears twice in this element')
          valid = .false.
       end do
-   end subroutine read_element_nodes
-
-   !> Reports the first of the elements of a keyword card that have too many fields or too few: its
-   !> TYPE= may be wrong.
-   subroutine check_layout(data, kind, keyword, deck)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: kind
-      type(place_type), intent(in) :: keyword          ! where the *ELEMENT card is
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: layout
-
-      associate (fields => size(data%fields), due => element_node_count(kind) + 1, &
-         corners => element_corner_count(kind))
-         if (fields > due) then
-            layout = 'element, '//to_text(corners)//' corners'
-            if (due > corners + 1) layout = layout//', '//to_text(corners)//' midside nodes'
-            call deck%error(data%place(due + 1), 'extra field; the card is '//layout, 'extra '// &
-               'fields of '//to_text(keyword%image))
-         else if (fields < due .and. .not. data%is_undefined(fields)) then
-            call deck%error(data%place(fields + 1), 'missing field: node '//to_text(fields), &
-               'missing fields of '//to_text(keyword%image))
-         end if
-      end associate
-   end subroutine check_layout
+   end subroutine read_nodes
 
 end module deck_builder_mesh

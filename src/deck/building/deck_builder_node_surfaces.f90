@@ -21,15 +21,25 @@ contains
    subroutine build_node_surfaces(deck)
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
+      type(target_type) :: target
       logical, allocatable :: named(:)
-      integer :: n, errors
+      real(dp) :: area(2)
+      integer :: errors, j, n
+      logical :: valid
 
       places = cards_of(deck%cards, 'SURFACE')
       do n = 1, size(places)
          associate (card => deck%cards%keywords(places(n)))
             if (chosen(card, 'TYPE', surface_kinds) /= 'NODE') cycle
             errors = deck%error_count()
-            call read_nodes(card, deck, named)
+            named = spread(.false., 1, size(deck%mesh%node_number))
+            do j = 1, size(card%data)
+               call read_row(card%data(j), '@node or set/area?', deck, area, valid)
+               if (card%data(j)%has(2)) call deck%note('*SURFACE, TYPE=NODE: areas are '// &
+                  'ignored: those of the faces are taken')
+               call deck%need_target('node', card%data(j), 1, target, valid)
+               if (valid) named(target%members(deck%mesh%node_sets)) = .true.
+            end do
             if (deck%error_count() == errors .and. all(deck%element_valid)) then
                call find_faces(card, named, deck, n)
             end if
@@ -37,29 +47,6 @@ contains
          end associate
       end do
    end subroutine build_node_surfaces
-
-   !> The nodes that a surface names.
-   subroutine read_nodes(card, deck, named)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      logical, allocatable, intent(out) :: named(:)      ! (nodes)
-      type(target_type) :: target
-      integer :: j
-      logical :: valid
-      real(dp) :: area(2)
-
-      allocate (named(size(deck%mesh%node_number)), source=.false.)
-      do j = 1, size(card%data)
-         associate (data => card%data(j))
-            call read_row(data, '@node or set/area?', deck, area, valid)
-            if (data%has(2)) call deck%note('*SURFACE, TYPE=NODE: areas are ignored: those of '// &
-               'the faces are taken')
-            call deck%need_target('node', data, 1, target, valid)
-            if (.not. valid) cycle
-            named(target%members(deck%mesh%node_sets)) = .true.
-         end associate
-      end do
-   end subroutine read_nodes
 
    !> The outer sides of elements all of whose nodes are named. A node on none of them is an error.
    subroutine find_faces(card, named, deck, surface)

@@ -1,6 +1,6 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choice, needed_choice, take_parameter, take_within
+   use card_parameters, only: choice, need_parameter, needed_choice, take_parameter
    use cards, only: keyword_card_type
    use controls, only: solver_by_size, solver_mumps, solver_skyline, tail_full, tail_sparse
    use deck_builder_rigid, only: need_faces
@@ -13,6 +13,9 @@ module deck_builder_options
    implicit none
    private
    public :: build_options, build_load_axis, build_regions
+
+   !> Degrees of freedom 1, 2 and 11.
+   character(*), parameter :: dof_names(3) = [character(11) :: 'u_x', 'u_y', 'temperature']
 
    integer, parameter :: most_levels = 11   !! *REFINE: one element more often divided is too many
 
@@ -39,15 +42,21 @@ contains
                call build_option_card(card, deck)
             case ('PHYSICAL CONSTANTS')
                call take_parameter(card, 'ABSOLUTE ZERO', deck, deck%model%constants%absolute_zero)
-               if (card%has('STEFAN BOLTZMANN')) call take_within('>0', card, 'STEFAN BOLTZMANN', &
-                  deck, deck%model%constants%stefan_boltzmann)
+               call take_parameter(card, 'STEFAN BOLTZMANN', deck, &
+                  deck%model%constants%stefan_boltzmann, '>0')
                deck%model%constants%has_absolute_zero = card%has('ABSOLUTE ZERO')
                deck%model%constants%has_radiation = deck%model%constants%has_absolute_zero .and. &
                   card%has('STEFAN BOLTZMANN')
             case ('SOLVER')
                call build_solver(card, deck)
             case ('REFINE')
-               call build_levels(card, deck)
+               if (card%has('SURFACE') .or. card%has('ELSET')) cycle
+               if (card%has('DISTANCE')) call deck%error(card%place_of('DISTANCE'), 'DISTANCE= '// &
+                  'is measured from a surface or a set: give SURFACE= or ELSET= too')
+               if (deck%levels_place%image > 0) call deck%error(card%place, 'a second *REFINE '// &
+                  'of the whole model')
+               deck%levels_place = card%place_of('LEVELS')
+               call take_levels(card, deck, deck%levels)
             case ('CONTROLS')
                call deck%note('*'//card%name//' is ignored')
             case default
@@ -80,7 +89,13 @@ contains
       if (plane == 'STRAIN') deck%plane = plane_strain
       if (plane == 'STRESS') deck%plane = plane_stress
       if (plane == 'AXISYMMETRIC') deck%plane = axisymmetric
-      if (card%has('ORDER')) call build_order(card, deck)
+      if (card%has('ORDER')) then
+         deck%model%order_place = card%place_of('ORDER')
+         call take_parameter(card, 'ORDER', deck, deck%order)
+         if (all(deck%order /= [1, 2])) call deck%error(deck%model%order_place, 'ORDER= must '// &
+            'be 1 (elements without midside nodes) or 2 (elements as they are)')
+         if (deck%order /= 1) deck%order = 2
+      end if
       if (card%has('ERRORS')) deck%model%estimates_errors = choice(card, 'ERRORS', 'YES/NO', deck, &
          'YES') == 'YES'
       if (card%has('UNITS')) call build_units(card, deck)
@@ -88,20 +103,6 @@ contains
       deck%load_set = to_upper(card%text('LOAD'))
       deck%load_place = card%place_of('LOAD')
    end subroutine build_option_card
-
-   subroutine build_order(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      integer :: errors
-
-      errors = deck%error_count()
-      deck%model%order_place = card%place_of('ORDER')
-      call take_parameter(card, 'ORDER', deck, deck%order)
-      if (any(deck%order == [1, 2])) return
-      if (deck%error_count() == errors) call deck%error(deck%model%order_place, 'ORDER= must '// &
-         'be 1 (elements without midside nodes) or 2 (elements as they are)')
-      deck%order = 2
-   end subroutine build_order
 
    !> UNITS="length stress power temperature".
    subroutine build_units(card, deck)
@@ -129,28 +130,14 @@ contains
       deck%model%units%temperature = trim(words(4))
    end subroutine build_units
 
-   subroutine build_levels(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-
-      if (card%has('SURFACE') .or. card%has('ELSET')) return
-      if (card%has('DISTANCE')) call deck%error(card%place_of('DISTANCE'), 'DISTANCE= is '// &
-         'measured from a surface or a set: give SURFACE= or ELSET= too')
-      if (deck%levels_place%image > 0) then
-         call deck%error(card%place, 'a second *REFINE of the whole model')
-         return
-      end if
-      deck%levels_place = card%place_of('LEVELS')
-      call take_levels(card, deck, deck%levels)
-   end subroutine build_levels
-
    !> Reads LEVELS= of *REFINE; 0 after an error.
    subroutine take_levels(card, deck, levels)
       type(keyword_card_type), intent(in) :: card          !! the *REFINE
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: levels                     !! 0 before
+      character(:), allocatable :: text
 
-      if (card%lacks('LEVELS')) call deck%error(card%place, '*REFINE needs LEVELS=')
+      call need_parameter(card, 'LEVELS', deck, text)
       call take_parameter(card, 'LEVELS', deck, levels)
       if (levels >= 0 .and. levels <= most_levels) return
       call deck%error(card%place_of('LEVELS'), 'LEVELS= must lie between 0 and '// &
@@ -194,88 +181,47 @@ contains
       end if
       deck%model%load_node = members(1)
       deck%model%load_dof = dof
-      deck%model%load_label = dof_name(dof)//' of '//name
-      if (.not. (deck%boundaries_sound .and. deck%sets_sound)) return
-      if (is_prescribed(deck)) return
-      do i = 1, deck%boundaries%count
-         if (deck%boundaries%items(i)%component /= dof) cycle
-         call deck%error(deck%load_place, 'LOAD= follows a value that no *BOUNDARY prescribes: '// &
-            dof_name(dof)//' of '//name)
-         return
-      end do
-      if (deck%has_lost('*STEP')) return
-      call deck%error(deck%cards%last, 'no *BOUNDARY prescribes any '//dof_name(dof)//' '// &
-         '(degree of freedom '//to_text(dof)//'), which LOAD='//deck%load_set//' of *OPTIONS '// &
-         'follows; give the values, as '//name//', '//to_text(dof)//', '//to_text(dof)//', value')
-   end subroutine build_load_axis
-
-   pure function dof_name(dof) result(name)
-      integer, intent(in) :: dof
-      character(:), allocatable :: name
-
-      select case (dof)
-      case (1)
-         name = 'u_x'
-      case (2)
-         name = 'u_y'
-      case default
-         name = 'temperature'
-      end select
-   end function dof_name
-
-   !> Whether a *BOUNDARY prescribes the degree of freedom of the load axis at its node.
-   pure logical function is_prescribed(deck)
-      type(deck_type), intent(in) :: deck
-      integer :: i
-
-      is_prescribed = .true.
+      deck%model%load_label = trim(dof_names(min(dof, 3)))//' of '//name
+      if (deck%has_lost('boundary') .or. deck%has_lost('*STEP') .or. deck%has_lost('set')) return
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            if (request%component /= deck%model%load_dof) cycle
-            if (request%item == deck%model%load_node) return
-            if (request%set == 0) cycle
-            if (any(deck%mesh%node_sets(request%set)%members == deck%model%load_node)) return
+            if (request%component == dof .and. any(request%members(deck%mesh%node_sets) == &
+               members(1))) return
          end associate
       end do
-      is_prescribed = .false.
-   end function is_prescribed
+      call deck%error(deck%load_place, 'no *BOUNDARY prescribes '//deck%model%load_label//', '// &
+         'which LOAD= follows; give the value, as '//name//', '//to_text(dof)//', '//to_text( &
+         dof)//', value')
+   end subroutine build_load_axis
 
    !> Takes the *REFINE cards that name a surface or a set.
    subroutine build_regions(deck)
       type(deck_type), intent(inout) :: deck
       type(refined_region_type) :: region
-      integer :: k
+      integer :: k, surface
 
       allocate(deck%model%regions(0))
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             if (card%name /= 'REFINE') cycle
             if (.not. (card%has('SURFACE') .or. card%has('ELSET'))) cycle
-            call build_region(card, deck, region)
+            region = refined_region_type(card=card%place%image)
+            call take_levels(card, deck, region%levels)
+            if (card%has('SURFACE') .and. card%has('ELSET')) then
+               call deck%error(card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, not '// &
+                  'both; give a card for each')
+            else if (card%has('SURFACE')) then
+               call deck%need_named(card, 'SURFACE', 'surface', surface)
+               call need_faces(card%place_of('SURFACE'), 'name the face that touches it', deck, &
+                  surface)
+               region%surfaces = [surface]
+            else
+               call deck%need_element_set(card, region%set)
+            end if
+            call take_parameter(card, 'DISTANCE', deck, region%distance, '>0')
             deck%model%regions = [deck%model%regions, region]
          end associate
       end do
    end subroutine build_regions
-
-   subroutine build_region(card, deck, region)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(refined_region_type), intent(out) :: region
-      integer :: surface
-
-      region%card = card%place%image
-      call take_levels(card, deck, region%levels)
-      if (card%has('SURFACE') .and. card%has('ELSET')) then
-         call deck%error(card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, not both; '// &
-            'give a card for each')
-      else if (card%has('SURFACE')) then
-         call deck%need_named(card, 'SURFACE', 'surface', surface)
-         call need_faces(card%place_of('SURFACE'), 'name the face that touches it', deck, surface)
-         region%surfaces = [surface]
-      else
-         call deck%need_element_set(card, region%set)
-      end if
-      if (card%has('DISTANCE')) call take_within('>0', card, 'DISTANCE', deck, region%distance)
-   end subroutine build_region
 
 end module deck_builder_options

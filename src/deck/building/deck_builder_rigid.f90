@@ -54,19 +54,17 @@ contains
       do i = 1, size(deck%mesh%surfaces)
          associate (given => deck%mesh%surfaces(i))
             if (.not. allocated(given%drawing)) cycle
-            if (i /= surface .and. .not. allocated(given%drawing%line)) cycle
             if (i /= surface) then
-               if (.not. any(given%drawing%line(1) == lines)) cycle
+               if (.not. allocated(given%drawing%line)) cycle
+               if (all(given%drawing%line(1) /= lines)) cycle
             end if
             given%drawing%reference = coupling%reference
             given%drawing%rotation = coupling%rotation
          end associate
       end do
-      if (surface > 0 .or. coupling%element_set > 0 .or. size(coupling%node_sets) > 0) return
-      if (card%has('NSET') .or. card%has('ELSET') .or. card%has('TIE NSET') .or. &
-         card%has('PIN NSET') .or. card%has('ANALYTICAL SURFACE')) return
-      call deck%error(card%place, '*RIGID BODY names nothing that is rigid; give ELSET=, NSET= '// &
-         'or ANALYTICAL SURFACE=')
+      if (.not. (card%has('ELSET') .or. card%has('ANALYTICAL SURFACE') .or. any([(card%has( &
+         trim(names(i))), i=1, size(names))]))) call deck%error(card%place, '*RIGID BODY names '// &
+         'nothing that is rigid; give ELSET=, NSET= or ANALYTICAL SURFACE=')
    end subroutine build_rigid_body
 
    !> Refuses a rigid surface where faces of elements are needed.

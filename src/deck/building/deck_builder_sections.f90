@@ -1,7 +1,7 @@
 !> *PRE-TENSION SECTION -> a body cut in two, and the section that joins its faces again.
 module deck_builder_sections
    use card_values, only: read_row
-   use cards, only: data_card_type, keyword_card_type
+   use cards, only: keyword_card_type
    use deck_builder_equations, only: find_reference
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
@@ -41,7 +41,8 @@ contains
       type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(out) :: section
       character(:), allocatable :: fault
-      logical :: valid
+      real(dp) :: given(3)
+      logical :: sound, valid
 
       section%card = card%place%image
       section%title = '*PRE-TENSION SECTION, '//deck%source%words_of(card%place)
@@ -52,7 +53,17 @@ contains
       valid = section%reference > 0 .and. section%surface > 0 .and. all(deck%element_valid)
       if (valid) valid = size(deck%mesh%surfaces(section%surface)%faces) > 0
       if (valid) section%normal = section_normal(section%surface, deck%mesh)
-      if (size(card%data) > 0) call read_normal(card%data(1), deck, section%normal, valid)
+      if (size(card%data) > 0) then
+         call read_row(card%data(1), 'x of the normal/y of the normal/z of the normal?', deck, &
+            given, sound)
+         valid = valid .and. sound
+         section%normal = unit_vector(given(:2))
+         if (sound .and. (norm2(section%normal) <= 0.0_dp .or. abs(given(3)) > 0.0_dp)) then
+            call deck%error(card%data(1)%place(1), 'the normal of a section is a direction in '// &
+               'the plane, such as 0., 1., 0.')
+            valid = .false.
+         end if
+      end if
       if (.not. valid) return
       fault = ''
       if (norm2(section%normal) <= 0.0_dp) fault = 'is closed: it has no normal'
@@ -91,24 +102,5 @@ contains
          to_text(deck%mesh%node_number(first))//' to '//to_text(deck%mesh%node_number(last))// &
          ' there, which the deck does not have')
    end subroutine cut
-
-   !> The normal; its third component is 0.
-   subroutine read_normal(data, deck, normal, valid)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(inout) :: deck
-      real(dp), intent(inout) :: normal(2)
-      logical, intent(inout) :: valid
-      real(dp) :: given(3)
-      logical :: sound
-
-      call read_row(data, 'x of the normal/y of the normal/z of the normal?', deck, given, sound)
-      valid = valid .and. sound
-      if (.not. sound) return
-      normal = unit_vector(given(:2))
-      if (norm2(normal) > 0.0_dp .and. abs(given(3)) <= 0.0_dp) return
-      call deck%error(data%place(1), 'the normal of a section is a direction in the plane, '// &
-         'such as 0., 1., 0.')
-      valid = .false.
-   end subroutine read_normal
 
 end module deck_builder_sections

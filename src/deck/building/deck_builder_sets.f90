@@ -1,12 +1,12 @@
 !> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets; *SURFACE -> sets of faces.
 module deck_builder_sets
    use card_parameters, only: choice, need_parameter, surface_kinds
-   use card_values, only: check_extra, need_field, read_row
+   use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
-   use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side
-   use deck_builder_lines, only: is_line_card
+   use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side, lines_of
+   use deck_builder_mesh, only: is_line_card
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_type, item_index_type, place_list_type, read_target
+   use deck_context, only: deck_type, item_index_type, place_list_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
    use element_sides, only: element_sides_type, find_sides
@@ -18,7 +18,7 @@ module deck_builder_sets
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
-   public :: build_sets, build_surfaces
+   public :: build_sets, build_surfaces, check_face
 
    !> Sets of nodes or of elements while they grow.
    type :: draft_type
@@ -32,10 +32,10 @@ contains
 
    !> Builds all sets of nodes or of elements, lines among them; a name that is on several cards
    !> is one set.
-   subroutine build_sets(noun, deck, sets)
+   subroutine build_sets(noun, deck)
       character(*), intent(in) :: noun                           !! node or element
       type(deck_type), intent(inout) :: deck
-      type(set_type), allocatable, intent(out) :: sets(:)
+      type(set_type), allocatable :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
       integer :: count, first(2), i, j, k, kind
@@ -71,7 +71,29 @@ contains
          call move_alloc(draft%items(i)%name, sets(i)%name)
          sets(i)%members = unique_sorted(draft%members(i)%numbers())
       end do
+      if (noun == 'node') then
+         call move_alloc(sets, deck%mesh%node_sets)
+      else
+         call split_line_sets(size(deck%mesh%element_number), sets, deck%line_sets)
+         call move_alloc(sets, deck%mesh%element_sets)
+      end if
    end subroutine build_sets
+
+   !> Parts sets of elements and lines: the elements stay, the lines are kept beside them.
+   subroutine split_line_sets(elements, sets, line_sets)
+      integer, intent(in) :: elements                             ! number of elements
+      type(set_type), intent(inout) :: sets(:)  ! members are elements and, behind them, lines
+      type(set_type), allocatable, intent(out) :: line_sets(:)    ! indexes of lines; may be empty
+      integer :: i
+
+      allocate (line_sets(size(sets)))
+      do i = 1, size(sets)
+         line_sets(i)%members = pack(sets(i)%members, sets(i)%members > elements) - elements
+         if (size(line_sets(i)%members) == 0) cycle
+         sets(i)%members = pack(sets(i)%members, sets(i)%members <= elements)
+         sets(i)%of_lines = size(sets(i)%members) == 0
+      end do
+   end subroutine split_line_sets
 
    !> The nodes that a *NODE card gives, of which some may be given again elsewhere.
    function nodes_of(card, numbers) result(nodes)
@@ -138,8 +160,7 @@ contains
          end if
          do i = 1, size(card%data(j)%fields)
             valid = .true.
-            call read_target(card%data(j), i, draft%numbers, draft%items(:known), deck, other, &
-               valid)
+            call deck%need_target(draft%numbers%noun, card%data(j), i, other, valid, known)
             if (other%item > 0) call draft%members(set)%add([other%item])
             ! Each member once, lest sets that hold a set twice double.
             if (other%set > 0) call draft%members(set)%add(unique_sorted( &
@@ -267,8 +288,8 @@ contains
          return
       end if
       do j = 1, size(card%data)
-         ! An element set that has lines, without a face.
-         if (.not. card%data(j)%has(2) .and. has_lines(card%data(j), deck)) then
+         ! A line, or an element set that has some, without a face.
+         if (.not. card%data(j)%has(2) .and. size(lines_of(card%data(j)%text(1), deck)) > 0) then
             call add_line_faces(card%data(j), deck, found)
             call named%add(spread(j, 1, found%count - named%count))
             cycle
@@ -295,17 +316,6 @@ contains
          order=[2, 1])
    end subroutine build_surface
 
-   !> Whether the first field names an element set that has lines.
-   pure logical function has_lines(data, deck)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(in) :: deck
-      integer :: set
-
-      set = deck%index_of('element set', data%text(1))
-      has_lines = set > 0
-      if (has_lines) has_lines = size(deck%line_sets(set)%members) > 0
-   end function has_lines
-
    !> Adds the faces under the lines of a set; the first line under which there is none, or one
    !> inside a body, is an error.
    subroutine add_line_faces(data, deck, found)
@@ -319,7 +329,7 @@ contains
 
       call check_extra(data, 1, 'element set of lines', deck)
       if (.not. all(deck%element_valid)) return
-      members = deck%line_sets(deck%index_of('element set', data%text(1)))%members
+      members = lines_of(data%text(1), deck)
       allocate (uses(size(members)), source=0)
       sides = find_sides(deck%mesh)
       do i = 1, size(members)
@@ -366,15 +376,18 @@ contains
    !> Every element of a data card has the face.
    subroutine check_face(data, elements, face, deck, valid)
       type(data_card_type), intent(in) :: data
-      integer, intent(in) :: elements(:), face
+      integer, intent(in) :: elements(:)                 !! indexes of the elements
+      integer, intent(in) :: face                        !! 1..4
       type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
+      logical, intent(inout) :: valid                    !! becomes false after an error
       integer :: i
 
       do i = 1, size(elements)
-         if (face <= element_corner_count(deck%mesh%element_kind(elements(i)))) cycle
-         call deck%error(data%place(2), 'element '//to_text(deck%mesh%element_number(elements( &
-            i)))//' is a triangle and has no face S'//to_text(face))
+         associate (sides => element_corner_count(deck%mesh%element_kind(elements(i))))
+            if (face <= sides .or. .not. deck%element_valid(elements(i))) cycle
+            call deck%error(data%place(2), 'element '// &
+               to_text(deck%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
+         end associate
          valid = .false.
          return
       end do
@@ -389,12 +402,9 @@ contains
       character(:), allocatable :: label
 
       face = 0
-      call need_field(data, 2, 'face S1 to S4', deck, label, valid)
+      call read_field(data, 2, 'face S1 to S4', deck, label, valid)
       if (len(label) == 0) return
-      label = to_upper(label)
-      if (len(label) == 2) then
-         if (label(1:1) == 'S') face = index('1234', label(2:2))
-      end if
+      face = findloc(['S1', 'S2', 'S3', 'S4'] == to_upper(label), .true., dim=1)
       if (face > 0) return
       call deck%error(data%place(2), ''''//data%text(2)//''' is no face; faces are S1 to S4')
       valid = .false.

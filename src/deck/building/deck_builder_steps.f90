@@ -1,6 +1,6 @@
 !> *STEP to *END STEP -> steps with their increments; loads become requests.
 module deck_builder_steps
-   use card_parameters, only: choice, is_on, take_from, take_parameter
+   use card_parameters, only: choice, is_on, take_parameter
    use card_values, only: decimal_comma, read_row, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
@@ -9,7 +9,7 @@ module deck_builder_steps
       build_restart, build_start, build_thermal_scheme, read_frequency
    use deck_builder_loads, only: build_load_card
    use deck_context, only: deck_type
-   use deck_structure, only: card_count, cards_of
+   use deck_structure, only: cards_of
    use kinds, only: dp
    use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
       increment_growth, least_increment, planned_increments, solves_heat, solves_mechanics, &
@@ -27,10 +27,9 @@ module deck_builder_steps
    type :: card_counts_type
       integer :: analyses = 0
       integer :: files = 0             !! *NODE FILE, *EL FILE, *CONTACT FILE
-      integer :: node_prints = 0
-      integer :: element_prints = 0
       logical :: has_amplitude = .false.   !! AMPLITUDE= on *STEP
       logical :: is_uncoupled = .false.  !! *UNCOUPLED TEMPERATURE-DISPLACEMENT
+      logical :: has_prints(2) = .false.   !! *NODE PRINT, *EL PRINT
    end type card_counts_type
 
    real(dp), parameter :: smallest_part = 1.0e-5_dp   !! of a period: smallest increment
@@ -48,8 +47,7 @@ contains
 
       has_scheme = .false.
       deck%analyses_sound = .not. deck%has_lost('*STEP')
-      deck%boundaries_sound = deck%analyses_sound
-      n = card_count(deck%cards, 'STEP')
+      n = size(cards_of(deck%cards, 'STEP'))
       allocate(deck%model%steps(n), deck%step_place(n), deck%analysis_place(n))
       n = 0
       do k = 1, size(deck%cards%keywords)
@@ -63,15 +61,23 @@ contains
                call begin_step(card, n > 1, before, deck, deck%model%steps(n))
             case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
-               call begin_analysis(card, n, counts, deck, deck%model%steps)
+               counts%analyses = counts%analyses + 1
+               if (counts%analyses > 1) call deck%error(card%place, 'a second analysis in one step')
+               if (n > 0) call build_analysis(card, n, counts, deck, deck%model%steps(n))
             case ('END STEP')
                if (counts%analyses > 0) cycle
                deck%analyses_sound = .false.
                call deck%missing(card%place, 'the step has no *STATIC, *HEAT TRANSFER or '// &
                   '*COUPLED TEMPERATURE-DISPLACEMENT')
-            case ('FIXED POINT', 'RESTART', 'START', 'THERMAL SCHEME')
-               has_scheme = has_scheme .or. card%name == 'THERMAL SCHEME'
-               call build_control(card, deck, controls)
+            case ('FIXED POINT')
+               call build_fixed_point(card, deck, controls%fixed_point)
+            case ('RESTART')
+               call build_restart(card, deck, controls)
+            case ('START')
+               call build_start(card, deck, controls%start)
+            case ('THERMAL SCHEME')
+               has_scheme = .true.
+               call build_thermal_scheme(card, deck, controls%scheme)
             case ('CONTINUATION')
                if (n > 0) call build_continuation(card, deck, deck%model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
@@ -89,42 +95,56 @@ contains
                end if
             end select
          end associate
-         if (n > 0) call take_controls(controls, has_scheme, counts%is_uncoupled, &
-            deck%model%steps(n))
+         if (n == 0) cycle
+         ! Transients have their own scheme until the deck names one.
+         associate (step => deck%model%steps(n))
+            step%step_controls_type = controls
+            if (step%is_transient .and. .not. has_scheme) step%scheme = l_stable_scheme
+            if (counts%is_uncoupled .and. .not. has_scheme) step%scheme = explicit_scheme
+         end associate
       end do
       call warn_of_nlgeom(deck, deck%model%steps)
    end subroutine build_steps
 
-   !> Reads a card that controls this step and later ones.
-   subroutine build_control(card, deck, controls)
+   !> Reads a card of a step that asks for output; others are ignored.
+   subroutine build_output(card, deck, counts, step)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
-      type(step_controls_type), intent(inout) :: controls
+      type(card_counts_type), intent(inout) :: counts
+      type(step_type), intent(inout) :: step
+      type(time_points_type) :: points
+      integer :: frequency
 
       select case (card%name)
-      case ('FIXED POINT')
-         call build_fixed_point(card, deck, controls%fixed_point)
-      case ('RESTART')
-         call build_restart(card, deck, controls)
-      case ('START')
-         call build_start(card, deck, controls%start)
-      case default
-         call build_thermal_scheme(card, deck, controls%scheme)
+      case ('NODE FILE', 'EL FILE', 'CONTACT FILE', 'NODE OUTPUT', 'ELEMENT OUTPUT', &
+         'CONTACT OUTPUT')
+         ! As often as the most frequent of these cards asks; FREQUENCY=0 leaves the last increment.
+         call read_frequency(card, deck, frequency, points)
+         if (counts%files == 0) step%field_points = time_points_type()
+         if (allocated(points%times)) step%field_points = points
+         if (frequency == 0) then
+            call deck%note('*'//card%name//', FREQUENCY=0: the last increment of the step is '// &
+               'written')
+            frequency = huge(frequency)
+         end if
+         if (counts%files > 0) frequency = min(frequency, step%field_frequency)
+         counts%files = counts%files + 1
+         step%field_frequency = frequency
+      case ('NODE PRINT')
+         call build_print(card, counts%has_prints(1), deck, step%node_prints)
+      case ('EL PRINT')
+         call build_print(card, counts%has_prints(2), deck, step%element_prints)
+      case ('STABILITY')
+         if (step%analysis /= analysis_coupled .or. counts%analyses == 0) call deck%error( &
+            card%place, '*STABILITY needs a step with *COUPLED TEMPERATURE-DISPLACEMENT before '// &
+            'it: whether a state lasts is decided by heat and contact together')
+         step%stability_frequency = huge(1)
+         call take_parameter(card, 'FREQUENCY', deck, step%stability_frequency, '>=1')
+      case ('CONTACT PRINT')
+         call read_frequency(card, deck, step%contact_print_frequency, step%contact_print_points)
+      case default   ! of the model, or not known
       end select
-   end subroutine build_control
-
-   !> Controls stay from step to step; transients have their own scheme until the deck names one.
-   subroutine take_controls(controls, has_scheme, is_uncoupled, step)
-      type(step_controls_type), intent(in) :: controls
-      logical, intent(in) :: has_scheme     !! whether *THERMAL SCHEME was there
-      logical, intent(in) :: is_uncoupled   !! *UNCOUPLED TEMPERATURE-DISPLACEMENT
-      type(step_type), intent(inout) :: step
-
-      step%step_controls_type = controls
-      if (has_scheme) return
-      if (step%is_transient) step%scheme = l_stable_scheme
-      if (is_uncoupled) step%scheme = explicit_scheme
-   end subroutine take_controls
+   end subroutine build_output
 
    !> NLGEOM means nothing where no displacements are solved, and is warned of once elsewhere.
    subroutine warn_of_nlgeom(deck, steps)
@@ -138,38 +158,6 @@ contains
          'NLGEOM is not modelled: displacements and strains stay small')
    end subroutine warn_of_nlgeom
 
-   !> Reads a card of a step that asks for output; others are ignored.
-   subroutine build_output(card, deck, counts, step)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      type(card_counts_type), intent(inout) :: counts
-      type(step_type), intent(inout) :: step
-
-      select case (card%name)
-      case ('NODE FILE', 'EL FILE', 'CONTACT FILE', 'NODE OUTPUT', 'ELEMENT OUTPUT', &
-         'CONTACT OUTPUT')
-         call build_file_output(card, counts%files, deck, step)
-      case ('NODE PRINT')
-         counts%node_prints = counts%node_prints + 1
-         call build_print(card, counts%node_prints == 1, deck, step%node_prints)
-      case ('EL PRINT')
-         counts%element_prints = counts%element_prints + 1
-         call build_print(card, counts%element_prints == 1, deck, step%element_prints)
-      case ('STABILITY')
-         if (step%analysis /= analysis_coupled .or. counts%analyses == 0) then
-            call deck%error(card%place, '*STABILITY needs a step with *COUPLED '// &
-               'TEMPERATURE-DISPLACEMENT before it: whether a state lasts is decided by heat '// &
-               'and contact together')
-            return
-         end if
-         step%stability_frequency = huge(1)
-         call take_from(1, card, 'FREQUENCY', deck, step%stability_frequency)
-      case ('CONTACT PRINT')
-         call read_frequency(card, deck, step%contact_print_frequency, step%contact_print_points)
-      case default   ! of the model, or not known
-      end select
-   end subroutine build_output
-
    !> Reads *STEP; output goes on as in the step before.
    subroutine begin_step(card, is_later, before, deck, step)
       type(keyword_card_type), intent(in) :: card
@@ -178,10 +166,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
 
-      call take_parameter(card, 'INC', deck, step%max_increments)
-      if (step%max_increments < 1) then
-         call deck%error(card%place_of('INC'), 'INC= must be at least 1')
-      end if
+      call take_parameter(card, 'INC', deck, step%max_increments, '>=1')
       if (.not. card%has('INC')) then
          call deck%note('*STEP without INC=: '//to_text(step%max_increments)//' increments')
       end if
@@ -204,36 +189,18 @@ contains
       end if
    end subroutine begin_step
 
-   !> Reads the analysis of step n, the only one that it may have.
-   subroutine begin_analysis(card, n, counts, deck, steps)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(in) :: n   !! number of the step, 0 before the first
-      type(card_counts_type), intent(inout) :: counts
-      type(deck_type), intent(inout) :: deck
-      type(step_type), intent(inout) :: steps(:)
-
-      counts%analyses = counts%analyses + 1
-      if (counts%analyses > 1) call deck%error(card%place, 'a second analysis in one step')
-      counts%is_uncoupled = card%name(1:2) == 'UN'
-      if (n == 0) return
-      deck%analysis_place(n) = card%place
-      call build_analysis(card, n, deck, steps(n))
-      if (steps(n)%is_transient .and. .not. counts%has_amplitude) then
-         steps(n)%ramped = .false.
-         call deck%note('*'//card%name//' without STEADY STATE: loads without an amplitude act '// &
-            'at once; *STEP, AMPLITUDE=RAMP ramps them')
-      end if
-   end subroutine begin_analysis
-
    !> Reads *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT.
-   subroutine build_analysis(card, n, deck, step)
+   subroutine build_analysis(card, n, counts, deck, step)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: n   ! number of the step
+      type(card_counts_type), intent(inout) :: counts
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
       character(:), allocatable :: creep
       integer :: errors
 
+      counts%is_uncoupled = card%name(1:2) == 'UN'
+      deck%analysis_place(n) = card%place
       errors = deck%error_count()
       step%analysis = analysis_coupled
       if (card%name == 'STATIC') step%analysis = analysis_static
@@ -254,6 +221,10 @@ contains
       else if (.not. adapts_increments(step)) then
          call fit_increments(card, n, deck, step)
       end if
+      if (counts%has_amplitude .or. .not. step%is_transient) return
+      step%ramped = .false.
+      call deck%note('*'//card%name//' without STEADY STATE: loads without an amplitude act at '// &
+         'once; *STEP, AMPLITUDE=RAMP ramps them')
    end subroutine build_analysis
 
    !> Whether an analysis gives its largest increment.
@@ -276,12 +247,8 @@ contains
             'LOCAL ERROR= and DILATATION= are ignored, no heat is stored')
          return
       end if
-      call take_parameter(card, 'DELTMX', deck, step%largest_change)
-      if (step%largest_change <= 0.0_dp) call deck%error(card%place_of('DELTMX'), 'DELTMX= '// &
-         'must be positive: the largest change of a temperature in an increment')
-      call take_parameter(card, 'LOCAL ERROR', deck, step%local_error)
-      if (step%local_error <= 0.0_dp) call deck%error(card%place_of('LOCAL ERROR'), 'LOCAL '// &
-         'ERROR= must be positive: 1E-3 is 0.1 % of the range of temperatures')
+      call take_parameter(card, 'DELTMX', deck, step%largest_change, '>0')
+      call take_parameter(card, 'LOCAL ERROR', deck, step%local_error, '>0')
       step%dilates = is_on(card, 'DILATATION', deck)
       if (step%direct .and. (card%has('DELTMX') .or. card%has('LOCAL ERROR'))) call deck%note( &
          '*'//card%name//', DIRECT: DELTMX= and LOCAL ERROR= are ignored, increments are fixed')
@@ -299,7 +266,6 @@ contains
       type(step_type), intent(inout) :: step
       character(:), allocatable :: number
 
-      if (step%max_increments < 1) return
       if (too_many(step)) then
          number = to_text(ceiling(min(planned_increments(step) - increment_rounding, most_counted)))
          step%grows = .not. step%direct
@@ -327,28 +293,6 @@ contains
       too_many = planned_increments(step) > step%max_increments + increment_rounding
    end function too_many
 
-   !> Fields are written as often as the most frequent FILE card of the step asks; FREQUENCY=0
-   !> leaves its last increment.
-   subroutine build_file_output(card, files, deck, step)
-      type(keyword_card_type), intent(in) :: card
-      integer, intent(inout) :: files
-      type(deck_type), intent(inout) :: deck
-      type(step_type), intent(inout) :: step
-      type(time_points_type) :: points
-      integer :: frequency
-
-      call read_frequency(card, deck, frequency, points)
-      if (files == 0) step%field_points = time_points_type()
-      if (allocated(points%times)) step%field_points = points
-      if (frequency == 0) then
-         call deck%note('*'//card%name//', FREQUENCY=0: the last increment of the step is written')
-         frequency = huge(frequency)
-      end if
-      files = files + 1
-      if (files > 1) frequency = min(frequency, step%field_frequency)
-      step%field_frequency = frequency
-   end subroutine build_file_output
-
    !> First increment, period, smallest and largest increment.
    subroutine build_increments(data, deck, step)
       type(data_card_type), intent(in) :: data             !! data card of the analysis
@@ -359,8 +303,8 @@ contains
       logical :: valid
 
       most = merge(5, 4, step%analysis == analysis_heat)
-      call read_row(data, 'first increment? =1/period? =1/smallest increment?/largest '// &
-         'increment?'//trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
+      call read_row(data, 'first increment? >0 =1/period? >0 =1/smallest increment? >0/largest '// &
+         'increment? >0'//trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
       step%first_increment = given(1)
       step%period = given(2)
       step%smallest_increment = min(smallest_part*step%period, step%first_increment)
@@ -376,13 +320,17 @@ contains
          'largest increment ignored: with DIRECT increments are fixed')
       if (.not. (step%direct .or. data%has(3))) call deck%note('smallest increment not given: '// &
          to_text(step%smallest_increment))
-      comma = decimal_comma(data)
-      if (comma > 0 .and. .not. times_fit(data, step)) then
-         call report_decimal_comma(data, comma, deck)
+      if (valid .and. step%first_increment > step%period) then
+         call deck%error(data%place(1), 'the first increment is longer than the period; give a '// &
+            'shorter one')
          valid = .false.
-      else if (valid) then
-         call check_times(data, step, deck, valid)
+      else if (valid .and. step%smallest_increment > step%first_increment) then
+         call deck%error(data%place(3), 'the smallest increment is longer than the first; give '// &
+            'a shorter one')
+         valid = .false.
       end if
+      comma = decimal_comma(data)
+      if (comma > 0 .and. .not. valid) call report_decimal_comma(data, comma, deck)
       if (.not. valid) then
          step%first_increment = 1.0_dp
          step%period = 1.0_dp
@@ -397,49 +345,5 @@ contains
             ': a smaller part of the period is lost in rounding')
       end if
    end subroutine build_increments
-
-   !> Whether the times of a step are positive, and the first increment lies between the smallest
-   !> and the period.
-   pure logical function times_fit(data, step)
-      type(data_card_type), intent(in) :: data
-      type(step_type), intent(in) :: step
-
-      times_fit = .not. any(not_positive(data, step)) .and. &
-         step%first_increment <= step%period .and. step%smallest_increment <= step%first_increment
-   end function times_fit
-
-   !> Which of the times that the card gives are not positive.
-   pure function not_positive(data, step)
-      type(data_card_type), intent(in) :: data
-      type(step_type), intent(in) :: step
-      logical :: not_positive(4)
-      integer :: i
-
-      not_positive = [step%first_increment, step%period, step%smallest_increment, &
-         step%largest_increment] <= 0.0_dp .and. [(data%has(i), i=1, 4)]
-   end function not_positive
-
-   subroutine check_times(data, step, deck, valid)
-      type(data_card_type), intent(in) :: data
-      type(step_type), intent(in) :: step
-      type(deck_type), intent(inout) :: deck
-      logical, intent(inout) :: valid
-      logical :: wrong(4)
-      integer :: i
-
-      valid = times_fit(data, step)
-      wrong = not_positive(data, step)
-      do i = 1, 4
-         if (wrong(i)) call deck%error(data%place(i), 'increments and periods must be positive')
-      end do
-      if (valid .or. any(wrong)) return
-      if (step%first_increment > step%period) then
-         call deck%error(data%place(1), 'the first increment is longer than the period; give a '// &
-            'shorter one')
-      else
-         call deck%error(data%place(3), 'the smallest increment is longer than the first; give '// &
-            'a shorter one')
-      end if
-   end subroutine check_times
 
 end module deck_builder_steps

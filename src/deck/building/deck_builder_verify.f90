@@ -1,9 +1,9 @@
 !> *VERIFY -> checks of the results, *ACCURACY -> targets of the errors.
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
-   use card_parameters, only: needed_choice, take_from
-   use card_values, only: need_field, read_row
-   use cards, only: data_card_type, keyword_card_type
+   use card_parameters, only: needed_choice, take_parameter
+   use card_values, only: read_field, read_row
+   use cards, only: data_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
    use deck_context, only: deck_type
@@ -25,12 +25,15 @@ module deck_builder_verify
 
 contains
 
-   !> Builds all checks.
+   !> Builds all checks: quantity, where, when, value, tolerance, REL|ABS.
    subroutine build_verifications(deck)
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: kind
       integer, allocatable :: places(:)
-      integer :: k, j, n
+      type(place_type) :: fields(2)
+      real(dp) :: values(6)
+      integer :: k, j, n, quantity
+      logical :: valid
 
       allocate(deck%model%verifications(data_count(deck%cards, cards_of(deck%cards, 'VERIFY'))))
       n = 0
@@ -40,9 +43,29 @@ contains
             kind = needed_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', deck)
             do j = 1, size(card%data)
                n = n + 1
-               deck%model%verifications(n)%kind = kind
-               deck%model%verifications(n)%source = card%text('SOURCE')
-               call build_check(card%data(j), deck, deck%model%verifications(n))
+               associate (data => card%data(j), check => deck%model%verifications(n))
+                  check%kind = kind
+                  check%source = card%text('SOURCE')
+                  check%line = data%end%image
+                  check%address = deck%source%address_of(data%end)
+                  check%quantity = ''
+                  check%where = data%text(2)
+                  fields = [data%place(1), data%place(2)]
+                  check%columns = fields%column
+                  call read_quantity(data, deck%verifiable, '', deck, quantity)
+                  if (quantity > 0) then
+                     check%quantity = trim(deck%verifiable(quantity)%name)
+                     call check_where(data, deck%verifiable(quantity)%kind, deck, check)
+                  end if
+                  if (deck%analyses_sound) call read_when(data, deck, check)
+                  call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', &
+                     deck, values, valid)
+                  check%value = values(4)
+                  check%tolerance = values(5)
+                  check%relative = is_relative(data, 6, deck)
+                  if (valid .and. check%relative .and. .not. abs(check%value) > 0.0_dp) call &
+                     deck%warning(data%place(4), 'relative to 0 only 0 itself passes; give ABS')
+               end associate
             end do
          end associate
       end do
@@ -71,42 +94,16 @@ contains
       end do
    end subroutine check_heat_quantities
 
-   !> quantity, where, when, value, tolerance, REL|ABS.
-   subroutine build_check(data, deck, check)
+   !> Whether a field is REL, which it is where it is missing, and not ABS.
+   logical function is_relative(data, i, deck)
       type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
       type(deck_type), intent(inout) :: deck
-      type(verify_type), intent(inout) :: check
-      type(place_type) :: places(2)
-      real(dp) :: values(6)
-      integer :: quantity
-      logical :: valid
 
-      check%line = data%end%image
-      check%address = deck%source%address_of(data%end)
-      check%quantity = ''
-      check%where = data%text(2)
-      places = [data%place(1), data%place(2)]
-      check%columns = places%column
-      call read_quantity(data, deck%verifiable, '', deck, quantity)
-      if (quantity > 0) then
-         check%quantity = trim(deck%verifiable(quantity)%name)
-         call check_where(data, deck%verifiable(quantity)%kind, deck, check)
-      end if
-      if (deck%analyses_sound) call read_when(data, deck, check)
-      call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', deck, values, &
-         valid)
-      check%value = values(4)
-      check%tolerance = values(5)
-      select case (to_upper(data%text(6)))
-      case ('ABS')
-         check%relative = .false.
-      case ('', 'REL')
-         if (valid .and. .not. abs(check%value) > 0.0_dp) call deck%warning(data%place(4), &
-            'relative to 0 only 0 itself passes; give ABS')
-      case default
-         call deck%error(data%place(6), ''''//data%text(6)//''' is neither REL nor ABS')
-      end select
-   end subroutine build_check
+      is_relative = any(to_upper(data%text(i)) == ['   ', 'REL'])
+      if (is_relative .or. to_upper(data%text(i)) == 'ABS') return
+      call deck%error(data%place(i), ''''//data%text(i)//''' is neither REL nor ABS')
+   end function is_relative
 
    !> The first field: index into known quantities, 0 after an error.
    subroutine read_quantity(data, known, refusal, deck, quantity)
@@ -122,7 +119,7 @@ contains
 
       valid = .true.
       quantity = 0
-      call need_field(data, 1, 'quantity', deck, name, valid)
+      call read_field(data, 1, 'quantity', deck, name, valid)
       if (.not. valid) return
       quantity = find_quantity(known, name)
       if (quantity > 0) return
@@ -144,25 +141,26 @@ contains
       integer, intent(in) :: kind
       type(deck_type), intent(inout) :: deck
       type(verify_type), intent(inout) :: check
+      character(:), allocatable :: lack
 
+      lack = ''
+      select case (kind)
+      case (of_interface, of_contact_points)
+         if (size(deck%model%contacts) == 0) lack = 'CONTACT PAIR'
+      case (of_sections)
+         if (.not. any(deck%model%couplings%is_section())) lack = 'PRE-TENSION SECTION'
+      case default
+         continue
+      end select
       if (kind == of_history) then
          if (data%has(2)) call deck%error(data%place(2), check%quantity//' has no location: '// &
             'leave this field empty')
+      else if (len(lack) > 0) then
+         call deck%missing(data%place(1), 'the deck has no *'//lack//': there is no '// &
+            check%quantity, merge('equation', '        ', kind == of_sections))
+      else if (any(to_upper(check%where) == ['MIN', 'MAX'])) then
          return
-      end if
-      if ((kind == of_interface .or. kind == of_contact_points) .and. size(deck%model%contacts) == &
-         0) then
-         call deck%missing(data%place(1), 'the deck has no *CONTACT PAIR: there is no '// &
-            check%quantity)
-         return
-      end if
-      if (kind == of_sections .and. .not. any(deck%model%couplings%is_section())) then
-         call deck%missing(data%place(1), 'the deck has no *PRE-TENSION SECTION: there is no '// &
-            check%quantity, 'equation')
-         return
-      end if
-      if (any(to_upper(check%where) == ['MIN', 'MAX'])) return
-      if (kind == of_nodes .or. kind == of_sections) then
+      else if (any(kind == [of_nodes, of_sections])) then
          call check_nodes(data, kind, deck)
       else if (kind == of_interface .and. check%where == '' .and. size(deck%model%contacts) == 1) &
          then
@@ -198,11 +196,9 @@ contains
       if (size(nodes) == 0 .and. kind == of_sections) then
          call deck%error(data%place(2), data%text(2)//' is not the reference node of a '// &
             '*PRE-TENSION SECTION')
-      else if (size(nodes) == 0 .and. .not. all(deck%element_valid)) then
-         return
       else if (size(nodes) == 0) then
-         call deck%missing(data%place(2), 'no element has a node of '//data%text(2)//': it has '// &
-            'no values', 'element')
+         if (all(deck%element_valid)) call deck%missing(data%place(2), 'no element has a node '// &
+            'of '//data%text(2)//': it has no values', 'element')
       else if (all(deck%dropped(nodes))) then
          call deck%error(data%place(2), 'ORDER=1 leaves no node of '//data%text(2)//', because '// &
             'none is a corner: it has no values')
@@ -220,19 +216,18 @@ contains
       logical :: valid
 
       valid = .true.
-      call need_field(data, 2, 'contact pair', deck, name, valid)
+      call read_field(data, 2, 'contact pair', deck, name, valid)
       if (.not. valid) return
-      at = index(name, '@')
-      if (at > 0) then
+      at = index(name//'@', '@')
+      if (at <= len(name)) then
          call read_real(trim(adjustl(name(at + 1:))), s, valid)
          if (valid) valid = s >= 0.0_dp
          if (kind /= of_contact_points .or. .not. valid) then
             call deck%error(data%place(2), ''''//name//''' is not a location of this quantity')
             return
          end if
-         name = trim(name(:at - 1))
       end if
-      call deck%look_up('contact pair', name, data%place(2), at)
+      call deck%look_up('contact pair', trim(name(:at - 1)), data%place(2), at)
    end subroutine check_interface
 
    !> A total time that an increment meets, or LAST.
@@ -247,7 +242,7 @@ contains
       check%at_last = to_upper(data%text(3)) == 'LAST'
       if (check%at_last) return
       valid = .true.
-      call need_field(data, 3, 'time or LAST', deck, check%when, valid)
+      call read_field(data, 3, 'time or LAST', deck, check%when, valid)
       if (.not. valid .or. size(deck%model%steps) == 0) return
       start = 0.0_dp
       do s = 1, size(deck%model%steps)
@@ -274,39 +269,33 @@ contains
    subroutine build_accuracy(estimated, deck)
       type(quantity_type), intent(in) :: estimated(:)      !! quantities whose errors are estimated
       type(deck_type), intent(inout) :: deck
-      integer :: k, j
+      integer, allocatable :: places(:)
+      integer :: k, j, why
 
-      do k = 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            if (card%name /= 'ACCURACY') cycle
-            if (.not. allocated(deck%model%accuracy%targets)) then
+      places = cards_of(deck%cards, 'ACCURACY')
+      do k = 1, size(places)
+         associate (card => deck%cards%keywords(places(k)))
+            if (k == 1) then
                allocate (deck%model%accuracy%targets(0))
-               call check_deck(card, deck)
+               why = reason_of_deck(deck%model)
+               if (size(deck%model%contacts) == 0) call deck%missing(card%place, 'the deck has '// &
+                  'no *CONTACT PAIR: there is no quantity that *ACCURACY could name')
+               if (why /= no_reason) then
+                  call deck%error(card%place, '*ACCURACY needs bounds of errors, which do not '// &
+                     'know '//words_of_reason(why)//'; refine by *REFINE and, where heat is '// &
+                     'stored, LOCAL ERROR=')
+               else if (.not. deck%model%estimates_errors) then
+                  call deck%error(card%place, '*ACCURACY needs estimated errors; leave '// &
+                     'ERRORS=NO out of *OPTIONS')
+               end if
             end if
-            call take_from(1, card, 'ROUNDS', deck, deck%model%accuracy%rounds)
+            call take_parameter(card, 'ROUNDS', deck, deck%model%accuracy%rounds, '>=1')
             do j = 1, size(card%data)
                call build_target(card%data(j), estimated, deck)
             end do
          end associate
       end do
    end subroutine build_accuracy
-
-   !> The targets need an interface and estimates.
-   subroutine check_deck(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-
-      if (size(deck%model%contacts) == 0) call deck%missing(card%place, 'the deck has no '// &
-         '*CONTACT PAIR: there is no quantity that *ACCURACY could name')
-      if (reason_of_deck(deck%model) /= no_reason) then
-         call deck%error(card%place, '*ACCURACY needs bounds of errors, which do not know '// &
-            words_of_reason(reason_of_deck(deck%model))//'; refine by *REFINE and, where heat '// &
-            'is stored, LOCAL ERROR=')
-         return
-      end if
-      if (.not. deck%model%estimates_errors) call deck%error(card%place, '*ACCURACY needs '// &
-         'estimated errors; leave ERRORS=NO out of *OPTIONS')
-   end subroutine check_deck
 
    !> quantity, target, REL|ABS, interface.
    subroutine build_target(data, estimated, deck)
@@ -324,16 +313,9 @@ contains
       if (i > 0) target%quantity = trim(estimated(i)%name)
       call read_row(data, '@quantity/target >0/@REL or ABS/@contact pair', deck, values, valid)
       target%bound = values(2)
-      select case (to_upper(data%text(3)))
-      case ('ABS')
-         target%is_relative = .false.
-      case ('', 'REL')
-         target%is_relative = .true.
-         if (target%bound >= 1.0_dp) call deck%error(data%place(2), 'a target relative to the '// &
-            'value must be below 1; 0.01 is 1 %')
-      case default
-         call deck%error(data%place(3), ''''//data%text(3)//''' is neither REL nor ABS')
-      end select
+      target%is_relative = is_relative(data, 3, deck)
+      if (target%is_relative .and. target%bound >= 1.0_dp) call deck%error(data%place(2), 'a '// &
+         'target relative to the value must be below 1; 0.01 is 1 %')
       target%interface = 0
       if (data%has(4) .and. size(deck%model%contacts) > 0) then
          call deck%look_up('contact pair', data%text(4), data%place(4), target%interface)

@@ -2,7 +2,6 @@
 !> whether the deck uses all that it defines, for whole steps; what it does not may be a slip.
 module deck_checks
    use amplitudes, only: amplitude_type, amplitude_value
-   use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use elasticity, only: equivalent_poisson
@@ -12,7 +11,6 @@ module deck_checks
    use load_requests, only: request_list_type
    use mesh_checks, only: check_jacobians, check_planes, check_sides, check_slenderness
    use model, only: model_type
-   use name_index, only: name_index_type
    use refinement, only: numbering_fault
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text, to_upper
@@ -37,14 +35,19 @@ contains
    !> Checks the model before it is refined.
    subroutine check_model(deck)
       type(deck_type), intent(inout) :: deck
-      integer :: uses(4, size(deck%mesh%element_number))
+      integer :: uses(4, size(deck%mesh%element_number)), e, without
       logical :: inverted(size(deck%mesh%element_number))
       character(:), allocatable :: fault
 
       ! The mesh once it is refined.
       fault = numbering_fault(deck%mesh, size(deck%mesh%element_number)*4_long**deck%levels)
       if (len(fault) > 0) call deck%error(deck%levels_place, fault)
-      call check_sections(deck)
+      e = findloc(deck%mesh%element_section, 0, dim=1)
+      without = count(deck%mesh%element_section == 0)
+      if (size(deck%model%sections) > 0 .and. without > 0 .and. deck%sections_sound .and. .not. &
+         deck%has_lost('set')) call deck%error(deck%element_place(e), 'no *SOLID SECTION for '// &
+         'element '//to_text(deck%mesh%element_number(e))//'; elements without one: '//to_text( &
+         without))
       call check_materials(deck)
       call check_planes(deck)
       call check_orientations(deck)
@@ -53,19 +56,6 @@ contains
       call check_sides(deck, inverted, uses)
       call check_loads(deck, uses)
    end subroutine check_model
-
-   !> Every element has a section.
-   subroutine check_sections(deck)
-      type(deck_type), intent(inout) :: deck
-      integer :: without, e
-
-      without = count(deck%mesh%element_section == 0)
-      if (size(deck%model%sections) == 0 .or. without == 0) return
-      if (.not. (deck%sections_sound .and. deck%sets_sound)) return
-      e = findloc(deck%mesh%element_section, 0, dim=1)
-      call deck%error(deck%element_place(e), 'no *SOLID SECTION for element '// &
-         to_text(deck%mesh%element_number(e))//'; elements without one: '//to_text(without))
-   end subroutine check_sections
 
    !> Every material in use has what the steps need.
    subroutine check_materials(deck)
@@ -147,87 +137,39 @@ contains
       type(deck_type), intent(inout) :: deck
       logical :: told(size(deck%model%amplitudes))
 
-      call check_names('MATERIAL', 'material', deck)
-      call check_names('SURFACE INTERACTION', 'surface interaction', deck)
-      call check_names('SURFACE', 'surface', deck)
-      call check_names('AMPLITUDE', 'amplitude', deck)
+      call check_names('material', deck)
+      call check_names('surface interaction', deck)
+      call check_names('surface', deck)
+      call check_names('amplitude', deck)
       told = .false.
       call check_amplitudes(deck%boundaries, told, deck)
       call check_amplitudes(deck%loads, told, deck)
    end subroutine check_usage
 
-   !> Warns once of the cards of a keyword whose names no card refers to. A library that a deck
-   !> includes may well have more materials, interactions and amplitudes than it needs; a surface
-   !> without use may be a pair that was forgotten.
-   subroutine check_names(keyword, noun, deck)
-      character(*), intent(in) :: keyword, noun
+   !> Warns once of the items of a noun that no card refers to. A library that a deck includes may
+   !> well have more materials, interactions and amplitudes than it needs; a surface without use may
+   !> be a pair that was forgotten.
+   subroutine check_names(noun, deck)
+      character(*), intent(in) :: noun
       type(deck_type), intent(inout) :: deck
-      type(name_index_type) :: used
-      character(:), allocatable :: name, names
-      integer :: count, first, k
-      logical :: from_library
+      character(:), allocatable :: names
+      integer, allocatable :: places(:)
+      integer :: i, n
 
-      do k = 1, size(deck%cards%keywords)
-         call add_references(deck%cards%keywords(k), keyword, used)
-      end do
-      from_library = keyword /= 'SURFACE'
+      places = cards_of(deck%cards, to_upper(noun))
+      places = places(deck%unused(noun, size(places)))
+      if (noun /= 'surface') places = pack(places, &
+         deck%source%file(deck%cards%keywords(places)%place%image) == 1)
+      n = size(places)
+      if (n == 0) return
       names = ''
-      count = 0
-      do k = 1, size(deck%cards%keywords)
-         if (deck%cards%keywords(k)%name /= keyword) cycle
-         if (from_library .and. deck%source%file(deck%cards%keywords(k)%place%image) > 1) cycle
-         name = to_upper(deck%cards%keywords(k)%text('NAME'))
-         if (used%find(name) > 0) cycle
-         count = count + 1
-         if (count == 1) first = k
-         if (count <= most_names) names = names//', '//name
+      do i = 1, min(n, most_names)
+         names = names//', '//to_upper(deck%cards%keywords(places(i))%text('NAME'))
       end do
-      if (count == 0) return
-      if (count > most_names) names = names//' and '//to_text(count - most_names)//' more'
-      call deck%warning(deck%cards%keywords(first)%place, 'nothing uses the '//noun// &
-         trim(merge(' ', 's', count == 1))//names(2:))
+      if (n > most_names) names = names//' and '//to_text(n - most_names)//' more'
+      call deck%warning(deck%cards%keywords(places(1))%place, 'nothing uses the '//noun// &
+         trim(merge(' ', 's', n == 1))//names(2:))
    end subroutine check_names
-
-   !> Adds the names that a card refers to, of those that a keyword defines.
-   pure subroutine add_references(card, keyword, names)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: keyword
-      type(name_index_type), intent(inout) :: names
-      integer :: fields, i, j
-
-      fields = 0
-      select case (keyword)
-      case ('MATERIAL')
-         call add_once(names, card%text('MATERIAL'))
-      case ('SURFACE INTERACTION')
-         call add_once(names, card%text('INTERACTION'))
-      case ('AMPLITUDE')
-         if (card%name == 'STEP') return
-         call add_once(names, card%text('AMPLITUDE'))
-         call add_once(names, card%text('FILM AMPLITUDE'))
-      case default
-         select case (card%name)
-         case ('CONTACT PAIR', 'TIE')
-            fields = 2
-         case ('DLOAD', 'DSLOAD', 'DFLUX', 'DSFLUX', 'FILM', 'SFILM')
-            fields = 1
-         case default
-            call add_once(names, card%text('SURFACE'))
-         end select
-      end select
-      do j = 1, size(card%data)
-         do i = 1, fields
-            call add_once(names, card%data(j)%text(i))
-         end do
-      end do
-   end subroutine add_references
-
-   pure subroutine add_once(names, name)
-      type(name_index_type), intent(inout) :: names
-      character(*), intent(in) :: name
-
-      if (names%find(name) == 0) call names%add(name)
-   end subroutine add_once
 
    !> Warns of amplitudes that end long before the step in which a request begins to follow them,
    !> begin after it, or have peaks within fixed increments.
@@ -237,7 +179,7 @@ contains
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
       integer, allocatable :: cards(:)
-      real(dp) :: start, last
+      real(dp) :: ends(2), start, last
       integer :: a, i, s
 
       cards = cards_of(deck%cards, 'AMPLITUDE')
@@ -251,8 +193,11 @@ contains
          associate (curve => deck%model%amplitudes(a), period => deck%model%steps(s)%period)
             message = ''
             last = curve%times(size(curve%times))
-            if (is_idle(curve, start, merge(sum(deck%model%steps(s:)%period), period, &
-               curve%total_time))) then
+            ends = start + [0.0_dp, merge(sum(deck%model%steps(s:)%period), period, &
+               curve%total_time)]
+            if (.not. is_level(curve) .and. abs(amplitude_value(curve, ends(1))) + &
+               abs(amplitude_value(curve, ends(2))) + sum(abs(curve%values), mask=curve%times > &
+               ends(1) .and. curve%times < ends(2)) <= 0.0_dp) then
                message = 'amplitude '//curve%name//' is 0 throughout step '//to_text(s)// &
                   ', which begins to use it'
                if (.not. curve%total_time) message = message//'; without TIME=TOTAL TIME its '// &
@@ -305,16 +250,6 @@ contains
          end associate
       end do
    end function missed_peak
-
-   !> Whether an amplitude that is not always 0 is so over an interval.
-   pure logical function is_idle(curve, start, length)
-      type(amplitude_type), intent(in) :: curve
-      real(dp), intent(in) :: start, length
-
-      is_idle = .not. is_level(curve) .and. abs(amplitude_value(curve, start)) + &
-         abs(amplitude_value(curve, start + length)) + sum(abs(curve%values), &
-         mask=curve%times > start .and. curve%times < start + length) <= 0.0_dp
-   end function is_idle
 
    !> Whether an amplitude is the same everywhere, so that it does not matter where it ends.
    pure logical function is_level(curve)

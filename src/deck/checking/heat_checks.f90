@@ -9,8 +9,7 @@ module heat_checks
    use load_requests, only: request_type
    use materials, only: follows_temperature, of_expansion
    use model, only: model_type
-   use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat, &
-      solves_mechanics
+   use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat, solves_mechanics
    use text, only: counted, to_text
    implicit none
    private

@@ -46,7 +46,16 @@ contains
                call check_density(request, 'GRAV', deck)
             case (load_centrifugal)
                call check_density(request, 'CENTRIF', deck)
-               call check_axis(request, deck)
+               ! A body of revolution turns round its axis, and a plane round an axis along z.
+               associate (rings => deck%mesh%element_plane(request%members( &
+                  deck%mesh%element_sets)) == axisymmetric)
+                  if (request%component == centrifugal_round .and. .not. all(rings)) call &
+                     deck%error(request%place, 'plane elements turn round an axis along z: '// &
+                     'point x, y, 0, direction 0, 0, 1')
+                  if (request%component /= centrifugal_round .and. any(rings)) call &
+                     deck%error(request%place, 'axisymmetric elements turn round the y axis: '// &
+                     'point 0, 0, 0, direction 0, 1, 0')
+               end associate
             case (load_temperature)
                if (deck%analyses_sound .and. deck%model%steps(request%step)%analysis /= &
                   analysis_static) call deck%error(request%place, 'the step solves for '// &
@@ -56,7 +65,17 @@ contains
             case default
                continue
             end select
-            if (deck%analyses_sound) call check_effect(request, deck)
+            if (.not. deck%analyses_sound) cycle
+            associate (analyses => deck%model%steps(request%step:)%analysis)
+               if (is_heat(request%kind) .and. .not. any(solves_heat(analyses))) then
+                  call deck%warning(request%place, 'a heat load without effect: no step from '// &
+                     'here on solves heat')
+               else if (request%kind /= load_temperature .and. .not. (is_heat(request%kind) .or. &
+                  any(solves_mechanics(analyses)))) then
+                  call deck%warning(request%place, 'a load without effect: no step from here '// &
+                     'on solves mechanics')
+               end if
+            end associate
          end associate
       end do
       call check_boundaries(deck, used)
@@ -128,38 +147,6 @@ contains
       end do
    end subroutine check_density
 
-   !> CENTRIF turns a body of revolution round its axis, and a plane round an axis along z.
-   subroutine check_axis(request, deck)
-      type(request_type), intent(in) :: request
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: planes(:)
-
-      planes = deck%mesh%element_plane(request%members(deck%mesh%element_sets))
-      if (request%component == centrifugal_round) then
-         if (any(planes /= axisymmetric)) call deck%error(request%place, 'plane elements turn '// &
-            'round an axis along z: point x, y, 0, direction 0, 0, 1')
-      else if (any(planes == axisymmetric)) then
-         call deck%error(request%place, 'axisymmetric elements turn round the y axis: point 0, '// &
-            '0, 0, direction 0, 1, 0')
-      end if
-   end subroutine check_axis
-
-   !> Warns of what comes after the last step that solves for what it loads.
-   subroutine check_effect(request, deck)
-      type(request_type), intent(in) :: request
-      type(deck_type), intent(inout) :: deck
-
-      associate (analyses => deck%model%steps(request%step:)%analysis)
-         if (is_heat(request%kind)) then
-            if (.not. any(solves_heat(analyses))) call deck%warning(request%place, 'a heat '// &
-               'load without effect: no step from here on solves heat')
-         else if (request%kind /= load_temperature) then
-            if (.not. any(solves_mechanics(analyses))) call deck%warning(request%place, &
-               'a load without effect: no step from here on solves mechanics')
-         end if
-      end associate
-   end subroutine check_effect
-
    !> Warns of loads on sides between two elements.
    subroutine check_faces(request, uses, deck)
       type(request_type), intent(in) :: request
@@ -188,7 +175,20 @@ contains
       card = 0
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            if (deck%analyses_sound) call check_support_effect(request, deck)
+            associate (analyses => deck%model%steps(max(1, request%step):)%analysis)
+               if (.not. deck%analyses_sound) then
+                  continue
+               else if (request%component == dof_temperature) then
+                  if (.not. (any(solves_heat(analyses)) .or. deck%has_lost('heat'))) call &
+                     deck%warning(request%place, 'a temperature without effect: no step from '// &
+                     'here on solves heat; take *COUPLED TEMPERATURE-DISPLACEMENT', &
+                     'temperature without effect')
+               else if (abs(request%value) > 0.0_dp .and. .not. any(solves_mechanics( &
+                  analyses))) then   ! supports of 0 do no harm
+                  call deck%warning(request%place, 'a displacement without effect: no step '// &
+                     'from here on solves mechanics')
+               end if
+            end associate
             if (request%card == card) cycle
             card = request%card
             ! As CalculiX does.
@@ -204,24 +204,6 @@ contains
          call check_conflicts(deck, i)
       end do
    end subroutine check_boundaries
-
-   !> Warns of values that come after the last step that solves for what they prescribe. Supports of
-   !> 0 do no harm.
-   subroutine check_support_effect(request, deck)
-      type(request_type), intent(in) :: request
-      type(deck_type), intent(inout) :: deck
-
-      associate (analyses => deck%model%steps(max(1, request%step):)%analysis)
-         if (request%component == dof_temperature) then
-            if (.not. (any(solves_heat(analyses)) .or. deck%has_lost('heat'))) call deck%warning( &
-               request%place, 'a temperature without effect: no step from here on solves heat; '// &
-               'take *COUPLED TEMPERATURE-DISPLACEMENT', 'temperature without effect')
-         else if (abs(request%value) > 0.0_dp) then
-            if (.not. any(solves_mechanics(analyses))) call deck%warning(request%place, &
-               'a displacement without effect: no step from here on solves mechanics')
-         end if
-      end associate
-   end subroutine check_support_effect
 
    !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
    subroutine check_dropped(deck)

@@ -7,7 +7,8 @@
 module mesh_checks
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric, element_corner_count, element_node_count, linear_kind, &
-      plane_strain, side_node_count, side_nodes
+      plane_strain, side_node_count
+   use element_sides, only: side_ends
    use kinds, only: dp
    use mesh, only: mesh_type
    use quadrature, only: integration_rule, most_points, point_count
@@ -79,9 +80,19 @@ contains
       integer, intent(out) :: uses(:, :)
       type(element_side_type) :: sides(4*size(deck%mesh%element_number))
       integer, allocatable :: order(:)
-      integer :: first, last, n
+      integer :: e, f, first, last, n
 
-      call list_sides(deck%element_valid .and. .not. inverted, deck%mesh, sides, n)
+      n = 0
+      do e = 1, size(inverted)
+         if (inverted(e) .or. .not. deck%element_valid(e)) cycle
+         do f = 1, element_corner_count(deck%mesh%element_kind(e))
+            n = n + 1
+            associate (ends => side_ends(deck%mesh, e, f))
+               sides(n) = element_side_type(e, f, min(ends(1), ends(3)), max(ends(1), ends(3)), &
+                  ends(2))
+            end associate
+         end do
+      end do
       order = sort_order(sides(:n)%high)
       order = order(sort_order(sides(order)%low))
       uses = 0
@@ -99,29 +110,6 @@ contains
       call check_middles(deck, sides(:n))
       call check_faces(deck, uses)
    end subroutine check_sides
-
-   !> The sides of sound elements, in the order of the elements.
-   pure subroutine list_sides(sound, mesh, sides, n)
-      logical, intent(in) :: sound(:)   !! (elements)
-      type(mesh_type), intent(in) :: mesh
-      type(element_side_type), intent(inout) :: sides(:)
-      integer, intent(out) :: n
-      integer :: e, f, nodes(3)
-
-      n = 0
-      do e = 1, size(mesh%element_number)
-         if (.not. sound(e)) cycle
-         associate (kind => mesh%element_kind(e))
-            do f = 1, element_corner_count(kind)
-               n = n + 1
-               nodes(:side_node_count(kind)) = mesh%element_nodes(side_nodes(kind, f), e)
-               sides(n) = element_side_type(e, f, minval(nodes([1, side_node_count(kind)])), &
-                  maxval(nodes([1, side_node_count(kind)])), 0)
-               if (side_node_count(kind) == 3) sides(n)%middle = nodes(2)
-            end do
-         end associate
-      end do
-   end subroutine list_sides
 
    !> Checks the elements that meet between two corners.
    subroutine check_meeting(deck, sides, uses)

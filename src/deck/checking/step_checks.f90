@@ -117,21 +117,19 @@ contains
       character(:), allocatable :: words
       real(dp) :: first
 
-      words = ''
       first = step%first_increment/step%period
+      words = 'the branch begins with the first increment, at load factor '//to_text(first)//', '
       associate (range => step%continuation%range)
          if (first < range(1) .or. first > range(2)) then
-            words = 'the branch begins with the first increment, at load factor '// &
-               to_text(first)//', outside its range from '//to_text(range(1))//' to '// &
-               to_text(range(2))
+            words = words//'outside its range from '//to_text(range(1))//' to '//to_text(range(2))
          else if (step%continuation%rises .and. first >= range(2)) then
-            words = 'the branch begins with the first increment, at load factor '// &
-               to_text(first)//', the end of its range; give a shorter first increment, a '// &
-               'higher HIGHEST= or DIRECTION=DOWN'
+            words = words//'the end of its range; give a shorter first increment, a higher '// &
+               'HIGHEST= or DIRECTION=DOWN'
          else if (.not. step%continuation%rises .and. first <= range(1)) then
-            words = 'the branch begins with the first increment, at load factor '// &
-               to_text(first)//', the end of its range; give a longer first increment, a lower '// &
+            words = words//'the end of its range; give a longer first increment, a lower '// &
                'LOWEST= or DIRECTION=UP'
+         else
+            words = ''
          end if
       end associate
    end function obstacle_of_start

@@ -34,8 +34,6 @@ module touch_checks
       integer :: partner = 0   !! node of the side at the same place, or 0
    end type touch_type
 
-   integer, parameter :: face_hangs = 1, face_meets = 2   !! kinds of touches
-
 contains
 
    !> Warns of faces that touch and are not related, once for two bodies, for the seams of a body
@@ -44,16 +42,34 @@ contains
       type(deck_type), intent(inout) :: deck
       type(element_sides_type) :: sides
       type(touch_type), allocatable :: touches(:)
-      integer, allocatable :: order(:), key(:, :)         ! (3, touches) as keys_of
-      integer :: first, k, last
+      !> (2, touches) touches share a message: hanging nodes, 0, or faces of the same two bodies
+      integer, allocatable :: key(:, :)
+      integer, allocatable :: order(:)
+      logical, allocatable :: shared(:, :)                ! (2, sides)
+      integer :: bodies(2), first, i, k, last
 
       sides = find_sides(deck%mesh)
       call find_touches(deck%mesh, sides, touches)
       if (size(touches) == 0) return
       call drop_related(deck%model, sides, touches)
-      key = keys_of(deck%mesh, sides, touches)
+      ! Nodes hang on a side if both its corners are nodes of the sides that lie on it.
+      allocate (shared(2, sides%count), source=.false.)
+      do i = 1, size(touches)
+         associate (touch => touches(i))
+            do k = 1, 2
+               shared(k, touch%side) = shared(k, touch%side) .or. &
+                  any(sides%ends(:, touch%other) == sides%ends(2*k - 1, touch%side))
+            end do
+         end associate
+      end do
+      allocate (key(2, size(touches)), source=0)
+      do i = 1, size(touches)
+         if (all(shared(:, touches(i)%side))) cycle
+         bodies = deck%mesh%element_body(sides%elements(1, [touches(i)%side, touches(i)%other]))
+         key(:, i) = [minval(bodies), maxval(bodies)]
+      end do
       order = sort_order(touches%node)
-      do k = 1, 3
+      do k = 1, 2
          order = order(sort_order(key(k, order)))
       end do
       first = 1
@@ -172,44 +188,12 @@ contains
       end function is_paired
    end subroutine drop_related
 
-   !> Keys by which touches share a message: hanging nodes, or two faces of the same bodies. Nodes
-   !> hang on a side if both its corners are nodes of the sides that lie on it.
-   function keys_of(mesh, sides, touches) result(key)
-      type(mesh_type), intent(in) :: mesh
-      type(element_sides_type), intent(in) :: sides
-      type(touch_type), intent(in) :: touches(:)
-      integer, allocatable :: key(:, :)                   ! (3, touches) two bodies, kind
-      logical :: shared(2, sides%count)
-      integer :: bodies(2), i, k
-
-      shared = .false.
-      do i = 1, size(touches)
-         associate (touch => touches(i))
-            do k = 1, 2
-               shared(k, touch%side) = shared(k, touch%side) .or. &
-                  any(sides%ends(:, touch%other) == sides%ends(2*k - 1, touch%side))
-            end do
-         end associate
-      end do
-      allocate (key(3, size(touches)))
-      do i = 1, size(touches)
-         associate (touch => touches(i))
-            if (all(shared(:, touch%side))) then
-               key(:, i) = [0, 0, face_hangs]
-            else
-               bodies = mesh%element_body(sides%elements(1, [touch%side, touch%other]))
-               key(:, i) = [minval(bodies), maxval(bodies), face_meets]
-            end if
-         end associate
-      end do
-   end function keys_of
-
    !> Warns of the touches of one key.
    subroutine warn(deck, sides, touches, key)
       type(deck_type), intent(inout) :: deck
       type(element_sides_type), intent(in) :: sides
       type(touch_type), intent(in) :: touches(:)          ! by their nodes
-      integer, intent(in) :: key(3)
+      integer, intent(in) :: key(2)
       character(:), allocatable :: message, node, place
       integer :: before, i, places
 
@@ -224,7 +208,7 @@ contains
       node = to_text(deck%mesh%node_number(touches(1)%node))
       associate (x => deck%mesh%coordinates(:, touches(1)%node))
          place = to_text(x(1))//', '//to_text(x(2))
-         if (key(3) == face_hangs) then
+         if (key(1) == 0) then
             message = 'node '//node//' at '//place//' hangs: it lies on '//side_words(deck%mesh, &
                sides, touches(1)%side)//' and is no node of it, so that the fields on both '// &
                'sides differ; let elements meet along whole sides, or give the two parts nodes '// &
@@ -237,12 +221,9 @@ contains
                place = 'node '//node//' at '//place//' on '//side_words(deck%mesh, sides, &
                   touches(1)%side)
             end if
-            message = body_name(deck%model, key(1))
-            if (key(1) == key(2)) then
-               message = message//' is cut along a seam: its faces touch at '
-            else
-               message = message//' and '//body_name(deck%model, key(2))//' touch at '
-            end if
+            message = body_name(deck%model, key(1))//' is cut along a seam: its faces touch at '
+            if (key(1) /= key(2)) message = body_name(deck%model, key(1))//' and '// &
+               body_name(deck%model, key(2))//' touch at '
             message = message//counted(places, 'place')//', first '//place//', but no '// &
                '*CONTACT PAIR, *TIE, *EQUATION or *COUPLING relates them, so that they pass '// &
                'through each other and exchange no heat; pair or tie these faces, or let them '// &

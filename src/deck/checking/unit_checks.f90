@@ -56,7 +56,7 @@ contains
    !> zero.
    subroutine check_units(deck)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: degree, metre, pascal, watt
+      real(dp) :: constant, degree, metre, pascal, watt
       integer :: k, m
 
       degree = size_of(scale_label(deck%model%units%temperature), temperatures)
@@ -68,8 +68,16 @@ contains
          select case (deck%cards%keywords(k)%name)
          case ('PHYSICAL CONSTANTS')
             call check_zero(deck%cards%keywords(k), deck)
-            if (min(degree, metre) > 0.0_dp) call check_boltzmann(deck%cards%keywords(k), &
-               watt/(metre**2*degree**4), deck)
+            if (min(degree, metre, watt) <= 0.0_dp .or. &
+               .not. deck%cards%keywords(k)%has('STEFAN BOLTZMANN')) cycle
+            constant = stefan_boltzmann*metre**2*degree**4/watt
+            associate (given => deck%model%constants%stefan_boltzmann, units => deck%model%units)
+               if (abs(given - constant) <= other_digits*constant) cycle
+               call deck%warning(deck%cards%keywords(k)%place_of('STEFAN BOLTZMANN'), 'the '// &
+                  'constant of Stefan and Boltzmann is '//to_text(given)//', but '// &
+                  to_text(constant)//' in the units of *OPTIONS, UNITS=, '//units%power//'/('// &
+                  units%length//'^2 '//units%temperature//'^4); give that, or correct UNITS=')
+            end associate
          case ('MATERIAL')
             m = m + 1
          case ('ELASTIC')
@@ -141,23 +149,6 @@ contains
       end associate
       call deck%warning(card%place_of('ABSOLUTE ZERO'), message)
    end subroutine check_zero
-
-   subroutine check_boltzmann(card, unit, deck)
-      type(keyword_card_type), intent(in) :: card
-      real(dp), intent(in) :: unit                        ! [W/(m^2 K^4)], 0 where not known
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: constant
-
-      if (.not. card%has('STEFAN BOLTZMANN') .or. unit <= 0.0_dp) return
-      constant = stefan_boltzmann/unit
-      associate (given => deck%model%constants%stefan_boltzmann, units => deck%model%units)
-         if (abs(given - constant) <= other_digits*constant) return
-         call deck%warning(card%place_of('STEFAN BOLTZMANN'), 'the constant of Stefan and '// &
-            'Boltzmann is '//to_text(given)//', but '//to_text(constant)//' in the units of '// &
-            '*OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '//units%temperature// &
-            '^4); give that, or correct UNITS=')
-      end associate
-   end subroutine check_boltzmann
 
    !> Size of a unit, 0 where the label is not known.
    pure real(dp) function size_of(label, units)

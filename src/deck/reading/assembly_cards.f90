@@ -5,12 +5,12 @@
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
    use card_parameters, only: chosen, need_parameter, surface_kinds
-   use card_values, only: read_row
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
       keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
    use given_cards, only: exact_text
    use kinds, only: dp, long
+   use plane_motions, only: motion_type, read_motion
    use spelling, only: nearest_known
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none
@@ -23,15 +23,10 @@ module assembly_cards
    character(*), parameter :: structures(3) = [character(8) :: 'PART', 'ASSEMBLY', 'INSTANCE']
    integer, parameter :: outside(3) = [at_model, at_model, at_assembly]
 
-   real(dp), parameter :: degree = acos(-1.0_dp)/180
-   real(dp), parameter :: negligible = 1.0e-9_dp   !! part of a direction or distance
-
    !> Where the cards of a part come to be.
-   type :: instance_type
+   type, extends(motion_type) :: instance_type
       character(:), allocatable :: name       !! in upper case; empty for the assembly itself
       integer :: offset = 0                   !! what is added to numbers of nodes and elements
-      real(dp) :: turn(2, 2) = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2]) !! rotation
-      real(dp) :: shift(2) = 0.0_dp           !! displacement after it [length]
       logical :: moves = .false.              !! whether coordinates change
    end type instance_type
 
@@ -201,7 +196,8 @@ contains
          if (open%instances(i)%name == instance%name) call report%error(card%place_of('NAME'), &
             'instance '//instance%name//' is defined twice')
       end do
-      call read_motion(card, report, instance)
+      call read_motion(card%data, 1, report, instance%motion_type)
+      instance%moves = size(card%data) > 0
       open%instances = [open%instances, instance]
       if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name// &
          ': numbers of its nodes and elements are those of the part plus '// &
@@ -227,12 +223,27 @@ contains
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
       type(instance_type) :: owner
+      type(string_type), allocatable :: names(:)
       integer :: first, i, k
 
       first = all%keyword_count + 1
       owner%name = ''
       if (open%level == at_assembly) owner = open%assembly
-      if (card%has('INSTANCE')) call find_owner(card, open, report, owner)
+      if (card%has('INSTANCE')) then
+         owner%name = to_upper(card%text('INSTANCE'))
+         owner%offset = 0
+         allocate (names(0))
+         do i = 1, size(open%instances)
+            call append(names, open%instances(i)%name)
+            if (open%instances(i)%name == owner%name) exit
+         end do
+         if (i <= size(open%instances)) then
+            owner = open%instances(i)
+         else
+            call report%missing(card%place_of('INSTANCE'), 'unknown instance '//owner%name// &
+               nearest_known(owner%name, names), 'instance', owner%name)
+         end if
+      end if
       call copy_card(card, owner, all)
       associate (copy => all%keywords(first))
          do k = 1, size(copy%parameters)
@@ -251,69 +262,6 @@ contains
       end associate
    end subroutine take_flat
 
-   !> The instance that INSTANCE= of a set names.
-   subroutine find_owner(card, open, report, owner)
-      type(keyword_card_type), intent(in) :: card
-      type(reading_type), intent(in) :: open
-      type(deck_report_type), intent(inout) :: report
-      type(instance_type), intent(out) :: owner
-      type(string_type), allocatable :: names(:)
-      integer :: i
-
-      owner%name = to_upper(card%text('INSTANCE'))
-      allocate (names(0))
-      do i = 1, size(open%instances)
-         call append(names, open%instances(i)%name)
-         if (open%instances(i)%name /= owner%name) cycle
-         owner = open%instances(i)
-         return
-      end do
-      call report%missing(card%place_of('INSTANCE'), 'unknown instance '//owner%name// &
-         nearest_known(owner%name, names), 'instance', owner%name)
-   end subroutine find_owner
-
-   !> Translation; axis and angle of a rotation that follows it. Both stay in the plane.
-   subroutine read_motion(card, report, instance)
-      type(keyword_card_type), intent(in) :: card           !! *INSTANCE
-      type(deck_report_type), intent(inout) :: report       !! receives errors
-      type(instance_type), intent(inout) :: instance        !! receives its motion
-      real(dp) :: x(7, 2)
-      integer :: n
-      logical :: sound, valid
-
-      valid = .true.
-      sound = .true.
-      n = size(card%data)
-      if (n > 2) then
-         call report%error(card%data(3)%place(1), '*INSTANCE has a translation and a rotation, '// &
-            'two data cards')
-         return
-      end if
-      if (n > 0) call read_row(card%data(1), 'translation along x?/translation along '// &
-         'y?/translation along z?', report, x(:3, 1), valid)
-      if (n > 1) call read_row(card%data(2), 'x of point 1 of the axis?/y of point 1?/'// &
-         'z of point 1?/x of point 2 of the axis?/y of point 2?/z of point 2?/angle in degrees?', &
-         report, x(:, 2), sound)
-      valid = valid .and. sound
-      instance%moves = n > 0
-      if (.not. valid .or. n == 0) return
-      instance%shift = x(:2, 1)
-      if (abs(x(3, 1)) > negligible*maxval(abs(x(:3, 1)))) call report%error( &
-         card%data(1)%place(3), 'an instance stays in the plane: its translation along z must be 0')
-      if (n == 1) return
-      associate (axis => x(4:6, 2) - x(1:3, 2), data => card%data(2))
-         if (norm2(axis(:2)) > negligible*norm2(axis) .or. norm2(axis) <= 0.0_dp) then
-            call report%error(data%place(1), 'an instance stays in the plane: it turns round '// &
-               'an axis along z, such as 0., 0., 0., 0., 0., 1., 90.')
-            return
-         end if
-         associate (c => cos(x(7, 2)*degree), s => sign(1.0_dp, axis(3))*sin(x(7, 2)*degree))
-            instance%turn = reshape([c, s, -s, c], [2, 2])
-         end associate
-      end associate
-      instance%shift = x(:2, 2) + matmul(instance%turn, instance%shift - x(:2, 2))
-   end subroutine read_motion
-
    !> Adds a card of a part for an instance. Errors that the copy has are reported where the card
    !> of the part is.
    subroutine copy_card(card, instance, all)
@@ -326,8 +274,16 @@ contains
 
       copy = card
       do i = 1, size(copy%parameters)
-         if (.not. is_name(card%name, copy%parameters(i)%name)) cycle
-         call prefix(instance, copy%parameters(i)%text)
+         select case (copy%parameters(i)%name)   ! names of what the part has for itself
+         case ('NSET', 'ELSET', 'SURFACE', 'ORIENTATION', 'REF NODE', 'NODE', 'ROT NODE', &
+            'TIE NSET', 'PIN NSET', 'ANALYTICAL SURFACE')
+            call prefix(instance, copy%parameters(i)%text)
+         case ('NAME')
+            if (any(card%name == [character(11) :: 'SURFACE', 'ORIENTATION'])) call &
+               prefix(instance, copy%parameters(i)%text)
+         case default
+            continue
+         end select
       end do
       call add_keyword(all, copy)
       do j = 1, size(card%data)
@@ -336,21 +292,6 @@ contains
          call add_data(all, fields, card%data(j)%end)
       end do
    end subroutine copy_card
-
-   !> Whether the value of a parameter is the name of something that the part has for itself.
-   pure logical function is_name(keyword, parameter)
-      character(*), intent(in) :: keyword, parameter
-
-      select case (parameter)
-      case ('NSET', 'ELSET', 'SURFACE', 'ORIENTATION', 'REF NODE', 'NODE', 'ROT NODE', 'TIE NSET', &
-         'PIN NSET', 'ANALYTICAL SURFACE')
-         is_name = .true.
-      case ('NAME')
-         is_name = keyword == 'SURFACE' .or. keyword == 'ORIENTATION'
-      case default
-         is_name = .false.
-      end select
-   end function is_name
 
    !> Puts the name of the instance before a name, and adds its offset to a number.
    subroutine prefix(instance, text)
@@ -434,7 +375,7 @@ contains
          call read_real(data%text(at + i - 1), x(i), valid)
          if (.not. valid) return
       end do
-      x = matmul(instance%turn, x) + instance%shift
+      x = instance%moved(x)
       do i = 1, min(2, size(fields) - at + 1)
          fields(at + i - 1)%text = exact_text(x(i))
       end do

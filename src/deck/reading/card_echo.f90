@@ -1,18 +1,15 @@
-!> Messages as they are printed: the card with a caret under the place that is meant, and messages
-!> that tell one mistake again and again, on lines of one card, alike but for numbers.
+!> Messages as they are printed: the card with a caret under the place that is meant, and what
+!> messages have in common that tell one mistake again and again.
 module card_echo
    use messages, only: print_line
-   use text, only: string_type
    use utf8, only: character_count, first_byte, printable
    implicit none
    private
-   public :: print_card, column_of, first_alike
+   public :: print_card, column_of, without_numbers
 
    integer, parameter :: longest_echo = 200     !! characters of a card that are printed
    integer, parameter :: echo_before = 100      !! of these, before the place that is meant
    character(*), parameter :: gap = '...'       !! where characters are left out
-
-   integer, parameter :: most_kinds = 16   !! kinds of a card that are looked for again
 
 contains
 
@@ -62,38 +59,9 @@ contains
          max(0, byte - 1 - len(image))
    end function column_of
 
-   !> The first message of the same kind and card, which is its own index where there is none
-   !> before. Of a card with many kinds only the last ones are compared.
-   pure function first_alike(card, messages) result(first)
-      integer, intent(in) :: card(:)              !! (messages) of each, in order; 0 for none
-      type(string_type), intent(in) :: messages(:)
-      integer :: first(size(card))
-      type(string_type) :: kinds(most_kinds)
-      character(:), allocatable :: kind
-      integer :: index_of(most_kinds), i, k, found, last_card
-
-      found = 0
-      last_card = 0
-      do i = 1, size(card)
-         first(i) = i
-         if (card(i) == 0) cycle
-         if (card(i) /= last_card) found = 0
-         last_card = card(i)
-         kind = without_numbers(messages(i)%value)
-         do k = 1, min(found, most_kinds)
-            if (kinds(k)%value == kind) first(i) = index_of(k)
-         end do
-         if (first(i) < i) cycle
-         k = modulo(found, most_kinds) + 1
-         kinds(k)%value = kind
-         index_of(k) = i
-         found = found + 1
-      end do
-   end function first_alike
-
    !> A message with one mark for each run of digits.
    pure function without_numbers(message) result(kind)
-      character(*), intent(in) :: message
+      character(*), intent(in) :: message   !! any
       character(:), allocatable :: kind
       character(*), parameter :: digits = '0123456789'
       character(len(message)) :: buffer

@@ -6,7 +6,7 @@ module card_fields
    use text, only: to_upper, without_blanks
    implicit none
    private
-   public :: split_fields, append_fields, drop_empty_end, without_quotes
+   public :: split_fields, drop_empty_end, without_quotes
    public :: is_comment, is_keyword, is_blank, first_text, last_text
 
    character(*), parameter :: blanks = ' '//achar(9)   !! what separates words
@@ -57,7 +57,7 @@ contains
       type(deck_report_type), intent(inout) :: report             !! receives errors
       type(field_type), allocatable, intent(out) :: fields(:)     !! at least one field
       integer :: commas(len(line) + 1)
-      integer :: i, n, first, opened, told
+      integer :: i, n, first, opened, start, told
       logical :: is_format
 
       is_format = .false.
@@ -88,7 +88,12 @@ contains
       allocate(fields(n + 1))
       first = 1
       do i = 1, n + 1
-         fields(i) = trimmed_field(line, first, commas(i) - 1, image)
+         associate (part => line(first:commas(i) - 1))
+            start = first_text(part)
+            fields(i)%text = part(start:last_text(part))
+            if (len(fields(i)%text) == 0) start = 1
+            fields(i)%place = place_type(image, first + start - 1)
+         end associate
          if (opened >= first .and. opened < commas(i)) then
             fields(i)%text = ''
             fields(i)%undefined = .true.
@@ -97,55 +102,15 @@ contains
       end do
    end subroutine split_fields
 
-   !> The field between two positions of a line, without blanks around it.
-   pure function trimmed_field(line, first, last, image) result(field)
-      character(*), intent(in) :: line
-      integer, intent(in) :: first, last, image
-      type(field_type) :: field
-      integer :: start
-
-      start = first_text(line(first:last)) + first - 1
-      field%text = line(start:first - 1 + last_text(line(first:last)))
-      if (len(field%text) == 0) start = first
-      field%place = place_type(image, start)
-   end function trimmed_field
-
-   !> Adds the fields of a continuation; the empty field that the comma at the end of the card left
-   !> is dropped.
-   subroutine append_fields(fields, more)
-      type(field_type), allocatable, intent(inout) :: fields(:)   !! the card so far
-      type(field_type), intent(in) :: more(:)                     !! its continuation
-      type(field_type), allocatable :: all(:)
-      integer :: i, n
-
-      n = size(fields) - 1
-      allocate(all(n + size(more)))
-      do i = 1, n
-         all(i) = fields(i)
-      end do
-      do i = 1, size(more)
-         all(n + i) = more(i)
-      end do
-      call move_alloc(all, fields)
-   end subroutine append_fields
-
    !> Drops the empty fields at the end of a card.
    subroutine drop_empty_end(fields)
       type(field_type), allocatable, intent(inout) :: fields(:)   !! fields of a card
-      type(field_type), allocatable :: kept(:)
-      integer :: i, n
+      integer :: n
 
-      n = size(fields)
-      do while (n > 0)
+      do n = size(fields), 1, -1
          if (len(fields(n)%text) > 0 .or. fields(n)%undefined) exit
-         n = n - 1
       end do
-      if (n == size(fields)) return
-      allocate(kept(n))
-      do i = 1, n
-         kept(i) = fields(i)
-      end do
-      call move_alloc(kept, fields)
+      if (n < size(fields)) fields = fields(:n)
    end subroutine drop_empty_end
 
    !> A text without the quotes around it.

@@ -1,10 +1,10 @@
 !> One line after another -> cards: comments, continuations, parameters.
 module card_lines
-   use card_fields, only: append_fields, drop_empty_end, first_text, is_blank, is_comment, &
+   use card_fields, only: drop_empty_end, first_text, is_blank, is_comment, &
       is_keyword, last_text, split_fields, without_quotes
+   use card_parameters, only: take_parameter
    use card_typos, only: check_commas, lacks_star
-   use cards, only: add_data, add_keyword, add_note, cards_type, extend_data, field_type, &
-      keyword_card_type
+   use cards, only: add_data, add_keyword, add_note, cards_type, field_type, keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -13,13 +13,12 @@ module card_lines
    use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: is_output
    use spelling, only: find_look_alike
-   use text, only: read_integer, to_text, to_upper
+   use text, only: to_text, to_upper
    implicit none
    private
    public :: card_lines_type, default_width
 
    integer, parameter :: default_width = 256   !! columns of a card
-   integer, parameter :: least_width = 80      !! that a deck may give
    integer, parameter :: most_fields = 9   !! of an *ELEMENT data card, that of eight nodes
 
    !> State of the reader between two lines.
@@ -28,8 +27,8 @@ module card_lines
       integer :: width = default_width                      !! columns of a card
       character(:), allocatable :: include                  !! path that the card just read includes
       type(place_type) :: include_place                     !! where it is
-      type(field_type), allocatable, private :: pending(:)  !! fields of a card that continues
-      logical, private :: pending_keyword = .false.         !! that card is a keyword card
+      type(field_type), allocatable, private :: pending(:)  !! of a keyword card that continues
+      type(field_type), allocatable, private :: comma       !! behind which an element continues
       character(:), allocatable, private :: keyword         !! keyword to which data cards belong
       logical, private :: skips_data = .false.              !! its data cards are of no use
       character(:), allocatable, private :: refusal_of_data !! error at its first data card
@@ -50,7 +49,7 @@ contains
       type(cards_type), intent(inout) :: cards             !! receives the card that it completes
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
-      logical :: continues, is_text, is_variable, title
+      logical :: is_text, is_variable, title
 
       if (is_blank(line)) return
       if (is_comment(line)) return
@@ -79,21 +78,16 @@ contains
                to_upper(fields(1)%text))
             fields(1)%text = '*'//fields(1)%text
          end if
-         call take_fields(self, fields, .true., image, cards, report)
+         call take_fields(self, fields, cards, report)
          return
       end if
       if (allocated(self%pending)) then
          call split_fields(line, image, report, fields)
-         if (self%pending_keyword) then
-            continues = is_parameter(self%pending(1)%text, fields(1)%text)
-         else
-            ! A line with all fields of an element is the next one: the comma is a slip.
-            continues = self%element_fields == 0 .or. filled(fields) /= self%element_fields
-         end if
-         if (continues) then
-            call append_fields(self%pending, fields)
-            call move_alloc(self%pending, fields)
-            call take_fields(self, fields, self%pending_keyword, image, cards, report)
+         if (is_parameter(self%pending(1)%text, fields(1)%text)) then
+            ! The comma at the end of the card left an empty field.
+            fields = [self%pending(:size(self%pending) - 1), fields]
+            deallocate (self%pending)
+            call take_fields(self, fields, cards, report)
             return
          end if
          call self%finish(cards, report)
@@ -131,48 +125,47 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: lack
-      type(place_type) :: place
 
-      if (.not. allocated(self%pending)) return
-      call move_alloc(self%pending, fields)
-      if (self%pending_keyword) then
+      if (allocated(self%pending)) then
+         call move_alloc(self%pending, fields)
          call drop_empty_end(fields)
          call take_keyword(self, fields, cards, report)
-      else
-         place = fields(size(fields))%place
-         place%column = place%column - 1
+      else if (allocated(self%comma)) then
+         call take_last(cards, fields)
          lack = ''
-         if (self%element_fields > 0) lack = ': the element has '//to_text(size(fields) - 2)// &
+         if (self%element_fields > 0) lack = ': the element has '//to_text(size(fields) - 1)// &
             ' of its '//to_text(self%element_fields - 1)//' nodes'
-         call report%error(place, 'the card ends in a comma, but nothing continues it'//lack)
-         fields(size(fields))%undefined = .true.
-         call take_data(self, fields, place%image, cards, report)
+         call report%error(place_type(self%comma%place%image, self%comma%place%column - 1), &
+            'the card ends in a comma, but nothing continues it'//lack)
+         self%comma%undefined = .true.
+         fields = [fields, self%comma]
+         call add_data(cards, fields, self%comma%place)
+         deallocate (self%comma)
       end if
    end subroutine finish
 
-   !> Takes the fields of a card that may continue.
-   subroutine take_fields(self, fields, keyword, image, cards, report)
+   !> Takes the last data card away again, which goes on.
+   subroutine take_last(cards, fields)
+      type(cards_type), intent(inout) :: cards
+      type(field_type), allocatable, intent(out) :: fields(:)
+
+      associate (card => cards%keywords(cards%keyword_count))
+         call move_alloc(card%data(card%data_count)%fields, fields)
+         card%data_count = card%data_count - 1
+      end associate
+   end subroutine take_last
+
+   !> Takes the fields of a keyword card that may continue.
+   subroutine take_fields(self, fields, cards, report)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)
-      logical, intent(in) :: keyword
-      integer, intent(in) :: image
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
-      logical :: continues
 
-      continues = size(fields) > 1 .and. len(fields(size(fields))%text) == 0
-      if (.not. keyword .and. self%element_fields > 0) then
-         continues = continues .and. size(fields) <= self%element_fields
-      else if (.not. keyword) then
-         continues = continues .and. size(fields) <= most_fields
-      end if
-      if (continues) then
-         self%pending_keyword = keyword
+      if (size(fields) > 1 .and. len(fields(size(fields))%text) == 0) then
          call move_alloc(fields, self%pending)
-      else if (keyword) then
-         call take_keyword(self, fields, cards, report)
       else
-         call take_data(self, fields, image, cards, report)
+         call take_keyword(self, fields, cards, report)
       end if
    end subroutine take_fields
 
@@ -184,7 +177,7 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout) :: report
       type(keyword_card_type) :: card
-      integer :: i
+      integer :: i, width
       logical :: valid
 
       do i = 2, size(fields)
@@ -201,7 +194,11 @@ contains
          end if
          return
       end if
-      if (card%name == 'OPTIONS') call take_width(self, card, report)
+      if (card%name == 'OPTIONS') then
+         width = self%width
+         call take_parameter(card, 'WIDTH', report, width, '>=80')
+         self%width = max(self%width, width)
+      end if
       if (card%name == 'ELEMENT') self%element_fields = element_type_fields(card%text('TYPE'))
       self%keyword = card%name
       if (allocated(self%refusal_of_data)) deallocate(self%refusal_of_data)
@@ -211,22 +208,6 @@ contains
       card%data_lost = .not. valid
       call add_keyword(cards, card)
    end subroutine take_keyword
-
-   !> WIDTH= of *OPTIONS widens every card of the deck.
-   subroutine take_width(self, card, report)
-      type(card_lines_type), intent(inout) :: self
-      type(keyword_card_type), intent(in) :: card
-      type(deck_report_type), intent(inout) :: report
-      integer :: width
-      logical :: valid
-
-      if (.not. card%has('WIDTH')) return
-      call read_integer(card%text('WIDTH'), width, valid)
-      if (valid) valid = width >= least_width
-      if (valid) self%width = max(self%width, width)
-      if (.not. valid) call report%error(card%place_of('WIDTH'), 'WIDTH= needs a whole number '// &
-         'of at least '//to_text(least_width))
-   end subroutine take_width
 
    subroutine take_data_line(self, line, image, cards, report)
       type(card_lines_type), intent(inout) :: self
@@ -276,32 +257,56 @@ contains
          end if
       end if
       if (self%keyword == 'ELEMENT') then
-         if (completes_element(self, fields, cards)) then
-            call extend_data(cards, fields)
-            return
-         end if
-         call take_fields(self, fields, .false., image, cards, report)
+         call take_element(self, fields, image, cards, report)
       else
          call take_data(self, fields, image, cards, report)
       end if
    end subroutine take_data_line
 
-   !> Whether a line has just the nodes that the element before it lacks: in CalculiX a card may go
-   !> on without a comma at its end.
-   pure logical function completes_element(self, fields, cards)
+   !> A line of elements, which may go on with the element before it or on the next line.
+   subroutine take_element(self, fields, image, cards, report)
+      type(card_lines_type), intent(inout) :: self
+      type(field_type), allocatable, intent(inout) :: fields(:)
+      integer, intent(in) :: image
+      type(cards_type), intent(inout) :: cards
+      type(deck_report_type), intent(inout) :: report
+      type(field_type), allocatable :: before(:)
+      type(field_type) :: last
+      integer :: i
+
+      if (continues_element(self, fields, cards)) then
+         call take_last(cards, before)
+         fields = [before, pack(fields, [(len(fields(i)%text) > 0 .or. i == size(fields), &
+            i=1, size(fields))])]
+         if (allocated(self%comma)) deallocate (self%comma)
+      else
+         call self%finish(cards, report)
+      end if
+      last = fields(size(fields))
+      if (size(fields) > 1 .and. len(last%text) == 0 .and. size(fields) <= merge( &
+         self%element_fields, most_fields, self%element_fields > 0)) self%comma = last
+      call take_data(self, fields, image, cards, report)
+   end subroutine take_element
+
+   !> Whether a line goes on with the element before it: this one ends in a comma, which is a slip
+   !> where the line is a whole element; or the line has just the nodes that it lacks, as in
+   !> CalculiX.
+   pure logical function continues_element(self, fields, cards)
       type(card_lines_type), intent(in) :: self
       type(field_type), intent(in) :: fields(:)
       type(cards_type), intent(in) :: cards
       integer :: before
 
-      completes_element = .false.
+      continues_element = allocated(self%comma) .and. (self%element_fields == 0 .or. &
+         filled(fields) /= self%element_fields)
+      if (allocated(self%comma)) return
       associate (card => cards%keywords(cards%keyword_count))
          if (card%data_count == 0) return
          before = size(card%data(card%data_count)%fields)
       end associate
-      completes_element = before < self%element_fields .and. &
+      continues_element = before < self%element_fields .and. &
          before + filled(fields) == self%element_fields
-   end function completes_element
+   end function continues_element
 
    !> A complete data card.
    subroutine take_data(self, fields, image, cards, report)

@@ -5,18 +5,18 @@ module card_parameters
    use deck_report, only: deck_report_type
    use kinds, only: dp
    use spelling, only: full_word, known_choices
-   use text, only: integer_fault, read_integer, read_real, real_fault, split_words, to_text, &
-      to_upper, without_blanks
+   use text, only: integer_fault, read_integer, read_real, real_fault, split_words, to_upper, &
+      without_blanks
    implicit none
    private
    public :: surface_kinds
-   public :: need_parameter, take_parameter, choice, chosen, needed_choice, is_on, take_within, &
-      take_from, limit_fault
+   public :: need_parameter, take_parameter, choice, chosen, needed_choice, is_on, read_number
 
    !> TYPE= of *SURFACE.
    character(*), parameter :: surface_kinds = 'ELEMENT/NODE/SEGMENTS'
 
-   !> Value of a parameter where the card has it; else it stays as it is.
+   !> Value of a parameter within a limit, as read_number has it; it stays as it is where the card
+   !> does not have it, and after an error.
    interface take_parameter
       module procedure take_integer_parameter
       module procedure take_real_parameter
@@ -37,109 +37,88 @@ contains
       end if
    end subroutine need_parameter
 
-   subroutine take_integer_parameter(card, name, report, value)
+   subroutine take_integer_parameter(card, name, report, value, limit)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
       class(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: value
-      integer :: number
-      logical :: valid
+      character(*), intent(in), optional :: limit
+      real(dp) :: number
 
-      if (.not. card%has(name)) return
-      call read_integer(card%text(name), number, valid)
-      if (valid) then
-         value = number
-      else
-         call report%error(card%place_of(name), ''''//card%text(name)//''' '// &
-            integer_fault(card%text(name))//'; expected: value of '//name//'=')
-      end if
+      number = value
+      call take_number(card, name, .true., report, number, limit)
+      value = nint(number)
    end subroutine take_integer_parameter
 
-   subroutine take_real_parameter(card, name, report, value)
+   subroutine take_real_parameter(card, name, report, value, limit)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
       class(deck_report_type), intent(inout) :: report
       real(dp), intent(inout) :: value
-      real(dp) :: number
-      logical :: valid
+      character(*), intent(in), optional :: limit
 
-      if (.not. card%has(name)) return
-      call read_real(card%text(name), number, valid)
-      if (valid) then
-         value = number
-      else
-         call report%error(card%place_of(name), ''''//card%text(name)//''' '// &
-            real_fault(card%text(name))//'; expected: value of '//name//'=')
-      end if
+      call take_number(card, name, .false., report, value, limit)
    end subroutine take_real_parameter
 
-   !> Value of a parameter within a limit; else, and after an error, it stays as it is.
-   subroutine take_within(limit, card, name, report, value)
-      character(*), intent(in) :: limit                        !! as limit_fault has it
+   subroutine take_number(card, name, is_whole, report, value, limit)
       type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name                         !! parameter
-      class(deck_report_type), intent(inout) :: report         !! receives the error
+      character(*), intent(in) :: name
+      logical, intent(in) :: is_whole
+      class(deck_report_type), intent(inout) :: report
       real(dp), intent(inout) :: value
-      real(dp) :: given
-      character(:), allocatable :: fault
-      integer :: errors
+      character(*), intent(in), optional :: limit
+      character(:), allocatable :: fault, range
 
-      given = value
-      errors = report%error_count()
-      call take_parameter(card, name, report, given)
-      if (report%error_count() > errors) return
-      fault = limit_fault(given, limit)
-      if (len(fault) == 0) then
-         value = given
-      else if (card%has(name)) then
-         call report%error(card%place_of(name), name//'= '//fault)
+      if (.not. card%has(name)) return
+      range = ''
+      if (present(limit)) range = limit
+      call read_number(card%text(name), 'value of '//name//'=', is_whole, range, value, fault)
+      if (len(fault) > 0) call report%error(card%place_of(name), fault)
+   end subroutine take_number
+
+   !> Reads a number within a limit; after an error it stays as it is.
+   subroutine read_number(string, what, is_whole, limit, value, fault)
+      character(*), intent(in) :: string           !! as written
+      character(*), intent(in) :: what             !! what it is, such as value of TOL=
+      logical, intent(in) :: is_whole              !! whether it must be a whole number
+      character(*), intent(in) :: limit            !! >0, >=0, >=n, >0 <=1, >=0 <=1 or empty
+      real(dp), intent(inout) :: value
+      character(:), allocatable, intent(out) :: fault   !! what is wrong with it, or empty
+      real(dp) :: number
+      integer :: least, whole
+      logical :: valid
+
+      if (is_whole) then
+         call read_integer(string, whole, valid)
+         number = whole
+         if (.not. valid) fault = integer_fault(string)
+      else
+         call read_real(string, number, valid)
+         if (.not. valid) fault = real_fault(string)
       end if
-   end subroutine take_within
-
-   !> What is wrong with a number outside of a limit; empty within it.
-   pure function limit_fault(value, limit) result(fault)
-      real(dp), intent(in) :: value
-      character(*), intent(in) :: limit            !! >0, >=0, >0 <=1, >=0 <=1 or empty
-      character(:), allocatable :: fault           !! such as 'must be positive'
-      logical :: above, below
-
+      if (.not. valid) then
+         fault = ''''//string//''' '//fault//'; expected: '//what
+         return
+      end if
       fault = ''
-      above = value >= 0.0_dp
-      if (index(limit, '>0') > 0) above = value > 0.0_dp
-      below = value <= 1.0_dp .or. index(limit, '<=1') == 0
-      if ((above .and. below) .or. len(limit) == 0) return
       select case (limit)
       case ('>0')
-         fault = 'must be positive'
+         if (number <= 0.0_dp) fault = ' must be positive'
       case ('>=0')
-         fault = 'must not be negative'
+         if (number < 0.0_dp) fault = ' must not be negative'
+      case ('>=1', '>=2', '>=80')
+         read (limit(3:), *) least
+         if (number < least) fault = ' must be at least '//limit(3:)
       case ('>0 <=1')
-         fault = 'must be above 0 and at most 1'
+         if (number <= 0.0_dp .or. number > 1.0_dp) fault = ' must be above 0 and at most 1'
+      case ('>=0 <=1')
+         if (number < 0.0_dp .or. number > 1.0_dp) fault = ' must be between 0 and 1'
       case default
-         fault = 'must be between 0 and 1'
+         continue
       end select
-   end function limit_fault
-
-   !> Value of a parameter that must not be below the least one; else, and after an error, it stays
-   !> as it is.
-   subroutine take_from(least, card, name, report, value)
-      integer, intent(in) :: least
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: name                         !! parameter
-      class(deck_report_type), intent(inout) :: report         !! receives the error
-      integer, intent(inout) :: value                          !! >= least
-      integer :: given
-
-      given = value
-      call take_parameter(card, name, report, given)
-      if (given >= least) then
-         value = given
-      else if (least == 0) then
-         call report%error(card%place_of(name), name//'= must not be negative')
-      else
-         call report%error(card%place_of(name), name//'= must be at least '//to_text(least))
-      end if
-   end subroutine take_from
+      if (len(fault) == 0) value = number
+      if (len(fault) > 0) fault = what//fault
+   end subroutine read_number
 
    !> The one of several words that the value of a parameter is, or begins as in Abaqus; empty where
    !> none of them does, or several do.

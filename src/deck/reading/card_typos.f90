@@ -44,41 +44,34 @@ contains
       logical, intent(in) :: title            !! whether it is part of the heading
       type(cards_type), intent(in) :: cards   !! the cards so far
       type(advice_type) :: advice
-      character(:), allocatable :: name
+      type(known_parameter_type) :: parameter
+      character(:), allocatable :: name, rest
+      integer :: comma, known
 
       lacks_star = .false.
       if (verify(to_upper(line(first_text(line):first_text(line))), &
          'ABCDEFGHIJKLMNOPQRSTUVWXYZ') > 0) return
       name = line(first_text(line):index(line//',', ',') - 1)
       name = name(:last_text(name))
-      advice = find_advice(name)
-      if (find_keyword(name) == 0 .and. advice%kind == no_advice) return
       if (title .and. index(line, '=') == 0) return
-      lacks_star = names_keyword(line)
-      if (lacks_star) lacks_star = .not. is_defined(cards, name)
-   end function lacks_star
-
-   !> Whether a line is a keyword, without its asterisk, and parameters of it.
-   pure logical function names_keyword(line)
-      character(*), intent(in) :: line
-      type(known_parameter_type) :: parameter
-      character(:), allocatable :: rest
-      integer :: comma, known
-
+      known = find_keyword(name)
       comma = index(line//',', ',')
-      known = find_keyword(line(:comma - 1))
-      names_keyword = .true.
-      do while (comma < len(line) .and. names_keyword)
+      lacks_star = .true.
+      do while (comma < len(line) .and. lacks_star)   ! what is behind it are parameters
          rest = line(comma + 1:)
          rest = rest(:index(rest//',', ',') - 1)
          comma = comma + len(rest) + 1
          if (index(rest, '=') > 0 .or. verify(rest, blanks) == 0) cycle
-         names_keyword = known > 0
+         lacks_star = known > 0
          if (known == 0) return
          parameter = find_parameter(known, rest)
-         names_keyword = len(parameter%name) > 0
+         lacks_star = len(parameter%name) > 0
       end do
-   end function names_keyword
+      if (lacks_star) lacks_star = .not. is_defined(cards, name)
+      if (known > 0 .or. .not. lacks_star) return
+      advice = find_advice(name)   ! last, since this takes longest
+      lacks_star = advice%kind /= no_advice
+   end function lacks_star
 
    !> Whether a keyword card that is read defines or uses a name.
    pure logical function is_defined(cards, name)

@@ -1,35 +1,28 @@
 !> Values of the fields of a data card, with an error at their place where they are not what they
 !> should be, such as numbers with a decimal comma, which the dialect reads as two fields.
 module card_values
-   use card_parameters, only: limit_fault
+   use card_parameters, only: read_number
    use cards, only: data_card_type
    use deck_report, only: deck_report_type
    use kinds, only: dp
-   use text, only: integer_fault, is_whole, read_integer, read_real, real_fault, split_words, &
-      string_type
+   use text, only: is_whole, read_real, split_words, string_type, to_text
    implicit none
    private
-   public :: need_field, take_field, check_extra, read_row, read_rows, plane_vector, &
-      decimal_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, &
-      check_unneeded, check_unneeded_temperature
+   public :: read_field, check_extra, read_row, read_rows, check_ascending, plane_vector, &
+      decimal_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded
 
-   !> Value of a field; an error where it is missing.
-   interface need_field
-      module procedure need_text_field
-      module procedure need_integer_field
-      module procedure need_real_field
-   end interface need_field
-
-   !> Value of a field where the card has it; else it stays as it is.
-   interface take_field
-      module procedure take_integer_field
-      module procedure take_real_field
-   end interface take_field
+   !> Value of a field by its rule, as in a layout of read_row; it stays as it is where the card
+   !> does not have it, and after an error. A text must be there.
+   interface read_field
+      module procedure read_text_field
+      module procedure read_integer_field
+      module procedure read_real_field
+   end interface read_field
 
    !> A field of a layout.
    type :: field_rule_type
       character(:), allocatable :: name    !! what it holds
-      character(:), allocatable :: limit   !! as limit_fault has it
+      character(:), allocatable :: limit   !! as read_number has it
       real(dp) :: default                  !! where it is not given, or wrong
       logical :: is_needed, is_whole, is_text
    end type field_rule_type
@@ -49,7 +42,10 @@ contains
       integer :: comma
 
       if (size(data%fields) <= most) return
-      comma = surplus_comma(data, most)
+      comma = decimal_comma(data)
+      if (may_be_decimals(data, most + 1)) then
+         if (adjacent(data, most)) comma = most
+      end if
       if (comma == 0) then
          call report%error(data%place(most + 1), 'extra field; the card is '//layout)
       else
@@ -58,7 +54,7 @@ contains
       end if
    end subroutine check_extra
 
-   subroutine need_text_field(data, i, what, report, value, valid)
+   subroutine read_text_field(data, i, what, report, value, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
       character(*), intent(in) :: what
@@ -68,31 +64,53 @@ contains
 
       value = data%text(i)
       if (len(value) == 0) call report_missing(data, i, what, report, valid)
-   end subroutine need_text_field
+   end subroutine read_text_field
 
-   subroutine need_integer_field(data, i, what, report, value, valid)
+   subroutine read_integer_field(data, i, rule, report, value, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
-      character(*), intent(in) :: what
+      character(*), intent(in) :: rule
       class(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: value
       logical, intent(inout) :: valid
+      real(dp) :: number
 
-      call take_field(data, i, what, report, value, valid)
-      if (.not. data%has(i)) call report_missing(data, i, what, report, valid)
-   end subroutine need_integer_field
+      number = value
+      call read_by_rule(data, i, rule_of('#'//rule), report, number, valid)
+      value = nint(number)
+   end subroutine read_integer_field
 
-   subroutine need_real_field(data, i, what, report, value, valid)
+   subroutine read_real_field(data, i, rule, report, value, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
-      character(*), intent(in) :: what
+      character(*), intent(in) :: rule
       class(deck_report_type), intent(inout) :: report
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
 
-      call take_field(data, i, what, report, value, valid)
-      if (.not. data%has(i)) call report_missing(data, i, what, report, valid)
-   end subroutine need_real_field
+      call read_by_rule(data, i, rule_of(rule), report, value, valid)
+   end subroutine read_real_field
+
+   subroutine read_by_rule(data, i, rule, report, value, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i
+      type(field_rule_type), intent(in) :: rule
+      class(deck_report_type), intent(inout) :: report
+      real(dp), intent(inout) :: value
+      logical, intent(inout) :: valid                     ! becomes false after an error
+      character(:), allocatable :: fault
+
+      if (data%is_undefined(i)) then
+         valid = .false.
+      else if (data%has(i)) then
+         call read_number(data%fields(i)%text, rule%name, rule%is_whole, rule%limit, value, fault)
+         if (len(fault) == 0) return
+         call report%error(data%place(i), fault)
+         valid = .false.
+      else if (rule%is_needed) then
+         call report_missing(data, i, rule%name, report, valid)
+      end if
+   end subroutine read_by_rule
 
    subroutine report_missing(data, i, what, report, valid)
       type(data_card_type), intent(in) :: data
@@ -105,55 +123,11 @@ contains
       if (.not. data%is_undefined(i)) call report%error(data%place(i), 'missing field: '//what)
    end subroutine report_missing
 
-   subroutine take_integer_field(data, i, what, report, value, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: i
-      character(*), intent(in) :: what
-      class(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: value
-      logical, intent(inout) :: valid
-      integer :: number
-      logical :: is_number
-
-      if (data%is_undefined(i)) valid = .false.
-      if (data%is_undefined(i) .or. .not. data%has(i)) return
-      call read_integer(data%fields(i)%text, number, is_number)
-      if (is_number) then
-         value = number
-      else
-         call report%error(data%place(i), ''''//data%fields(i)%text//''' '// &
-            integer_fault(data%fields(i)%text)//'; expected: '//what)
-         valid = .false.
-      end if
-   end subroutine take_integer_field
-
-   subroutine take_real_field(data, i, what, report, value, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: i
-      character(*), intent(in) :: what
-      class(deck_report_type), intent(inout) :: report
-      real(dp), intent(inout) :: value
-      logical, intent(inout) :: valid
-      real(dp) :: number
-      logical :: is_number
-
-      if (data%is_undefined(i)) valid = .false.
-      if (data%is_undefined(i) .or. .not. data%has(i)) return
-      call read_real(data%fields(i)%text, number, is_number)
-      if (is_number) then
-         value = number
-      else
-         call report%error(data%place(i), ''''//data%fields(i)%text//''' '// &
-            real_fault(data%fields(i)%text)//'; expected: '//what)
-         valid = .false.
-      end if
-   end subroutine take_real_field
-
    !> Reads the numbers of a data card by its layout: its fields, separated by slashes, such as
    !> `@node or set/#degree of freedom/force`. Before a field stands `#` where it is a whole number
-   !> and `@` where it is none and is read elsewhere; behind it `?` where it may be missing, and its
-   !> limit, >0, >=0, >0 <=1 or >=0 <=1, and what is taken where it is not given, or wrong: `=1`, or
-   !> 0. Of fields that are missing the first is reported, as is the first one too many.
+   !> and `@` where it is none and is read elsewhere; behind it `?` where it may be missing, its
+   !> limit, as read_number has it, and what is taken where it is not given, or wrong: `=1`, or 0.
+   !> Of fields that are missing the first is reported, as is the first one too many.
    subroutine read_row(data, layout, report, values, valid)
       class(data_card_type), intent(in) :: data
       character(*), intent(in) :: layout
@@ -164,7 +138,7 @@ contains
       type(field_rule_type) :: rule
       character(:), allocatable :: names
       integer :: i
-      logical :: lacks, sound
+      logical :: is_missing, lacks
 
       valid = .true.
       lacks = .false.
@@ -175,15 +149,11 @@ contains
          rule = rule_of(fields(i)%value)
          names = names//', '//rule%name
          if (rule%is_text) cycle
-         sound = .true.
          values(i) = rule%default
-         if (data%has(i) .or. data%is_undefined(i)) then
-            call read_number(data, i, rule, report, values(i), sound)
-         else if (rule%is_needed) then
-            if (.not. lacks) call report_missing(data, i, rule%name, report, sound)
-            lacks = .true.
-         end if
-         valid = valid .and. sound
+         is_missing = rule%is_needed .and. .not. (data%has(i) .or. data%is_undefined(i))
+         if (.not. (is_missing .and. lacks)) call read_by_rule(data, i, rule, report, values(i), &
+            valid)
+         lacks = lacks .or. is_missing
       end do
       call check_extra(data, size(fields), names(3:), report)
    end subroutine read_row
@@ -205,15 +175,32 @@ contains
       end do
    end subroutine read_rows
 
+   !> Reports the first row whose value is not above that of the row before.
+   subroutine check_ascending(rows, i, what, values, report)
+      type(data_card_type), intent(in) :: rows(:)
+      integer, intent(in) :: i                            !! position of the field
+      character(*), intent(in) :: what                    !! the values, such as gaps
+      real(dp), intent(in) :: values(:)                   !! (rows)
+      class(deck_report_type), intent(inout) :: report    !! receives the error
+      integer :: row
+
+      row = findloc(values(2:) <= values(:size(values) - 1), .true., dim=1)
+      if (row > 0) call report%error(rows(row + 1)%place(i), what//' must ascend: '// &
+         to_text(values(row + 1))//' follows '//to_text(values(row)))
+   end subroutine check_ascending
+
    !> The rule of one field of a layout.
    pure type(field_rule_type) function rule_of(field) result(rule)
       character(*), intent(in) :: field
       integer :: behind, last
       logical :: is_given
 
-      behind = index(field//' =', ' =')
-      call read_real(field(min(behind + 2, len(field) + 1):), rule%default, is_given)
-      last = index(field(:behind - 1)//' >', ' >') - 1
+      rule%default = 0.0_dp
+      behind = index(field, ' =')
+      if (behind > 0) call read_real(field(behind + 2:), rule%default, is_given)
+      if (behind == 0) behind = len(field) + 1
+      last = index(field(:behind - 1), ' >') - 1
+      if (last < 0) last = behind - 1
       rule%limit = adjustl(field(last + 1:behind - 1))
       rule%is_needed = field(last:last) /= '?'
       if (.not. rule%is_needed) last = last - 1
@@ -221,33 +208,6 @@ contains
       rule%is_text = field(1:1) == '@'
       rule%name = field(merge(2, 1, rule%is_whole .or. rule%is_text):last)
    end function rule_of
-
-   !> Reads a number by its rule.
-   subroutine read_number(data, i, rule, report, value, valid)
-      class(data_card_type), intent(in) :: data
-      integer, intent(in) :: i
-      type(field_rule_type), intent(in) :: rule
-      class(deck_report_type), intent(inout) :: report
-      real(dp), intent(inout) :: value
-      logical, intent(inout) :: valid
-      character(:), allocatable :: fault
-      real(dp) :: given
-      integer :: number
-
-      if (rule%is_whole) then
-         number = 0
-         call take_field(data, i, rule%name, report, number, valid)
-         given = number
-      else
-         given = 0.0_dp
-         call take_field(data, i, rule%name, report, given, valid)
-      end if
-      if (.not. valid) return
-      fault = limit_fault(given, rule%limit)
-      valid = len(fault) == 0
-      if (valid) value = given
-      if (.not. valid) call report%error(data%place(i), rule%name//' '//fault)
-   end subroutine read_number
 
    !> A vector of the plane by its magnitude and the components of its direction.
    subroutine plane_vector(data, first, given, report, vector)
@@ -292,17 +252,6 @@ contains
          return
       end do
    end function decimal_comma
-
-   !> Position of the field whose decimals make a card longer than it may be; 0 where there is none.
-   pure integer function surplus_comma(data, most)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: most                         !! most fields, fewer than it has
-
-      surplus_comma = decimal_comma(data)
-      if (may_be_decimals(data, most + 1)) then
-         if (adjacent(data, most)) surplus_comma = most
-      end if
-   end function surplus_comma
 
    !> Whether the next field begins right behind the comma.
    pure logical function adjacent(data, i)
@@ -361,8 +310,16 @@ contains
       class(deck_report_type), intent(inout) :: report    !! receives the warning
       character(*), intent(in), optional :: group         !! by which it is is_told
       character(:), allocatable :: message
+      real(dp) :: temperature
+      logical :: is_number
 
       if (.not. may_be_decimals(data, i)) return
+      if (what == 'a temperature') then
+         call read_real(data%text(i), temperature, is_number)
+         ! A plausible one is no decimals, unless it is directly behind the comma of `0,`.
+         if (temperature >= least_plausible .and. (verify(data%text(i - 1), '+-0') > 0 .or. .not. &
+            adjacent(data, i - 1))) return
+      end if
       associate (whole => data%fields(i - 1)%text, decimals => data%fields(i)%text)
          message = 'decimal comma? '//whole//','//decimals//' is two fields: '//whole//', and '// &
             what//', which is ignored; write '//whole//'.'//decimals//', or '//whole// &
@@ -374,23 +331,5 @@ contains
          call report%possible_cause(data%place(i - 1), message)
       end if
    end subroutine check_unneeded
-
-   !> As check_unneeded for the temperature behind a property: a plausible one is no decimals,
-   !> unless it is directly behind the comma of `0,`.
-   subroutine check_unneeded_temperature(data, i, report)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: i                            !! position of the field, from 2
-      class(deck_report_type), intent(inout) :: report    !! receives the warning
-      real(dp) :: temperature
-      logical :: is_number
-
-      if (.not. may_be_decimals(data, i)) return
-      call read_real(data%text(i), temperature, is_number)
-      associate (before => data%fields(i - 1), field => data%fields(i))
-         if (temperature >= least_plausible .and. (verify(before%text, '+-0') > 0 .or. &
-            field%place%column > before%place%column + len(before%text) + 1)) return
-      end associate
-      call check_unneeded(data, i, 'a temperature', report)
-   end subroutine check_unneeded_temperature
 
 end module card_values

@@ -5,7 +5,7 @@ module cards
    implicit none
    private
    public :: cards_type, keyword_card_type, data_card_type, parameter_type, field_type
-   public :: add_keyword, add_data, extend_data, add_note, trim_cards, replace_cards
+   public :: add_keyword, add_data, add_note, trim_cards, replace_cards
 
    !> One field of a card.
    type :: field_type
@@ -181,30 +181,6 @@ contains
          card%data(card%data_count)%end = end
       end associate
    end subroutine add_data
-
-   !> Adds fields to the last data card.
-   subroutine extend_data(cards, fields)
-      type(cards_type), intent(inout) :: cards
-      type(field_type), intent(in) :: fields(:)      !! what is added; empty ones are left out
-      type(field_type), allocatable :: all(:)
-      integer :: i, n
-
-      associate (keyword => cards%keywords(cards%keyword_count))
-         associate (card => keyword%data(keyword%data_count))
-            n = size(card%fields)
-            allocate(all(n + count([(len(fields(i)%text) > 0, i=1, size(fields))])))
-            do i = 1, n
-               all(i) = card%fields(i)
-            end do
-            do i = 1, size(fields)
-               if (len(fields(i)%text) == 0) cycle
-               n = n + 1
-               all(n) = fields(i)
-            end do
-            call move_alloc(all, card%fields)
-         end associate
-      end associate
-   end subroutine extend_data
 
    !> Adds a note for the listing.
    subroutine add_note(notes, line)

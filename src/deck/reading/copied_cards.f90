@@ -1,13 +1,14 @@
 !> *NFILL, *NCOPY and *ELCOPY of Abaqus -> the *NODE and *ELEMENT cards that they stand for: nodes
 !> between two sets, and copies of sets.
 module copied_cards
-   use card_parameters, only: choice, need_parameter, take_from, take_parameter, take_within
+   use card_parameters, only: choice, need_parameter, take_parameter
    use card_values, only: read_row
    use cards, only: data_card_type, keyword_card_type
-   use deck_report, only: deck_report_type
-   use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
-      given_type, growing_cards_type, keep_last, members_of, node_place, position_of, rotation
+   use given_cards, only: add_generated, add_numbers, add_set, card_of, corners_of, &
+      growing_cards_type, is_given, members_of, node_place
    use kinds, only: dp
+   use number_lists, only: number_list_type
+   use plane_motions, only: axis_layout, motion_type, read_motion, rotation
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
@@ -15,35 +16,18 @@ module copied_cards
 
    integer, parameter :: most_intervals = 10000   !! of *NFILL
 
-   character(*), parameter :: axis_layout = 'x of point 1?/y of point 1?/z of point 1?/'// &
-      'x of point 2?/y of point 2?/z of point 2? =1'
-
    real(dp), parameter :: same_place = 1.0e-6_dp   !! distance, by the largest coordinate
-   real(dp), parameter :: degree = acos(-1.0_dp)/180.0_dp
 
 contains
 
    !> *NFILL: nodes between those of two sets, in the order of their numbers, at equal distances or,
-   !> with BIAS=, at distances of which each is the one behind it times the bias.
-   subroutine fill_nodes(card, all)
-      type(keyword_card_type), intent(in) :: card
-      type(growing_cards_type), intent(inout) :: all            !! receives the cards
-      real(dp) :: bias
-      integer :: j
-
-      bias = 1.0_dp
-      call take_within('>0', card, 'BIAS', all%report, bias)
-      do j = 1, size(card%data)
-         call fill_line(card, card%data(j), bias, all)
-      end do
-   end subroutine fill_nodes
-
-   !> Two sets or nodes, number of intervals, increment.
-   subroutine fill_line(card, data, bias, all)
+   !> with BIAS=, at distances of which each is the one behind it times the bias. A data card has
+   !> two sets or nodes, number of intervals, increment.
+   subroutine fill_nodes(card, data, bias, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       real(dp), intent(in) :: bias
-      type(growing_cards_type), intent(inout) :: all
+      type(growing_cards_type), intent(inout) :: all            !! receives the cards
       integer, allocatable :: from(:), to(:)
       real(dp) :: given(4), x(2, 2)
       real(dp), allocatable :: parts(:)
@@ -76,14 +60,14 @@ contains
          parts(k) = parts(k - 1) + bias**(1 - k)
       end do
       do i = 1, size(from)
-         x(:, 1) = node_place(all, position_of(from(i), all%nodes))
-         x(:, 2) = node_place(all, position_of(to(i), all%nodes))
+         x(:, 1) = node_place(all, from(i))
+         x(:, 2) = node_place(all, to(i))
          do k = 1, intervals - 1
-            call add_node_card(data, from(i) + k*step, x(:, 1) + (x(:, 2) - x(:, &
-               1))*(parts(k)/parts(intervals)), all)
+            call add_numbers(data, [from(i) + k*step], all, x(:, 1) + (x(:, 2) - x(:, 1))*(parts( &
+               k)/ parts(intervals)))
          end do
       end do
-   end subroutine fill_line
+   end subroutine fill_nodes
 
    !> A node set, or one node, of the cards so far.
    subroutine end_of_fill(data, i, all, numbers, valid)
@@ -98,7 +82,7 @@ contains
       call read_integer(data%text(i), number, is_number)
       numbers = [number]
       if (.not. is_number) numbers = members_of(all, 'NSET', data%text(i))
-      numbers = pack(numbers, [(position_of(numbers(k), all%nodes) > 0, k=1, size(numbers))])
+      numbers = pack(numbers, [(is_given(numbers(k), all%nodes), k=1, size(numbers))])
       if (size(numbers) > 0) return
       call all%report%error(data%place(i), 'no *NODE before this card has node or set '// &
          to_upper(data%text(i)))
@@ -111,37 +95,32 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(growing_cards_type), intent(inout) :: all            !! receives the cards
       integer, allocatable :: numbers(:)
-      real(dp) :: center(2), shift(2), turn(2, 2)
+      type(motion_type) :: motion
       real(dp), allocatable :: x(:, :)
-      integer :: at, change, i
-      logical :: valid
+      integer :: change, errors, i
       logical, allocatable :: is_there(:)
 
-      valid = .true.
-      change = 0
-      if (size(card%data) > 2) call all%report%error(card%data(3)%place(1), 'extra data card; '// &
-         '*NCOPY has at most 2')
-      call take_old_set(card, 'NSET', all%nodes, all, numbers, valid)
-      call need_shift(card, 'CHANGE NUMBER', all%report, change, valid)
-      call read_motion(card, card%data, all%report, center, shift, turn, valid)
-      if (.not. valid) then
+      errors = all%report%error_count()
+      call take_old_set(card, 'NSET', all%nodes, all, numbers)
+      call need_shift(card, 'CHANGE NUMBER', all, change)
+      call read_copy(card, all, motion)
+      if (card%flawed .or. all%report%error_count() > errors) then
          call all%report%lose('node')
          return
       end if
       allocate (x(2, size(numbers)), is_there(size(numbers)))
       do i = 1, size(numbers)
-         x(:, i) = matmul(turn, node_place(all, position_of(numbers(i), all%nodes)) + shift - &
-            center) + center
+         x(:, i) = motion%moved(node_place(all, numbers(i)))
       end do
       do i = 1, size(numbers)
-         at = position_of(numbers(i) + change, all%nodes)
-         is_there(i) = at > 0
-         if (at > 0) is_there(i) = norm2(node_place(all, at) - x(:, i)) <= same_place*maxval(abs(x))
+         is_there(i) = is_given(numbers(i) + change, all%nodes)
+         if (is_there(i)) is_there(i) = norm2(node_place(all, numbers(i) + change) - x(:, i)) <= &
+            same_place*maxval(abs(x))
       end do
       associate (data => card%data(1))
          call add_copies_card(card, 'NODE', 'NSET', '', all)
          do i = 1, size(numbers)
-            if (.not. is_there(i)) call add_node_card(data, numbers(i) + change, x(:, i), all)
+            if (.not. is_there(i)) call add_numbers(data, [numbers(i) + change], all, x(:, i))
          end do
          if (.not. (any(is_there) .and. card%has('NEW SET'))) return
          call add_copies_card(card, 'NSET', 'NSET', '', all)
@@ -149,56 +128,32 @@ contains
       end associate
    end subroutine copy_nodes
 
-   !> What a copy does to a place: x -> turn (x + shift - center) + center.
-   subroutine read_motion(card, rows, report, center, shift, turn, valid)
+   !> What a copy does to a place.
+   subroutine read_copy(card, all, motion)
       type(keyword_card_type), intent(in) :: card
-      type(data_card_type), intent(in) :: rows(:)
-      type(deck_report_type), intent(inout) :: report
-      real(dp), intent(out) :: center(2), shift(2), turn(2, 2)
-      logical, intent(inout) :: valid
-      character(:), allocatable :: kind
-      real(dp) :: angle, moved(3), points(7)
+      type(growing_cards_type), intent(in) :: all
+      type(motion_type), intent(out) :: motion
+      real(dp) :: points(6)
       integer :: times
-      logical :: sound
+      logical :: valid
 
-      kind = choice(card, 'REFLECT', 'LINE', report, '')
-      valid = valid .and. (kind == 'LINE' .or. .not. card%has('REFLECT'))
-      if (.not. valid) return
-      shift = 0.0_dp
-      angle = 0.0_dp
-      points = [0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp, 0.0_dp]
-      if (kind == 'LINE') then
-         call read_row(rows(1), axis_layout, report, points, valid)
+      if (.not. card%has('REFLECT')) then
+         if (card%lacks('SHIFT')) call all%report%error(card%place, '*NCOPY needs SHIFT or '// &
+            'REFLECT=LINE')
+         times = 1
+         call take_parameter(card, 'MULTIPLE', all%report, times, '>=1')
+         call read_motion(card%data, times, all%report, motion)
+      else if (choice(card, 'REFLECT', 'LINE', all%report, '') == 'LINE') then
+         call read_row(card%data(1), axis_layout, all%report, points, valid)
          associate (along => points(4:5) - points(1:2))
-            if (valid .and. norm2(along) <= 0.0_dp) then
-               call report%error(rows(1)%place(1), 'the two points of the line coincide')
-               valid = .false.
-            end if
-            angle = 2.0_dp*atan2(along(2), along(1))
+            if (valid .and. norm2(along) <= 0.0_dp) call all%report%error( &
+               card%data(1)%place(1), 'the two points of the line coincide')
+            motion%turn = rotation(2*atan2(along(2), along(1)))
          end associate
-         turn = reshape([cos(angle), sin(angle), sin(angle), -cos(angle)], [2, 2])
-      else
-         if (card%lacks('SHIFT')) then
-            call report%error(card%place, '*NCOPY needs SHIFT or REFLECT=LINE')
-            valid = .false.
-         end if
-         call read_row(rows(1), 'shift along x?/shift along y?/shift along z?', report, moved, &
-            sound)
-         shift = moved(:2)
-         valid = valid .and. sound
-         if (size(rows) > 1) then
-            call read_row(rows(2), axis_layout//'/angle?', report, points, sound)
-            valid = valid .and. sound
-            if (valid .and. norm2(points(4:5) - points(1:2)) > 0.0_dp) call report%error( &
-               rows(2)%place(4), 'the axis of the turn must be parallel to z')
-            times = 1
-            call take_from(1, card, 'MULTIPLE', report, times)
-            angle = sign(1.0_dp, points(6) - points(3))*points(7)*times*degree
-         end if
-         turn = rotation(angle)
+         motion%turn(:, 2) = -motion%turn(:, 2)
+         motion%shift = points(1:2) - matmul(motion%turn, points(1:2))
       end if
-      center = points(:2)
-   end subroutine read_motion
+   end subroutine read_copy
 
    !> *ELCOPY: copies of the elements of a set; with REFLECT their nodes go round the other way.
    subroutine copy_elements(card, all)
@@ -207,33 +162,28 @@ contains
       character(:), allocatable :: kind, last_kind
       integer, allocatable :: corners(:), numbers(:)
       type(data_card_type) :: data
-      integer :: at, i, node_shift, shift
-      logical :: valid
+      integer :: at(2), errors, i, node_shift, shift
 
-      valid = .true.
-      shift = 0
-      node_shift = 0
-      if (size(card%data) > 0) call all%report%error(card%place, '*ELCOPY has no data')
-      call take_old_set(card, 'ELSET', all%elements, all, numbers, valid)
-      call need_shift(card, 'ELEMENT SHIFT', all%report, shift, valid)
-      call need_shift(card, 'SHIFT NODES', all%report, node_shift, valid)
-      if (.not. valid) then
+      errors = all%report%error_count()
+      call take_old_set(card, 'ELSET', all%elements, all, numbers)
+      call need_shift(card, 'ELEMENT SHIFT', all, shift)
+      call need_shift(card, 'SHIFT NODES', all, node_shift)
+      if (card%flawed .or. all%report%error_count() > errors) then
          call all%report%lose('element')
          return
       end if
       last_kind = ''
       do i = 1, size(numbers)
-         at = position_of(numbers(i), all%elements)
-         kind = all%keywords(all%elements%keyword(at))%text('TYPE')
+         at = card_of(numbers(i), all%elements)
+         kind = all%keywords(at(1))%text('TYPE')
          if (kind /= last_kind) call add_copies_card(card, 'ELEMENT', 'ELSET', kind, all)
          last_kind = kind
-         data = all%keywords(all%elements%keyword(at))%data(all%elements%card(at))
+         data = all%keywords(at(1))%data(at(2))
          corners = corners_of(data)
          if (card%has('REFLECT')) corners = reflected(corners)
          data%fields = data%fields(:1)
          data%fields(1)%place = card%place
          call add_numbers(data, [numbers(i) + shift, corners + node_shift], all)
-         call keep_last(all)
       end do
    end subroutine copy_elements
 
@@ -250,42 +200,35 @@ contains
    end function reflected
 
    !> The nodes or elements of OLD SET=.
-   subroutine take_old_set(card, keyword, given, all, numbers, valid)
+   subroutine take_old_set(card, keyword, given, all, numbers)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: keyword               ! NSET or ELSET
-      type(given_type), intent(in) :: given
+      type(number_list_type), intent(in) :: given
       type(growing_cards_type), intent(in) :: all
       integer, allocatable, intent(out) :: numbers(:)
-      logical, intent(inout) :: valid
       character(:), allocatable :: name
       integer :: i
 
-      allocate (numbers(0))
       call need_parameter(card, 'OLD SET', all%report, name)
-      valid = valid .and. len(name) > 0
-      if (.not. valid) return
+      if (len(name) == 0) return
       numbers = members_of(all, keyword, name)
-      numbers = pack(numbers, [(position_of(numbers(i), given) > 0, i=1, size(numbers))])
+      numbers = pack(numbers, [(is_given(numbers(i), given), i=1, size(numbers))])
       if (size(numbers) > 0) return
       call all%report%error(card%place_of('OLD SET'), 'no card before this one gives set '//name// &
          ' a node or element')
-      valid = .false.
    end subroutine take_old_set
 
    !> What the numbers of the copies have above those of the set.
-   subroutine need_shift(card, name, report, shift, valid)
+   subroutine need_shift(card, name, all, shift)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                  ! of the parameter
-      type(deck_report_type), intent(inout) :: report
-      integer, intent(inout) :: shift
-      logical, intent(inout) :: valid
-      integer :: errors
+      type(growing_cards_type), intent(in) :: all
+      integer, intent(out) :: shift
+      character(:), allocatable :: text
 
-      errors = report%error_count()
-      call take_parameter(card, name, report, shift)
-      valid = valid .and. report%error_count() == errors
-      if (card%lacks(name)) call report%error(card%place, '*'//card%name//' needs '//name//'=')
-      valid = valid .and. card%has(name)
+      shift = 0
+      call need_parameter(card, name, all%report, text)
+      call take_parameter(card, name, all%report, shift)
    end subroutine need_shift
 
    !> Adds the keyword card of copies, which are in the set NEW SET=.

@@ -2,7 +2,7 @@
 !> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
 module deck_context
    use card_parameters, only: need_parameter
-   use card_values, only: need_field
+   use card_values, only: read_field
    use cards, only: add_note, cards_type, data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -12,6 +12,7 @@ module deck_context
    use mesh, only: mesh_type, set_type
    use model, only: model_type
    use name_index, only: name_index_type
+   use number_lists, only: number_list_type
    use quantity_types, only: quantity_type
    use sorting, only: number_index_type
    use spelling, only: nearest_known
@@ -19,7 +20,7 @@ module deck_context
    use time_points, only: time_points_type
    implicit none
    private
-   public :: deck_type, item_index_type, place_list_type, plane_by_element, read_target
+   public :: deck_type, item_index_type, place_list_type, plane_by_element
 
    integer, parameter :: plane_by_element = 0   !! PLANE= was not given: element names decide
 
@@ -64,6 +65,7 @@ module deck_context
       type(place_type), allocatable :: step_place(:)      !! (steps) where the step is
       type(time_points_type), allocatable :: time_points(:)   !! *TIME POINTS
       type(name_index_type), private :: names(size(nouns))   !! of each noun, -> indexes
+      type(number_list_type), private :: used(size(nouns))   !! indexes that cards refer to
       type(place_type), allocatable :: analysis_place(:)  !! (steps) where its analysis is
       !> PLANE=, a plane of element_kinds
       integer :: plane = plane_by_element
@@ -78,9 +80,7 @@ module deck_context
       integer :: load_cards = 0                           !! data cards of these loads
       integer :: load_step(known_count) = -1              !! last step with a card of each keyword
       type(request_list_type) :: temperatures             !! *INITIAL CONDITIONS
-      logical :: sets_sound = .true.         !! whether all *NSET and *ELSET are valid
       logical :: sections_sound = .true.     !! whether all elements of *SOLID SECTION are known
-      logical :: boundaries_sound = .true.   !! whether all *BOUNDARY are valid
       logical :: analyses_sound = .true.     !! whether it is known what all steps solve, and when
       type(string_type), allocatable :: notes(:)          !! lines for the listing
    contains
@@ -90,10 +90,11 @@ module deck_context
       procedure :: take_name
       procedure :: need_named
       procedure :: take_named
-      procedure :: need_surface
+      procedure :: need_item
       procedure :: need_element_set
       procedure :: need_target
       procedure :: look_up
+      procedure :: unused
    end type deck_type
 
 contains
@@ -141,7 +142,8 @@ contains
                if (cards(first)%name == cards(k)%name .and. to_upper(cards(first)%text('NAME')) == &
                   name) exit
             end do
-            call self%twice(cards(k)%place_of('NAME'), noun//' '//name, cards(first)%place)
+            call self%error(cards(k)%place_of('NAME'), noun//' '//name//' is defined twice, '// &
+               'first on '//self%source%words_of(cards(first)%place))
          end if
       end associate
       if (first < k .or. len(name) == 0) call self%lose(noun)
@@ -173,21 +175,22 @@ contains
       if (card%has(parameter)) call self%need_named(card, parameter, noun, index)
    end subroutine take_named
 
-   !> Index of the surface that a field of a data card names; 0 after an error.
-   subroutine need_surface(self, data, position, what, surface)
+   !> Index of the item that a field of a data card names; 0 after an error.
+   subroutine need_item(self, data, position, noun, what, index)
       class(deck_type), intent(inout) :: self           !! receives errors
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! the field
+      character(*), intent(in) :: noun                  !! what it names, such as surface
       character(*), intent(in) :: what                  !! what the field holds
-      integer, intent(out) :: surface
+      integer, intent(out) :: index
       character(:), allocatable :: name
       logical :: valid
 
-      surface = 0
+      index = 0
       valid = .true.
-      call need_field(data, position, what, self, name, valid)
-      if (valid) call self%look_up('surface', to_upper(name), data%place(position), surface)
-   end subroutine need_surface
+      call read_field(data, position, what, self, name, valid)
+      if (valid) call self%look_up(noun, to_upper(name), data%place(position), index)
+   end subroutine need_item
 
    !> Index of the item that has a name; 0 after an error.
    subroutine look_up(self, noun, name, place, index)
@@ -199,7 +202,22 @@ contains
 
       index = self%index_of(noun, name)
       if (index == 0) call report_unknown(self, noun, name, place, huge(index))
+      if (index > 0) call self%used(findloc(nouns == noun, .true., dim=1))%add([index])
    end subroutine look_up
+
+   !> The first items of a noun that no card refers to.
+   pure function unused(self, noun, count) result(indexes)
+      class(deck_type), intent(in) :: self
+      character(*), intent(in) :: noun                  !! such as material
+      integer, intent(in) :: count                      !! how many are asked for
+      integer, allocatable :: indexes(:)
+      logical :: is_used(count)
+      integer :: i
+
+      is_used = .false.
+      is_used(self%used(findloc(nouns == noun, .true., dim=1))%numbers()) = .true.
+      indexes = pack([(i, i=1, count)], .not. is_used)
+   end function unused
 
    !> Reports a name that no item has.
    subroutine report_unknown(self, noun, name, place, most)
@@ -236,19 +254,48 @@ contains
       set = 0
    end subroutine need_element_set
 
-   !> Reads the field of a card that names a node or an element, or a set of them.
-   subroutine need_target(self, noun, data, position, target, valid)
+   !> Reads the field of a card that names a node or an element by its number, or a set of them by
+   !> its name. While sets are built those so far are known, and elements are lines, too.
+   subroutine need_target(self, noun, data, position, target, valid, known)
       class(deck_type), intent(inout) :: self           !! receives errors
       character(*), intent(in) :: noun                  !! node or element
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position                   !! position of the field
       type(target_type), intent(out) :: target
       logical, intent(inout) :: valid                   !! becomes false after an error
+      integer, intent(in), optional :: known            !! sets so far
+      character(:), allocatable :: name
+      integer :: most, number
+      logical :: is_number
 
-      if (noun == 'node') call read_target(data, position, self%node_index, self%mesh%node_sets, &
-         self, target, valid)
-      if (noun == 'element') call read_target(data, position, self%element_index, &
-         self%mesh%element_sets, self, target, valid)
+      call read_field(data, position, noun//' or set', self, name, valid)
+      if (len(name) == 0) return
+      most = huge(most)
+      if (present(known)) most = known
+      call read_integer(name, number, is_number)
+      if (.not. is_number) then
+         target%set = self%index_of(noun//' set', name)
+         if (target%set > most) target%set = 0
+      else if (noun == 'node') then
+         target%item = self%node_index%find(number)
+      else if (present(known)) then
+         target%item = self%member_index%find(number)
+      else
+         target%item = self%element_index%find(number)
+      end if
+      if (target%set > 0 .and. noun == 'element' .and. .not. present(known)) then
+         if (self%mesh%element_sets(target%set)%of_lines) then
+            call report_lines(self%mesh%element_sets(target%set)%name, data%place(position), self)
+            valid = .false.
+         end if
+      end if
+      if (target%item > 0 .or. target%set > 0) return
+      valid = .false.
+      if (is_number .or. verify(name, '0123456789') == 0) then
+         call self%missing(data%place(position), 'there is no '//noun//' '//name, noun, name)
+      else
+         call report_unknown(self, noun//' set', to_upper(name), data%place(position), most)
+      end if
    end subroutine need_target
 
    !> Reports an element set that has lines only where elements or their faces are due.
@@ -260,44 +307,5 @@ contains
       call report%error(place, 'element set '//name// &
          ' contains only lines, springs or trusses; make a *SURFACE or an *NSET of lines')
    end subroutine report_lines
-
-   !> Reads the field of a card that names one node or element by its number, or a set by its name.
-   subroutine read_target(data, position, numbers, sets, deck, target, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: position                   !! position of the field
-      type(item_index_type), intent(in) :: numbers      !! numbers -> indexes
-      type(set_type), intent(in) :: sets(:)             !! sets that are known, the first ones
-      class(deck_type), intent(inout) :: deck           !! receives errors
-      type(target_type), intent(out) :: target
-      logical, intent(inout) :: valid                   !! becomes false after an error
-      character(:), allocatable :: name
-      integer :: number
-      logical :: is_number
-
-      call need_field(data, position, numbers%noun//' or set', deck, name, valid)
-      if (len(name) == 0) return
-      call read_integer(name, number, is_number)
-      if (is_number) then
-         target%item = numbers%find(number)
-      else
-         target%set = deck%index_of(numbers%noun//' set', name)
-         if (target%set > size(sets)) target%set = 0
-      end if
-      if (target%set > 0) then
-         if (sets(target%set)%of_lines) then
-            call report_lines(sets(target%set)%name, data%place(position), deck)
-            valid = .false.
-         end if
-      end if
-      if (target%item > 0 .or. target%set > 0) return
-      valid = .false.
-      if (is_number .or. verify(name, '0123456789') == 0) then
-         call deck%missing(data%place(position), 'there is no '//numbers%noun//' '//name, &
-            numbers%noun, name)
-      else
-         call report_unknown(deck, numbers%noun//' set', to_upper(name), data%place(position), &
-            size(sets))
-      end if
-   end subroutine read_target
 
 end module deck_context

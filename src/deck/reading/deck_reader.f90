@@ -6,6 +6,7 @@ module deck_reader
    use cards, only: cards_type, trim_cards
    use deck_report, only: deck_report_type
    use deck_source, only: earlier_deck_type, place_type, read_lines
+   use deck_structure, only: check_data_counts
    use generated_cards, only: generate_cards
    use text, only: append, string_type, to_text, to_upper, without_blanks
    use utf8, only: first_byte
@@ -38,6 +39,7 @@ contains
       if (present(earlier)) report%source%earlier = earlier
       call read_all_lines(path, settings, open_lines, cards, report, fault)
       call trim_cards(cards)
+      if (.not. report%has_lost()) call check_data_counts(cards, report)
       call flatten_cards(cards, report)
       call generate_cards(cards, report)
       if (len(fault) > 0) then

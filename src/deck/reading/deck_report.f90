@@ -1,9 +1,10 @@
 !> Errors and warnings of a deck with their places, printed in one go.
 module deck_report
-   use card_echo, only: column_of, first_alike, print_card
+   use card_echo, only: column_of, print_card, without_numbers
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: print_line
+   use name_index, only: name_index_type
    use text, only: counted, string_type, to_text, to_upper
    implicit none
    private
@@ -55,7 +56,6 @@ module deck_report
       procedure :: root_cause
       procedure :: possible_cause
       procedure :: confirm_cause
-      procedure :: twice
       procedure :: missing
       procedure :: warning
       procedure :: lose
@@ -65,7 +65,6 @@ module deck_report
       procedure :: warnings
       procedure :: first_error
       procedure :: print => print_report
-      procedure :: take_over
    end type deck_report_type
 
 contains
@@ -86,18 +85,8 @@ contains
       end if
    end subroutine error
 
-   !> Reports what is defined a second time, and says where first.
-   subroutine twice(self, place, what, first)
-      class(deck_report_type), intent(inout) :: self
-      type(place_type), intent(in) :: place           !! where the second time
-      character(*), intent(in) :: what                !! such as material STEEL
-      type(place_type), intent(in) :: first           !! where the first time
-
-      call self%error(place, what//' is defined twice, first on '//self%source%words_of(first))
-   end subroutine twice
-
-   !> Reports an error from which all others of its card image follow: it takes the place of the
-   !> first one that is reported already, and those to come are dropped.
+   !> Reports an error from which all others of its card image follow: it takes the place of those
+   !> that are reported already, and those to come are dropped.
    subroutine root_cause(self, place, message)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
@@ -107,28 +96,23 @@ contains
       call self%error(place, message)
    end subroutine root_cause
 
-   !> Warns of what is hardly meant. An error on its card image follows from it and is replaced by
+   !> Warns of what is hardly meant. Errors on its card image follow from it and are replaced by
    !> this message.
    subroutine possible_cause(self, place, message)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
       character(*), intent(in) :: message             !! what, in plain words
+      logical :: follows(self%count)
       integer :: i
 
       if (root_cause_of(self, place) > 0) return
-      do i = 1, self%count
-         if (self%diagnostics(i)%place%image == place%image .and. &
-            self%diagnostics(i)%severity == severity_error) exit
-      end do
-      if (i > self%count) then
-         call add(self, severity_warning, place, message)
-         i = self%count
-      end if
-      self%diagnostics(i)%place = place
-      self%diagnostics(i)%message = message
-      self%diagnostics(i)%group = ''
-      self%diagnostics(i)%places = 1
-      self%diagnostics(i)%is_root_cause = .true.
+      follows = [(self%diagnostics(i)%place%image == place%image .and. &
+         self%diagnostics(i)%severity == severity_error, i=1, self%count)]
+      if (any(follows)) self%diagnostics = pack(self%diagnostics(:self%count), .not. follows)
+      self%count = self%count - count(follows)
+      self%errors = self%errors - count(follows)
+      call add(self, merge(severity_error, severity_warning, any(follows)), place, message)
+      self%diagnostics(self%count)%is_root_cause = .true.
    end subroutine possible_cause
 
    !> Makes the warnings of a group errors, in place of the one that follows from them.
@@ -237,23 +221,6 @@ contains
       call add(self, severity_warning, place, message, group)
    end subroutine warning
 
-   !> Takes what another report has, which is empty then.
-   subroutine take_over(self, other)
-      class(deck_report_type), intent(inout) :: self
-      class(deck_report_type), intent(inout) :: other
-
-      self%count = other%count
-      self%errors = other%errors
-      self%source%count = other%source%count
-      call move_alloc(other%path, self%path)
-      call move_alloc(other%diagnostics, self%diagnostics)
-      call move_alloc(other%lost, self%lost)
-      call move_alloc(other%source%images, self%source%images)
-      call move_alloc(other%source%file, self%source%file)
-      call move_alloc(other%source%line, self%source%line)
-      call move_alloc(other%source%paths, self%source%paths)
-   end subroutine take_over
-
    !> Whether the deck has an error.
    pure logical function has_errors(self)
       class(deck_report_type), intent(in) :: self
@@ -356,8 +323,10 @@ contains
    function told_by(self) result(told)
       class(deck_report_type), intent(in) :: self
       type(printed_diagnostic_type), allocatable :: told(:)
-      type(string_type) :: messages(self%count)
-      integer :: first(self%count), card(self%count), cards(self%source%count), i, last
+      type(name_index_type) :: kinds
+      character(:), allocatable :: kind, line
+      integer, allocatable :: first_of(:)          ! (kinds)
+      integer :: first(self%count), card, cards(self%source%count), i, last
 
       told = [(printed_diagnostic_type(i), i=1, self%count)]
       told%index = order_of(self)
@@ -365,19 +334,26 @@ contains
       last = 0
       ! Fewer messages are all told.
       do i = 1, merge(size(cards), 0, self%count > most_alike)
-         if (begins_card(self%source%images(i)%value)) last = i
+         line = adjustl(self%source%images(i)%value)
+         if (index(line, '*') == 1 .and. index(line, '**') /= 1) last = i
          cards(i) = last
       end do
-      card = 0
+      allocate (first_of(0))
       do i = 1, self%count
+         first(i) = i
          associate (diagnostic => self%diagnostics(told(i)%index))
-            messages(i)%value = merge('e', 'w', diagnostic%severity == severity_error)// &
-               diagnostic%message
-            if (diagnostic%place%image > 0 .and. diagnostic%places == 1) card(i) = &
-               cards(diagnostic%place%image)
+            if (diagnostic%place%image == 0 .or. diagnostic%places > 1) cycle
+            card = cards(diagnostic%place%image)
+            if (card == 0) cycle
+            kind = to_text(diagnostic%severity)//' '//to_text(card)//' '// &
+               without_numbers(diagnostic%message)
+            if (kinds%find(kind) == 0) then
+               call kinds%add(kind)
+               first_of = [first_of, i]
+            end if
+            first(i) = first_of(kinds%find(kind))
          end associate
       end do
-      first = first_alike(card, messages)
       do i = 1, self%count
          associate (leader => told(first(i)), image => self%diagnostics(told(i)%index)%place%image)
             if (first(i) == i) then
@@ -391,14 +367,6 @@ contains
       where (told%more_lines < most_alike) told%more_lines = 0
       told = pack(told, [(first(i) == i .or. told(first(i))%more_lines == 0, i=1, self%count)])
    end function told_by
-
-   pure logical function begins_card(line)
-      character(*), intent(in) :: line
-      character(:), allocatable :: words
-
-      words = adjustl(line)
-      begins_card = index(words, '*') == 1 .and. index(words, '**') /= 1
-   end function begins_card
 
    !> The order of the diagnostics by image, then column, then as reported.
    function order_of(self) result(order)
@@ -431,9 +399,9 @@ contains
             return
          end do
       end if
-      if (.not. allocated(self%diagnostics)) allocate(self%diagnostics(most_errors))
+      if (.not. allocated(self%diagnostics)) allocate(self%diagnostics(0))
       if (self%count == size(self%diagnostics)) then
-         allocate(more(2*self%count))
+         allocate(more(2*self%count + most_errors))
          more(:self%count) = self%diagnostics
          call move_alloc(more, self%diagnostics)
       end if

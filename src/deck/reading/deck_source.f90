@@ -82,17 +82,30 @@ contains
       address = self%paths(self%file(place%image))%value//':'//to_text(self%line(place%image))
    end function address_of
 
-   !> The lines of a text file, with ends of line in the manner of Unix or Windows.
+   !> The lines of a text file in UTF-8, with ends of line in the manner of Unix or Windows.
    subroutine read_lines(path, lines, fault)
       character(*), intent(in) :: path                          !! file
       type(string_type), allocatable, intent(out) :: lines(:)
       character(:), allocatable, intent(out) :: fault           !! why it is not read; else empty
       character(:), allocatable :: contents
+      character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
       integer :: i, n, first, last
+      logical :: there
 
       allocate(lines(0))
-      call read_contents(path, contents, fault)
+      fault = ''
+      inquire (file=path, exist=there)
+      if (.not. there) fault = 'there is no such file'
+      inquire (file=path//'/.', exist=there)
+      if (there) fault = 'it is a folder'
       if (len(fault) > 0) return
+      call read_file(path, most_bytes, contents, fault)
+      if (len(fault) == 0) fault = text_fault(contents)
+      if (len(fault) > 0 .or. len(contents) == 0) return
+      ! The last line has an end even where the file has none.
+      if (contents(len(contents):) /= new_line('a')) contents = contents//new_line('a')
+      if (index(contents, byte_order_mark) == 1) contents = contents(4:)
+      contents = as_utf8(contents)
       n = 0
       do i = 1, len(contents)
          if (contents(i:i) == new_line('a')) n = n + 1
@@ -109,30 +122,6 @@ contains
          first = last + 2
       end do
    end subroutine read_lines
-
-   !> A whole file in UTF-8, unless it is no text; its last line has an end even where the file has
-   !> none.
-   subroutine read_contents(path, contents, fault)
-      character(*), intent(in) :: path
-      character(:), allocatable, intent(out) :: contents
-      character(:), allocatable, intent(out) :: fault
-      character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
-      logical :: there
-
-      contents = ''
-      fault = ''
-      inquire (file=path, exist=there)
-      if (.not. there) fault = 'there is no such file'
-      inquire (file=path//'/.', exist=there)
-      if (there) fault = 'it is a folder'
-      if (len(fault) > 0) return
-      call read_file(path, most_bytes, contents, fault)
-      if (len(fault) == 0) fault = text_fault(contents)
-      if (len(fault) > 0 .or. len(contents) == 0) return
-      if (contents(len(contents):) /= new_line('a')) contents = contents//new_line('a')
-      if (index(contents, byte_order_mark) == 1) contents = contents(4:)
-      contents = as_utf8(contents)
-   end subroutine read_contents
 
    !> Why the contents of a file are no text in UTF-8 or Latin-1 with ends of line; empty where they
    !> are.

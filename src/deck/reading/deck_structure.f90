@@ -9,7 +9,7 @@ module deck_structure
    use text, only: to_text
    implicit none
    private
-   public :: check_structure, cards_of, card_count, data_count, has_stand_in, is_keyword
+   public :: check_structure, check_data_counts, cards_of, data_count, has_stand_in, is_keyword
 
 contains
 
@@ -23,14 +23,6 @@ contains
       places = pack([(k, k=1, size(cards%keywords))], &
          [(cards%keywords(k)%name == name, k=1, size(cards%keywords))])
    end function cards_of
-
-   !> Number of keyword cards of a name.
-   pure integer function card_count(cards, name)
-      type(cards_type), intent(in) :: cards
-      character(*), intent(in) :: name        !! name as in the table of keywords
-
-      card_count = size(cards_of(cards, name))
-   end function card_count
 
    !> Number of data cards of some keyword cards.
    pure integer function data_count(cards, keywords)
@@ -63,13 +55,13 @@ contains
       end do
    end function has_stand_in
 
-   !> Checks the order of the cards, the number of data cards, and what must not be missing.
+   !> Checks the order of the cards, and what must not be missing.
    subroutine check_structure(cards, report)
       type(cards_type), intent(in) :: cards
       class(deck_report_type), intent(inout) :: report    !! receives errors
       type(place_type) :: place
-      logical :: step_open, after_step, told
-      integer :: k, step
+      logical :: step_open, after_step
+      integer :: k, section, step
 
       do k = 1, size(cards%keywords)
          call lose_definitions(cards%keywords(k), report)
@@ -78,21 +70,27 @@ contains
       call need_step(cards, report)
       step_open = .false.
       after_step = .false.
-      told = .false.
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
-            call check_step_card(card, report, step_open)
-            if (card%name == 'STEP') step = k
-            after_step = after_step .or. step_open
-            if (card%known == 0) cycle
-            if (is_late(card, after_step)) then
-               if (.not. told) call report_late(cards, k, report)
-               told = .true.
-            else
-               told = .false.
-               call check_section(card, step_open, after_step, report)
+            if (card%name == 'STEP') then
+               if (step_open) call report%error(card%place, 'the step before has no *END STEP')
+               step_open = .true.
+               step = k
+            else if (card%name == 'END STEP') then
+               if (.not. step_open) call report%missing(card%place, 'this *END STEP has no '// &
+                  '*STEP', '*STEP')
+               step_open = .false.
             end if
-            call check_data_count(card, report)
+            after_step = after_step .or. step_open
+            if (card%known == 0 .or. len(card%meant) > 0) cycle
+            section = known_keywords(card%known)%section
+            if (section == in_model .and. after_step) call report%error(card%place, '*'// &
+               card%name//' must come before the first *STEP', 'late cards of the model')
+            if (section == in_step .and. .not. step_open .and. card%name /= 'END STEP') call &
+               report%missing(card%place, '*'//card%name//' must be between *STEP and *END '// &
+               'STEP', '*STEP')
+            if (card%name == 'BOUNDARY' .and. after_step .and. .not. step_open) call &
+               report%error(card%place, '*BOUNDARY must be in a step or before the first')
          end associate
       end do
       if (step_open) call report%error(cards%keywords(step)%place, 'this step has no *END STEP')
@@ -130,96 +128,33 @@ contains
       end select
    end subroutine lose_definitions
 
-   !> Follows *STEP and *END STEP.
-   subroutine check_step_card(card, report, step_open)
-      type(keyword_card_type), intent(in) :: card
-      class(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: step_open
-
-      if (card%name == 'STEP') then
-         if (step_open) call report%error(card%place, 'the step before has no *END STEP')
-         step_open = .true.
-      else if (card%name == 'END STEP') then
-         if (.not. step_open) call report%missing(card%place, 'this *END STEP has no *STEP', &
-            '*STEP')
-         step_open = .false.
-      end if
-   end subroutine check_step_card
-
-   !> Whether a card of the model is behind the first *STEP.
-   pure logical function is_late(card, after_step)
-      type(keyword_card_type), intent(in) :: card
-      logical, intent(in) :: after_step
-
-      is_late = after_step .and. len(card%meant) == 0
-      if (is_late) is_late = known_keywords(card%known)%section == in_model
-   end function is_late
-
-   !> Reports a card of the model that is behind the first *STEP, with those that follow it.
-   subroutine report_late(cards, first, report)
+   !> Checks the number of data cards of all keyword cards.
+   subroutine check_data_counts(cards, report)
       type(cards_type), intent(in) :: cards
-      integer, intent(in) :: first
-      class(deck_report_type), intent(inout) :: report
-      character(:), allocatable :: followers
-      integer :: k
-
-      followers = ''
-      do k = first + 1, size(cards%keywords)
-         if (cards%keywords(k)%known == 0) exit
-         if (.not. is_late(cards%keywords(k), .true.)) exit
-         followers = followers//', *'//cards%keywords(k)%name
-      end do
-      if (len(followers) > 0) followers = ', and so must the cards after it: '//followers(3:)
-      call report%error(cards%keywords(first)%place, '*'//cards%keywords(first)%name// &
-         ' must come before the first *STEP'//followers)
-   end subroutine report_late
-
-   subroutine check_section(card, step_open, after_step, report)
-      type(keyword_card_type), intent(in) :: card
-      logical, intent(in) :: step_open, after_step
-      class(deck_report_type), intent(inout) :: report
-
-      if (len(card%meant) > 0) return
-      select case (known_keywords(card%known)%section)
-      case (in_model)
-         continue
-      case (in_step)
-         if (.not. step_open .and. card%name /= 'END STEP') call report%missing(card%place, &
-            '*'//card%name//' must be between *STEP and *END STEP', '*STEP')
-      case default
-         if (card%name == 'BOUNDARY' .and. after_step .and. .not. step_open) then
-            call report%error(card%place, '*BOUNDARY must be in a step or before the first')
-         end if
-      end select
-   end subroutine check_section
-
-   subroutine check_data_count(card, report)
-      type(keyword_card_type), intent(in) :: card
-      class(deck_report_type), intent(inout) :: report
+      class(deck_report_type), intent(inout) :: report    !! receives errors
       type(keyword_type) :: known
       character(:), allocatable :: most
-      integer :: n
+      integer :: k
+      logical :: says_all
 
-      known = known_keywords(card%known)
-      n = size(card%data)
-      if (n < known%least_data .and. .not. (says_all(card) .or. card%data_lost)) then
-         call report%error(card%place, '*'//card%name//' needs a data card')
-      else if (n > known%most_data) then
-         most = 'none'
-         if (known%most_data > 0) most = 'at most '//to_text(known%most_data)
-         call report%error(card%data(known%most_data + 1)%place(1), 'extra data '// &
-            'card; *'//card%name//' has '//most)
-      end if
-   end subroutine check_data_count
-
-   !> Whether a card needs no data because its parameters say all that it has to say: OP=NEW, ROUGH,
-   !> or an element set or surface of which an *NSET takes the nodes.
-   pure logical function says_all(card)
-      type(keyword_card_type), intent(in) :: card
-
-      says_all = chosen(card, 'OP', 'MOD/NEW') == 'NEW' .or. (card%name == 'NSET' .and. (card%has( &
-         'ELSET') .or. card%has('SURFACE'))) .or. (card%name == 'FRICTION' .and. card%has('ROUGH'))
-   end function says_all
+      do k = 1, size(cards%keywords)
+         associate (card => cards%keywords(k), n => size(cards%keywords(k)%data))
+            if (card%known == 0) cycle
+            known = known_keywords(card%known)
+            ! OP=NEW, ROUGH, or an element set or surface of which an *NSET takes the nodes.
+            says_all = chosen(card, 'OP', 'MOD/NEW') == 'NEW' .or. card%has('ROUGH') .or. &
+               (card%name == 'NSET' .and. (card%has('ELSET') .or. card%has('SURFACE')))
+            if (n < known%least_data .and. .not. (says_all .or. card%data_lost)) then
+               call report%error(card%place, '*'//card%name//' needs a data card')
+            else if (n > known%most_data) then
+               most = 'none'
+               if (known%most_data > 0) most = 'at most '//to_text(known%most_data)
+               call report%error(card%data(known%most_data + 1)%place(1), 'extra data card; *'// &
+                  card%name//' has '//most)
+            end if
+         end associate
+      end do
+   end subroutine check_data_counts
 
    !> Reports a deck without *STEP at the first card that belongs in one.
    subroutine need_step(cards, report)
@@ -227,9 +162,9 @@ contains
       class(deck_report_type), intent(inout) :: report
       integer :: k
 
+      if (size(cards_of(cards, 'STEP')) > 0 .or. has_stand_in(cards, 'STEP')) return
       do k = 1, size(cards%keywords)
          associate (card => cards%keywords(k))
-            if (card_count(cards, 'STEP') > 0 .or. has_stand_in(cards, 'STEP')) return
             if (card%known == 0 .or. len(card%meant) > 0) cycle
             if (known_keywords(card%known)%section /= in_step) cycle
             call report%error(card%place, 'the deck has no *STEP before this card')
@@ -247,7 +182,7 @@ contains
       type(place_type), intent(in) :: place              ! where it is missed
       class(deck_report_type), intent(inout) :: report
 
-      if (card_count(cards, name) > 0 .or. has_stand_in(cards, name)) return
+      if (size(cards_of(cards, name)) > 0 .or. has_stand_in(cards, name)) return
       if (size(cards%keywords) > 0) call report%error(place, 'the deck has no *'//name)
       call report%lose('*'//name)
    end subroutine need_card

@@ -123,12 +123,9 @@ contains
       integer :: kind, plane
 
       call take_element_type(to_upper(name), kind, plane, message)
-      element_type_fields = 0
-      if (line_node_count(to_upper(name)) > 0) then
-         element_type_fields = line_node_count(to_upper(name)) + 1
-         return
-      end if
-      if (len(message) == 0) element_type_fields = element_node_count(kind) + 1
+      element_type_fields = line_node_count(to_upper(name))
+      if (len(message) == 0) element_type_fields = element_node_count(kind)
+      if (element_type_fields > 0) element_type_fields = element_type_fields + 1
    end function element_type_fields
 
    !> What kind of line an element type names; drawn_line where it names none.

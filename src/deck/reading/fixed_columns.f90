@@ -72,7 +72,16 @@ contains
       integer :: bad, i, start
 
       allocate (fields(size(columns%last)))
-      call find_beyond(line, columns%last(size(columns%last)), bad, fault)
+      fault = ''
+      start = columns%last(size(fields)) + 1
+      if (last_text(line) >= start) then
+         bad = start - 1 + verify(line(start:), ' ')
+         fault = 'text where the format reads nothing'
+      end if
+      if (index(line, achar(9)) > 0) then
+         bad = index(line, achar(9))
+         fault = 'a tab on a card of fixed columns'
+      end if
       start = 1
       do i = 1, size(fields)
          text = line(min(start, len(line) + 1):min(columns%last(i), len(line)))
@@ -91,23 +100,6 @@ contains
       if (.not. valid) call report%error(place_type(image, bad), fault//': are the columns '// &
          'shifted?')
    end subroutine split_columns
-
-   !> Text behind the last column of a format, and tabs.
-   pure subroutine find_beyond(line, last, bad, fault)
-      character(*), intent(in) :: line
-      integer, intent(in) :: last
-      integer, intent(out) :: bad                        ! column
-      character(:), allocatable, intent(out) :: fault    ! what is wrong, or empty
-
-      fault = ''
-      bad = index(line, achar(9))
-      if (bad > 0) then
-         fault = 'a tab on a card of fixed columns'
-      else if (last_text(line) > last) then
-         bad = last + verify(line(last + 1:), ' ')
-         fault = 'text where the format reads nothing'
-      end if
-   end subroutine find_beyond
 
    !> A number has no blank in it, and none behind it: in Fortran before 1977 such blanks were
    !> zeros. Its point makes both the same.

@@ -1,14 +1,15 @@
 !> *NGEN, *NFILL, *NCOPY, *ELGEN and *ELCOPY -> the *NODE and *ELEMENT cards that they stand for.
 module generated_cards
-   use card_parameters, only: choice
+   use card_parameters, only: choice, take_parameter
    use card_values, only: read_row
    use cards, only: add_data, add_keyword, cards_type, data_card_type, keyword_card_type, &
       replace_cards
    use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
-   use given_cards, only: add_generated, add_node_card, add_numbers, add_set, corners_of, &
-      growing_cards_type, keep_last, node_place, position_of, rotation
+   use given_cards, only: add_generated, add_numbers, add_set, corners_of, &
+      card_of, growing_cards_type, is_given, keep_last, node_place
    use kinds, only: dp
+   use plane_motions, only: rotation
    use text, only: to_text
    implicit none
    private
@@ -37,6 +38,7 @@ contains
       type(cards_type), intent(inout) :: cards
       type(deck_report_type), intent(inout), target :: report   !! receives errors
       type(growing_cards_type) :: all
+      real(dp) :: bias
       integer :: k, j
 
       do k = 1, size(cards%keywords)
@@ -55,14 +57,15 @@ contains
                cycle
             end if
             select case (card%name)
-            case ('NFILL')
-               call fill_nodes(card, all)
             case ('NCOPY')
                call copy_nodes(card, all)
             case ('ELCOPY')
                call copy_elements(card, all)
             case default
+               bias = 1.0_dp
+               call take_parameter(card, 'BIAS', report, bias, '>0')
                do j = 1, size(card%data)
+                  if (card%name == 'NFILL') call fill_nodes(card, card%data(j), bias, all)
                   if (card%name == 'NGEN') call generate_nodes(card, card%data(j), all)
                   if (card%name == 'ELGEN') call generate_elements(card, card%data(j), all)
                end do
@@ -108,7 +111,17 @@ contains
          call make_circle(card, data, given, ends, all, circle)
          valid = circle%valid
       end if
-      if (valid) call check_range(data, ends%number, step, all%report, valid)
+      if (valid) then
+         n = ends(2)%number - ends(1)%number
+         valid = step > 0 .and. n > 0 .and. mod(n, max(step, 1)) == 0
+         if (.not. valid) then
+            call all%report%error(data%place(3), 'increments of '//to_text(step)//' do not '// &
+               'lead from '//to_text(ends(1)%number)//' to '//to_text(ends(2)%number))
+         else if (n/step > most_generated) then
+            call all%report%error(data%place(2), too_many)
+            valid = .false.
+         end if
+      end if
       if (.not. valid) then
          call all%report%lose('node')
          return
@@ -123,7 +136,7 @@ contains
          else
             from = ends(1)%x + (ends(2)%x - ends(1)%x)*i/n
          end if
-         call add_node_card(data, ends(1)%number + i*step, from, all)
+         call add_numbers(data, [ends(1)%number + i*step], all, from)
       end do
    end subroutine generate_nodes
 
@@ -134,13 +147,11 @@ contains
       integer, intent(in) :: number
       type(growing_cards_type), intent(in) :: all
       type(given_point_type), intent(out) :: node
-      integer :: at
 
       node%number = number
-      at = position_of(number, all%nodes)
-      node%valid = at > 0
+      node%valid = is_given(number, all%nodes)
       if (node%valid) then
-         node%x = node_place(all, at)
+         node%x = node_place(all, number)
       else
          call all%report%error(data%place(i), 'no *NODE before this card has node '// &
             to_text(number))
@@ -177,24 +188,6 @@ contains
       circle%valid = .false.
    end subroutine make_circle
 
-   !> The increment leads from the first number to the last.
-   subroutine check_range(data, ends, step, report, valid)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: ends(2), step
-      type(deck_report_type), intent(inout) :: report
-      logical, intent(inout) :: valid
-
-      valid = step > 0 .and. ends(2) > ends(1)
-      if (valid) valid = mod(ends(2) - ends(1), step) == 0
-      if (.not. valid) then
-         call report%error(data%place(3), 'increments of '//to_text(step)//' do not lead from '// &
-            to_text(ends(1))//' to '//to_text(ends(2)))
-      else if ((ends(2) - ends(1))/step > most_generated) then
-         call report%error(data%place(2), too_many)
-         valid = .false.
-      end if
-   end subroutine check_range
-
    !> Master element; then for the elements of a row, and for the rows, their number and the
    !> increments of their nodes and of their own numbers.
    subroutine generate_elements(card, data, all)
@@ -203,7 +196,7 @@ contains
       type(growing_cards_type), intent(inout) :: all
       integer, allocatable :: corners(:)
       real(dp) :: given(7)
-      integer :: master, at, i, j
+      integer :: master, card_at(2), i, j
       integer :: counts(2)      ! elements of a row, and rows
       integer :: steps(2, 2)    ! increments of nodes and elements, of both
       logical :: valid
@@ -218,24 +211,23 @@ contains
          call all%report%error(data%place(2), too_many)
          valid = .false.
       end if
-      at = 0
-      if (valid) at = position_of(master, all%elements)
-      if (valid .and. at == 0) call all%report%error(data%place(1), 'no *ELEMENT before this '// &
-         'card has element '//to_text(master))
-      if (at == 0) then
+      card_at = 0
+      if (valid) card_at = card_of(master, all%elements)
+      if (valid .and. card_at(1) == 0) call all%report%error(data%place(1), 'no *ELEMENT '// &
+         'before this card has element '//to_text(master))
+      if (card_at(1) == 0) then
          call all%report%lose('element')
          return
       end if
-      corners = corners_of(all%keywords(all%elements%keyword(at))%data(all%elements%card(at)))
+      corners = corners_of(all%keywords(card_at(1))%data(card_at(2)))
       call add_set(card, 'ELSET', data, [master], all)
       if (product(counts) > 1) call add_generated(card, 'ELEMENT', &
-         all%keywords(all%elements%keyword(at))%text('TYPE'), all)
+         all%keywords(card_at(1))%text('TYPE'), all)
       do j = 0, counts(2) - 1
          do i = 0, counts(1) - 1
             if (i + j == 0) cycle
             call add_numbers(data, [master + i*steps(2, 1) + j*steps(2, 2), &
                corners + i*steps(1, 1) + j*steps(1, 2)], all)
-            call keep_last(all)
          end do
       end do
    end subroutine generate_elements

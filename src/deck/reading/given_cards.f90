@@ -12,20 +12,13 @@ module given_cards
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none
    private
-   public :: given_type, growing_cards_type, add_set, add_generated, add_numbers, add_node_card
-   public :: node_place, keep_last, members_of, position_of, corners_of, exact_text, rotation
-
-   !> Nodes, or elements, of the cards so far.
-   type :: given_type
-      integer :: count = 0
-      integer, allocatable :: number(:)      !! (capacity) their numbers
-      integer, allocatable :: keyword(:)     !! (capacity) keyword card
-      integer, allocatable :: card(:)        !! (capacity) data card
-   end type given_type
+   public :: growing_cards_type, add_set, add_generated, add_numbers
+   public :: node_place, keep_last, members_of, card_of, is_given, corners_of, exact_text
 
    !> Cards that take the place of others, so far.
    type, extends(cards_type) :: growing_cards_type
-      type(given_type) :: nodes, elements                         !! of these cards
+      !> nodes and elements of these cards: number, keyword card and data card of each
+      type(number_list_type) :: nodes, elements
       type(deck_report_type), pointer :: report => null()         !! what is wrong with the deck
    end type growing_cards_type
 
@@ -65,62 +58,38 @@ contains
       call add_keyword(all, generated)
    end subroutine add_generated
 
-   !> Adds a data card of numbers.
-   subroutine add_numbers(data, numbers, all)
+   !> Adds a data card of numbers and, of a node, its place.
+   subroutine add_numbers(data, numbers, all, x)
       type(data_card_type), intent(in) :: data      !! whose place it has
       integer, intent(in) :: numbers(:)             !! its fields
       type(growing_cards_type), intent(inout) :: all        !! receives the card
-      type(string_type) :: words(size(numbers))
-      integer :: i
-
-      do i = 1, size(numbers)
-         words(i)%value = to_text(numbers(i))
-      end do
-      call add_fields(data, words, all)
-   end subroutine add_numbers
-
-   subroutine add_fields(data, words, all)
-      type(data_card_type), intent(in) :: data
-      type(string_type), intent(in) :: words(:)
-      type(growing_cards_type), intent(inout) :: all
+      real(dp), intent(in), optional :: x(2)        !! the fields behind them [length]
       type(field_type), allocatable :: fields(:)
-      integer :: i
+      integer :: i, n
 
-      allocate(fields(size(words)))
-      do i = 1, size(words)
-         fields(i)%text = words(i)%value
+      n = size(numbers)
+      allocate (fields(n + merge(2, 0, present(x))))
+      do i = 1, size(fields)
+         if (i <= n) fields(i)%text = to_text(numbers(i))
+         if (i > n) fields(i)%text = exact_text(x(i - n))
          fields(i)%place = data%place(1)
       end do
       call add_data(all, fields, data%end)
-   end subroutine add_fields
-
-   !> Adds a node.
-   subroutine add_node_card(data, number, x, all)
-      type(data_card_type), intent(in) :: data      !! whose place it has
-      integer, intent(in) :: number                 !! of the node
-      real(dp), intent(in) :: x(2)                  !! its place [length]
-      type(growing_cards_type), intent(inout) :: all        !! receives the card
-      type(string_type) :: words(3)
-
-      words(1)%value = to_text(number)
-      words(2)%value = exact_text(x(1))
-      words(3)%value = exact_text(x(2))
-      call add_fields(data, words, all)
       call keep_last(all)
-   end subroutine add_node_card
+   end subroutine add_numbers
 
-   !> Place of a node; a coordinate that is no number is 0 and reported elsewhere.
-   function node_place(all, at) result(x)
+   !> Place of a node that is given; a coordinate that is no number is 0 and reported elsewhere.
+   function node_place(all, number) result(x)
       type(growing_cards_type), intent(in) :: all
-      integer, intent(in) :: at                     !! its position in the list
-      real(dp) :: x(2)
-      integer :: i
+      integer, intent(in) :: number
+      real(dp) :: x(2)                              !! [length]
+      integer :: card(2), i
       logical :: is_number
 
       x = 0.0_dp
+      card = card_of(number, all%nodes)
       do i = 1, 2
-         call read_real(all%keywords(all%nodes%keyword(at))%data(all%nodes%card(at))%text(i + 1), &
-            x(i), is_number)
+         call read_real(all%keywords(card(1))%data(card(2))%text(i + 1), x(i), is_number)
       end do
    end function node_place
 
@@ -135,27 +104,11 @@ contains
          if (.not. any(last%name == ['NODE   ', 'ELEMENT'])) return
          call read_integer(last%data(last%data_count)%text(1), number, valid)
          if (.not. valid) return
-         if (last%name == 'NODE') call keep(number, all%keyword_count, last%data_count, all%nodes)
-         if (last%name == 'ELEMENT') call keep(number, all%keyword_count, last%data_count, &
-            all%elements)
+         if (last%name == 'NODE') call all%nodes%add([number, all%keyword_count, last%data_count])
+         if (last%name == 'ELEMENT') call all%elements%add([number, all%keyword_count, &
+            last%data_count])
       end associate
    end subroutine keep_last
-
-   pure subroutine keep(number, keyword, card, given)
-      integer, intent(in) :: number, keyword, card
-      type(given_type), intent(inout) :: given
-
-      if (.not. allocated(given%number)) allocate(given%number(0), given%keyword(0), given%card(0))
-      if (given%count == size(given%number)) then
-         given%number = [given%number, spread(0, 1, given%count + 64)]
-         given%keyword = [given%keyword, spread(0, 1, given%count + 64)]
-         given%card = [given%card, spread(0, 1, given%count + 64)]
-      end if
-      given%count = given%count + 1
-      given%number(given%count) = number
-      given%keyword(given%count) = keyword
-      given%card(given%count) = card
-   end subroutine keep
 
    !> Numbers of a set of the cards so far, each once and ascending. What is no number and no set so
    !> far is reported elsewhere.
@@ -224,15 +177,28 @@ contains
       call append(names, to_upper(name))
    end subroutine add_name
 
-   !> Position of a number in a list, the last one where there are several; 0 where it is not.
-   pure integer function position_of(number, given)
+   !> Keyword card and data card of a node or element, the last ones where there are several; 0
+   !> where it is not given.
+   pure function card_of(number, given) result(card)
       integer, intent(in) :: number                 !! of a node or element
-      type(given_type), intent(in) :: given         !! the list
+      type(number_list_type), intent(in) :: given   !! as of growing_cards_type
+      integer :: card(2)
+      integer :: at
 
-      position_of = 0
-      if (given%count > 0) position_of = findloc(given%number(:given%count), number, dim=1, &
-         back=.true.)
-   end function position_of
+      associate (list => given%numbers())
+         at = findloc(list(1::3), number, dim=1, back=.true.)
+         card = 0
+         if (at > 0) card = list(3*at - 1:3*at)
+      end associate
+   end function card_of
+
+   !> Whether a node or element is given.
+   pure logical function is_given(number, given)
+      integer, intent(in) :: number                 !! of a node or element
+      type(number_list_type), intent(in) :: given   !! as of growing_cards_type
+
+      is_given = any(card_of(number, given) > 0)
+   end function is_given
 
    !> Nodes of an element, up to the first field that is no number.
    pure function corners_of(data) result(corners)
@@ -248,14 +214,6 @@ contains
          corners = [corners, number]
       end do
    end function corners_of
-
-   !> Turns a place about the origin.
-   pure function rotation(angle)
-      real(dp), intent(in) :: angle                 !! anticlockwise [rad]
-      real(dp) :: rotation(2, 2)
-
-      rotation = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
-   end function rotation
 
    !> A number with all of its digits.
    function exact_text(value) result(string)

@@ -61,6 +61,7 @@ contains
       type(keyword_card_type), intent(inout) :: card
       type(advice_type) :: advice
       character(:), allocatable :: message, name
+      integer :: blank
 
       name = trim(adjustl(fields(1)%text(2:)))
       advice = find_advice(name)
@@ -80,28 +81,19 @@ contains
          card%refusal_of_data = message
          call add_note(cards%notes, '*'//trim(advice%names)//' without data is ignored')
       case default
-         call cut_keyword(fields(1), report, card)
+         blank = end_of_keyword(fields(1)%text)
+         if (blank > 0) then   ! the parameter behind it is lost
+            call report%error(place_type(card%place%image, card%place%column + blank - 2 + &
+               first_text(fields(1)%text(blank:))), 'a comma is missing after '// &
+               to_upper(fields(1)%text(:blank - 1)))
+            card%known = find_keyword(fields(1)%text(2:blank - 1))
+            card%flawed = .true.
+         end if
          if (card%known == 0) call report_unknown_keyword(name, index(fields(1)%text, '* ') == 1, &
             report, card)
          if (card%known == 0) call lose_names(fields(2:), report)
       end select
    end subroutine take_foreign_keyword
-
-   !> Reports a comma that is missing behind a known keyword. The parameter behind it is lost.
-   subroutine cut_keyword(field, report, card)
-      type(field_type), intent(in) :: field
-      type(deck_report_type), intent(inout) :: report
-      type(keyword_card_type), intent(inout) :: card
-      integer :: blank
-
-      blank = end_of_keyword(field%text)
-      if (blank == 0) return
-      call report%error(place_type(field%place%image, field%place%column + blank - 2 + &
-         first_text(field%text(blank:))), 'a comma is missing after '// &
-         to_upper(field%text(:blank - 1)))
-      card%known = find_keyword(field%text(2:blank - 1))
-      card%flawed = .true.
-   end subroutine cut_keyword
 
    !> The names that a refused card or one that nobody knows may define are missing elsewhere.
    subroutine lose_names(fields, report)
@@ -235,49 +227,49 @@ contains
       logical, intent(out) :: valid
       type(known_parameter_type) :: known, other
       type(advice_type) :: advice
-      character(:), allocatable :: value
+      character(:), allocatable :: fault, name, value
+      type(place_type) :: place
       integer :: blank, equals, errors
 
       errors = report%error_count()
-      equals = index(field%text, '=')
-      if (equals == 0) equals = len(field%text) + 1
-      known = find_parameter(card%known, field%text(:equals - 1))
-      if (len(known%name) == 0) known = find_abbreviated(card%known, field%text(:equals - 1))
-      if (len(known%name) == 0 .and. len(field%text) > 0) call report_unknown_parameter( &
-         field%text(:equals - 1), field%place, report, cards, card, known)
-      parameter%name = known%name
-      parameter%place = field%place
-      parameter%value_place = field%place
+      place = field%place
+      equals = index(field%text//'=', '=')
+      name = field%text(:equals - 1)
+      known = find_parameter(card%known, name)
+      if (len(known%name) == 0) known = find_abbreviated(card%known, name)
+      if (len(known%name) == 0 .and. len(field%text) > 0) call report_unknown_parameter(name, &
+         place, report, cards, card, known)
       value = field%text(min(equals + 1, len(field%text) + 1):)
+      parameter%name = known%name
       parameter%text = without_quotes(value(first_text(value):))
+      parameter%place = place
+      parameter%value_place = place
+      if (len(value) > 0) parameter%value_place%column = place%column + equals + &
+         first_text(value) - 1
       blank = scan(value(:index(value, '=')), ' ', back=.true.)
       other%name = ''
       if (blank > 0 .and. index(value, '"') == 0) other = find_parameter(card%known, &
          value(blank + 1:index(value, '=') - 1))
-      if (len(value) > 0) parameter%value_place%column = field%place%column + equals + &
-         first_text(value) - 1
+      fault = ''
       if (len(field%text) == 0 .and. .not. field%undefined) then
-         call report%error(field%place, 'an empty parameter')
+         fault = 'an empty parameter'
       else if (len(known%name) == 0) then
          continue
       else if (known%name == 'DEPENDENCIES' .and. parameter%text == '0') then
          known%status = not_needed
       else if (known%status == refused) then
          advice = find_advice(known%name, card%name)
-         call report%error(field%place, known%name//' is refused on *'//card%name//': '// &
-            trim(advice%words))
+         fault = known%name//' is refused on *'//card%name//': '//trim(advice%words)
       else if (known%needs_value .and. len(parameter%text) == 0) then
-         call report%error(field%place, known%name//' needs a value')
+         fault = known%name//' needs a value'
       else if (.not. known%takes_value .and. equals <= len(field%text)) then
-         call report%error(field%place, known%name//' takes no value')
+         fault = known%name//' takes no value'
       else if (len(other%name) > 0) then
-         call report%error(place_type(field%place%image, field%place%column + equals + blank), &
-            'a comma is missing before this parameter')
+         fault = 'a comma is missing before this parameter'
+         place%column = place%column + equals + blank
       end if
-      valid = len(known%name) > 0 .and. known%status == built
-      if (valid) valid = len(parameter%text) > 0 .or. .not. known%needs_value
-      if (valid .and. .not. known%takes_value) valid = equals > len(field%text)
-      valid = valid .and. len(other%name) == 0
+      if (len(fault) > 0) call report%error(place, fault)
+      valid = len(known%name) > 0 .and. len(fault) == 0 .and. known%status == built
       card%flawed = card%flawed .or. field%undefined .or. &
          (report%error_count() > errors .and. .not. valid)
       if (len(known%name) > 0 .and. known%status == not_needed .and. &
@@ -295,9 +287,11 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(known_parameter_type), intent(inout) :: known
       type(string_type), allocatable :: names(:)
-      character(:), allocatable :: group, hint
+      type(known_parameter_type) :: other
+      character(:), allocatable :: group, hint, list
       integer :: i
 
+      list = ''
       group = 'parameter '//to_upper(trim(name))//' of *'//card%name
       names = parameter_names(card%known)
       hint = ''
@@ -319,7 +313,11 @@ contains
          end if
          return
       end if
-      if (len(hint) == 0) hint = listed(card%known, names)
+      do i = 1, merge(size(names), 0, len(hint) == 0)
+         other = find_parameter(card%known, names(i)%value)
+         if (other%status == built) list = list//', '//other%name
+      end do
+      if (len(list) > 0) hint = 'it takes '//list(3:)
       if (len(hint) > 0) then
          call report%error(place, 'unknown '//group//'; '//hint, group)
       else
@@ -327,22 +325,6 @@ contains
             card%name//' has none', group)
       end if
    end subroutine report_unknown_parameter
-
-   !> The parameters that a keyword takes; empty where none of them means anything.
-   pure function listed(keyword, names) result(list)
-      integer, intent(in) :: keyword
-      type(string_type), intent(in) :: names(:)
-      character(:), allocatable :: list
-      type(known_parameter_type) :: parameter
-      integer :: i
-
-      list = ''
-      do i = 1, size(names)
-         parameter = find_parameter(keyword, names(i)%value)
-         if (parameter%status == built) list = list//', '//parameter%name
-      end do
-      if (len(list) > 0) list = 'it takes '//list(3:)
-   end function listed
 
    !> Whether a name is near enough to a known one to be worth naming: half of its letters agree.
    pure logical function is_near(name, known)

@@ -502,11 +502,8 @@ contains
       character(*), intent(in) :: name         !! without the star
       integer :: i
 
-      is_word = .false.
-      do i = 1, size(advice)
-         if (advice(i)%kind == of_word) is_word = is_word .or. &
-            index('/'//trim(advice(i)%names)//'/', '/'//to_upper(without_blanks(name))//'/') > 0
-      end do
+      is_word = any([(advice(i)%kind == of_word .and. index('/'//trim(advice(i)%names)//'/', &
+         '/'//to_upper(without_blanks(name))//'/') > 0, i=1, size(advice))])
    end function is_word
 
 end module keywords
