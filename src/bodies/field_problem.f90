@@ -30,7 +30,7 @@ module field_problem
    !> Loads and prescribed values of a field at the end of an increment.
    type :: field_load_type
       real(dp), allocatable :: given(:)                       !! (dofs) prescribed values
-      real(dp), allocatable :: acting(:)    !! (dofs) forces, those on kept ones condensed there
+      real(dp), allocatable :: forces(:)    !! (dofs) nodal ones, where bodies are reduced by pieces
       real(dp), allocatable :: rhs(:, :)                      !! (equations, 1) right-hand side
       real(dp), allocatable :: condensed(:) !! (tail) right-hand side condensed on the tail
    end type field_load_type
@@ -261,7 +261,7 @@ contains
       if (allocated(problem%division%piece)) then
          if (allocated(self%added%value)) acting = acting - self%added%multiply(supported)
          call self%pieces%condense(acting)
-         load%acting = acting
+         load%forces = forces
          load%rhs = reshape(problem%map%load(acting, given, &
             problem%map%link_stiffness(problem%matrix)), [problem%map%equations, 1])
          return
@@ -323,7 +323,7 @@ contains
 
       if (allocated(problem%division%piece)) then
          values = problem%map%expand(on_tail, load%given)
-         call self%pieces%fill(values, load%acting)
+         call self%pieces%fill(values, load%forces)
          return
       end if
       call self%solver%recover(load%rhs, reshape(on_tail, [size(on_tail), 1]), solution)

@@ -4,7 +4,7 @@
 module motion_responses
    use contact_heat, only: temperature_jumps
    use controls, only: implicit_scheme
-   use dense, only: eigenvalues, product_of, tail_factors_type, transposed_product
+   use dense, only: eigenvalues, product_of, transposed_product
    use errors, only: error_type
    use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
@@ -15,6 +15,7 @@ module motion_responses
    use simulation, only: simulation_type
    use linear_perturbations, only: linear_perturbation_type
    use sparse_matrix, only: linear_combination, sparse_matrix_type
+   use tail_factors, only: tail_factors_type
    implicit none
    private
    public :: motion_response_type
