@@ -89,8 +89,11 @@ contains
          relative = points%relative(rigid(:, i))
          do k = 1, size(points%slave)
             contact%rigid(contact%normal(k), i) = dot_product(points%normal(:, k), relative(:, k))
-            if (contact%tangent(k) > 0) contact%rigid(contact%tangent(k), i) = &
-               dot_product(points%tangent(:, k), relative(:, k))
+            ! One without friction is an unknown of a sparse tail, too.
+            associate (row => map%tail_index(map%introduced(2*k)))
+               if (row > 0) contact%rigid(row, i) = dot_product(points%tangent(:, k), &
+                  relative(:, k))
+            end associate
          end do
       end do
       if (contact%schur%is_sparse()) then
@@ -117,8 +120,7 @@ contains
       integer :: dof, i
 
       is_face = .true.
-      is_face(contact%normal) = .false.
-      is_face(pack(contact%tangent, contact%tangent > 0)) = .false.
+      is_face(pack(map%tail_index(map%introduced), map%tail_index(map%introduced) > 0)) = .false.
       associate (by => map%by_unknowns)
          do dof = 1, by%count
             if (by%start(dof + 1) - by%start(dof) /= 1) cycle

@@ -348,7 +348,7 @@ contains
          end do
          where (body <= 0.0_dp) body = 1.0_dp
          call make_tangent(bodies%equilibrium%contact, workspace%contact, state, tangent, sound)
-         if (sound) load = product_of(heat%jump_load, by_omega%of_tail)
+         if (sound) load = heat%loads_of_tail(bodies, by_omega%of_tail)
          if (sound .and. allocated(workspace%friction%heat)) call follow_friction(bodies, heat, &
             workspace, state, by_omega, load, sound)
          if (sound) then

@@ -77,6 +77,13 @@ contains
             workspace%resolves_edge = .false.
             workspace%edge = edge_heat_type()
          end if
+         if (heat%schur%is_sparse() .and. controls%method == method_newton) then
+            ! A derivative costs a solution for each contact point: it is formed where it is needed.
+            call use_method(bodies, heat, with_method(controls, method_anderson), trial, error)
+            if (.not. allocated(error)) return
+            if (error%status /= status_no_convergence) return
+            call start_again()
+         end if
          before = size(workspace%record%iterations)
          call use_method(bodies, heat, controls, trial, error)
          if (allocated(error) .and. size(workspace%record%iterations) == before) then
@@ -88,14 +95,14 @@ contains
          if (.not. allocated(error)) return
          if (error%status /= status_no_convergence) return
          ! Newton's method needs the loads of all jumps.
-         if (heat%is_on_demand(bodies)) return
+         if (heat%is_on_demand(bodies) .and. .not. heat%schur%is_sparse()) return
          if (controls%method /= method_newton) then
             if (any(workspace%pass%graph%width > 0.0_dp)) then
                call append(workspace%record%notes, &
                   'the method of the deck finds no state for a contact point whose conductance '// &
                   'jumps; NEWTON solves this increment')
                call start_again()
-               call use_method(bodies, heat, by_newton(controls), trial, error)
+               call use_method(bodies, heat, with_method(controls, method_newton), trial, error)
                if (.not. allocated(error)) return
             else if (.not. (runs_away(bodies, next%jump) .or. workspace%contact%driven)) then
                call start_again()
@@ -113,14 +120,15 @@ contains
       end subroutine start_again
    end subroutine iterate
 
-   !> The controls with Newton's method.
-   pure function by_newton(controls)
+   !> The controls with another method.
+   pure function with_method(controls, method)
       type(fixed_point_type), intent(in) :: controls
-      type(fixed_point_type) :: by_newton
+      integer, intent(in) :: method            ! one of the method_* constants
+      type(fixed_point_type) :: with_method
 
-      by_newton = controls
-      by_newton%method = method_newton
-   end function by_newton
+      with_method = controls
+      with_method%method = method
+   end function with_method
 
    !> Says of an increment in which another method failed what Newton's finds in it: a solution, or
    !> that the heat runs away.
@@ -133,7 +141,8 @@ contains
       type(error_type), allocatable :: other_error
 
       record = trial%workspace%record
-      call use_method(bodies, heat, by_newton(trial%data%fixed_point), trial, other_error)
+      call use_method(bodies, heat, with_method(trial%data%fixed_point, &
+         method_newton), trial, other_error)
       trial%workspace%record = record
       trial%workspace%contact%driven = .false.
       if (allocated(other_error)) then

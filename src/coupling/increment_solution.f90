@@ -3,7 +3,6 @@
 module increment_solution
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use closing_instant, only: solve_increment
-   use controls, only: method_anderson, method_newton
    use contact_heat, only: settle_conductance, temperature_jumps
    use contact_operator, only: contact_operator_pass, law_conductance, law_pressure, touches, &
       unstrained_forces
@@ -175,9 +174,6 @@ contains
          data%analysis = step%analysis
          data%start = step%start
          data%fixed_point = step%fixed_point
-         ! Of many interfaces no derivative is formed.
-         if (allocated(bodies%thermal%division%piece) .and. step%fixed_point%method == &
-            method_newton) data%fixed_point%method = method_anderson
          data%follows_branch = step%continuation%is_on
          data%kept_imbalance = before%keeps_imbalance
          data%displacement_scale = maxval(abs(before%displacement))
