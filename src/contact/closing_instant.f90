@@ -231,7 +231,7 @@ contains
             call find_stiffness(system, state, sticking, path, error)
             if (allocated(error)) return
             call go_freely(system, path, laws)
-            call find_compliance(sticking, path)
+            call find_compliance(path)
             if (all(path%is_open) .and. .not. path%is_loose) kept%matrix = path%compliance
          else
             path%compliance = kept%matrix
@@ -365,8 +365,7 @@ contains
 
    !> Compliance of the contact points that are open, relieved of all springs: K^-1 on h, D K^-1
    !> between both, F + D K^-1 D^T on s. Motions that nothing holds or drives do not count.
-   subroutine find_compliance(sticking, path)
-      type(contact_workspace_type), intent(in) :: sticking
+   subroutine find_compliance(path)
       type(closing_path_type), intent(inout) :: path
       real(dp), allocatable :: inverse(:, :)
       integer, allocatable :: open(:), h(:)

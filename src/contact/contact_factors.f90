@@ -64,7 +64,9 @@ contains
          self%full = self%fronts%full
          return
       end if
-      is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0
+      ! Rows in cycles are 1e8 times as large as others, and links have no stiffness.
+      is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0 .and. size(system%link) == 0 &
+         .and. .not. any(system%compliance > 0.0_dp)
       if (self%may_change .and. is_plain) then
          call change_rows(self, system, rows, singular)
          if (.not. singular) return
@@ -81,6 +83,10 @@ contains
       real(dp), intent(in) :: hold
       real(dp), intent(in) :: unconstrained(:, :)
       logical, intent(out) :: singular
+      real(dp) :: matrix(size(rows%free) + size(unconstrained, 2), size(rows%free) + &
+         size(unconstrained, 2))
+      real(dp), allocatable :: columns(:, :)
+      integer :: i, j
 
       self%full = self%full + 1
       self%rows = rows
@@ -88,22 +94,7 @@ contains
       self%unconstrained = unconstrained
       self%entering = [integer ::]
       if (allocated(self%difference)) deallocate (self%difference)
-      call factor_dense(self, system, hold, singular)
-   end subroutine factor_in_full
-
-   !> Factors the free rows of a full tail with their border.
-   pure subroutine factor_dense(self, system, hold, singular)
-      type(contact_factors_type), intent(inout) :: self
-      type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: hold
-      logical, intent(out) :: singular
-      real(dp) :: matrix(size(self%free) + size(self%unconstrained, 2), size(self%free) + &
-         size(self%unconstrained, 2))
-      real(dp), allocatable :: columns(:, :)
-      integer :: i, j
-
-      associate (rows => self%rows, unconstrained => self%unconstrained, f => size(self%free), &
-         free => self%free)
+      associate (f => size(rows%free), free => rows%free)
          columns = system%schur%columns(free)
          if (hold > 0.0_dp) columns = columns + &
             hold*matmul(system%motion, transpose(system%motion(free, :)))
@@ -129,7 +120,7 @@ contains
          matrix(f + 1:, :f) = self%border*transpose(unconstrained)
       end associate
       call self%lu%factor(matrix, singular)
-   end subroutine factor_dense
+   end subroutine factor_in_full
 
    !> Makes the factors those of another set.
    pure subroutine change_rows(self, system, rows, failed)
@@ -138,7 +129,6 @@ contains
       type(contact_rows_type), intent(in) :: rows
       !> Too many rows change, or one of the sets is all but singular
       logical, intent(out) :: failed
-      logical :: in_cycle(0:size(rows%own))
       logical, dimension(size(rows%own)) :: is_free, was_free
       integer, allocatable :: changed(:)
       real(dp), allocatable :: columns(:, :), matrix(:, :)
@@ -149,11 +139,6 @@ contains
       was_free = .false.
       was_free(self%rows%free) = .true.
       changed = pack([(i, i=1, size(is_free))], differ(rows, self%rows))
-      ! Rows in cycles are 1e8 times as large as others.
-      in_cycle = .false.
-      in_cycle(pack(system%tangent, system%compliance > 0.0_dp)) = .true.
-      failed = any(in_cycle(changed))
-      if (failed) return
       failed = rows_per_change*size(changed) > size(self%rows%free)
       if (failed) return
       self%free = rows%free
