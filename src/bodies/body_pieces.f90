@@ -48,7 +48,7 @@ contains
    !> Divides the bodies, if they are to be divided.
    pure subroutine divide(self, is_bound, components)
       class(body_division_type), intent(inout) :: self   !! its graph in
-      logical, intent(in) :: is_bound(:)                 !! (nodes) kept, since constraints bind them
+      logical, intent(in) :: is_bound(:)                !! (nodes) kept, since constraints bind them
       integer, intent(in) :: components                  !! degrees of freedom of a node
       integer :: i
 

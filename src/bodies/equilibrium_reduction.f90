@@ -133,7 +133,8 @@ contains
       contact%motion = contact%rigid
       contact%length = norm2(contact%rigid, dim=1)
       do i = 1, size(contact%motion, 2)
-         if (contact%length(i) > 0.0_dp) contact%motion(:, i) = contact%rigid(:, i)/contact%length(i)
+         if (contact%length(i) > 0.0_dp) contact%motion(:, i) = &
+            contact%rigid(:, i)/contact%length(i)
       end do
       call contact%products%factor(matmul(transpose(contact%motion), contact%motion), singular)
    end subroutine move_faces

@@ -125,8 +125,9 @@ contains
          end if
          self%friction_equilibrium = 0
          if (allocated(self%jump_mean)) deallocate (self%jump_mean)
-         if (bodies%points%vary_with_temperature() .and. .not. self%schur%is_sparse()) &
+         if (bodies%points%vary_with_temperature() .and. .not. self%schur%is_sparse()) then
             call form_jump_mean(self, bodies)
+         end if
       end if
       if (allocated(of_loads)) call move_alloc(of_loads, error)
       if (allocated(error) .or. .not. bodies%is_coupled .or. self%is_on_demand(bodies)) return
@@ -154,7 +155,8 @@ contains
 
       call self%renumber_both(bodies)
       if (.not. self%is_for(bodies%thermal, film)) self%equilibrium = 0
-      if (has_loads(self, bodies) .or. .not. bodies%is_coupled .or. self%is_on_demand(bodies)) return
+      if (has_loads(self, bodies) .or. .not. bodies%is_coupled) return
+      if (self%is_on_demand(bodies)) return
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       self%is_balanced = .false.
       if (model%solver /= solver_mumps) return

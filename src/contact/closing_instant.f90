@@ -2,11 +2,12 @@
 !>
 !> The contact points of an interface are ordered by themselves. Let those that close in the
 !> increment be relieved of their forces, and all others that are closed in the end hold their
-!> positions; those that are part of cycles, whose friction statics leaves open, along the normal. Along the straight way from the start of the increment to
-!> where they then would end, one closes first: there its slip starts to count. From there on it
-!> holds its position; the others go on the straight way to where they would end now; and so on,
-!> until all have closed. Contact points that reach the other face together close together: so a
-!> face that closes as a whole does not tilt about one of its points.
+!> positions; those that are part of cycles, whose friction statics leaves open, along the normal.
+!> Along the straight way from the start of the increment to where they then would end, one closes
+!> first: there its slip starts to count. From there on it holds its position; the others go on the
+!> straight way to where they would end now; and so on, until all have closed. Contact points that
+!> reach the other face together close together: so a face that closes as a whole does not tilt
+!> about one of its points.
 !>
 !> Let y be the positions d less those at the end of the increment, C_R the compliance of the
 !> contact points that are still open, and phi the part of the remaining way after which the next
@@ -170,8 +171,8 @@ contains
    end subroutine settle_laws
 
    !> Closing laws of the contact points that are closed in the end and were open at the start of
-   !> the increment, each interface by itself. A contact point that has opened again keeps its law, on which nothing depends:
-   !> without it the contact point might close, with it open, for ever.
+   !> the increment, each interface by itself. A contact point that has opened again keeps its law,
+   !> on which nothing depends: without it the contact point might close, with it open, for ever.
    !> Error: a singular system.
    subroutine find_laws(system, previous, state, holds, sticking, laws, error)
       type(contact_system_type), intent(in) :: system

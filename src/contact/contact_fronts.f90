@@ -1,5 +1,5 @@
-!> Factors of the rows of an active set on a sparse tail, front by front (front_factors). From set to
-!> set the fronts of the rows that change are factored again, and those above them.
+!> Factors of the rows of an active set on a sparse tail, front by front (front_factors). From set
+!> to set the fronts of the rows that change are factored again, and those above them.
 !>
 !> With S of the tail, C the factors of forces in the rows and K their springs, the matrix is
 !> C S + K on the free rows. Motions Z that nothing holds border it,

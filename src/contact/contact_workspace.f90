@@ -4,7 +4,8 @@
 module contact_workspace
    use contact_factors, only: contact_factors_type
    use contact_system, only: closing_law_type, contact_open, contact_rows_type, contact_slip, &
-      contact_state_type, contact_stick, contact_system_type, is_capped, rows_of, slip_force, state_code
+      contact_state_type, contact_stick, contact_system_type, is_capped, rows_of, slip_force, &
+      state_code
    use dense, only: least_squares
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use friction_laws, only: friction_law_type

@@ -66,7 +66,7 @@ contains
    !> Numbers the fronts of some levels, those below before those above.
    pure recursive subroutine halve(before, cut, first, last, n, rest, separator, parent)
       integer, intent(in) :: before(:)             ! (levels + 1) vertices up to each
-      integer, intent(in) :: cut(:)                ! (levels) vertices that separate it from the next
+      integer, intent(in) :: cut(:)               ! (levels) vertices that separate it from the next
       integer, intent(in) :: first, last           ! levels
       integer, intent(inout) :: n                  ! last number given
       !> (levels) Numbers of what separates a level from the next, and of the rest of it

@@ -38,7 +38,7 @@ module front_factors
    type :: front_factors_type
       type(front_type), allocatable, private :: front(:)
       integer, allocatable, private :: above(:)    !! (fronts) the next one above, 0 for the last
-      integer, allocatable, private :: home(:)     !! (unknowns) front, the last for those of borders
+      integer, allocatable, private :: home(:)     !! (unknowns) front, the last for borders
    contains
       procedure :: begin
       procedure :: is_begun
@@ -97,7 +97,7 @@ contains
    pure subroutine factor(self, entries, is_sought, column_size, changed, singular)
       class(front_factors_type), intent(inout) :: self
       type(triplet_list_type), intent(in) :: entries  !! of these fronts
-      logical, intent(in) :: is_sought(:)             !! (unknowns) others have neither row nor column
+      logical, intent(in) :: is_sought(:)             !! (unknowns) others have no row and no column
       real(dp), intent(in) :: column_size(:)          !! (unknowns) beside which entries may be lost
       logical, intent(in) :: changed(:)               !! (fronts) as from above_changed
       logical, intent(out) :: singular
@@ -139,7 +139,7 @@ contains
    !> Numbers of things by their kinds.
    pure subroutine sort(kind, order, start)
       integer, intent(in) :: kind(:)
-      integer, intent(out) :: order(:), start(:)      ! those of kind k: order(start(k):start(k+1)-1)
+      integer, intent(out) :: order(:), start(:)      ! of kind k: order(start(k):start(k + 1) - 1)
       integer :: filled(size(start) - 1), i
 
       start = 0
@@ -332,7 +332,7 @@ contains
    !> Solves with the factors; unknowns that are not sought have 0.
    pure subroutine solve(self, x)
       class(front_factors_type), intent(in) :: self
-      real(dp), intent(inout) :: x(:, :)          !! (unknowns, n) right-hand sides in, solutions out
+      real(dp), intent(inout) :: x(:, :)         !! (unknowns, n) right-hand sides in, solutions out
       integer :: f, i
       real(dp) :: solution(size(x, 1), size(x, 2))
 

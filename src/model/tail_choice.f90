@@ -19,9 +19,9 @@ contains
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: points     !! number of contact points
 
-      has_sparse_tail = points > 0.0_dp .and. len(needs_full_tail(model)) == 0 .and. (model%tail == &
-         tail_sparse .or. (model%tail == tail_by_size .and. model%mesh%body_count > 2 .and. &
-         points > most_at_once))
+      has_sparse_tail = model%tail == tail_sparse .or. (model%tail == tail_by_size .and. &
+         model%mesh%body_count > 2 .and. points > most_at_once)
+      has_sparse_tail = has_sparse_tail .and. points > 0.0_dp .and. len(needs_full_tail(model)) == 0
    end function has_sparse_tail
 
    !> What of a deck needs derivatives between all contact points, and with them the full matrix;
