@@ -38,6 +38,8 @@ contains
       run%deck_path = path
       run%solver = 'SKYLINE'
       if (model%solver == solver_mumps) run%solver = 'MUMPS'
+      if (allocated(simulation%bodies%mechanical%division%graph%value)) run%solver = &
+         run%solver//', sparse tail'
       call name_physics(model, run)
       run%sizes = simulation%sizes
       if (any(solves_heat(model%steps%analysis))) call find_biot(model, simulation, run)

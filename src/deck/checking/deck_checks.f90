@@ -2,6 +2,7 @@
 !> whether the deck uses all that it defines, for whole steps; what it does not may be a slip.
 module deck_checks
    use amplitudes, only: amplitude_type, amplitude_value
+   use controls, only: tail_sparse
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use elasticity, only: equivalent_poisson
@@ -13,6 +14,7 @@ module deck_checks
    use model, only: model_type
    use refinement, only: numbering_fault
    use steps, only: solves_heat, solves_mechanics
+   use tail_choice, only: needs_full_tail
    use text, only: to_text, to_upper
    implicit none
    private
@@ -49,6 +51,7 @@ contains
          'element '//to_text(deck%mesh%element_number(e))//'; elements without one: '//to_text( &
          without))
       call check_materials(deck)
+      call check_tail(deck)
       call check_planes(deck)
       call check_orientations(deck)
       call check_jacobians(deck, inverted)
@@ -56,6 +59,20 @@ contains
       call check_sides(deck, inverted, uses)
       call check_loads(deck, uses)
    end subroutine check_model
+
+   !> A sparse tail has no derivatives between all contact points.
+   subroutine check_tail(deck)
+      type(deck_type), intent(inout) :: deck
+      character(:), allocatable :: what
+      integer, allocatable :: cards(:)
+
+      if (deck%model%tail /= tail_sparse .or. .not. deck%analyses_sound) return
+      what = needs_full_tail(deck%model)
+      if (len(what) == 0) return
+      cards = cards_of(deck%cards, 'SOLVER')
+      call deck%error(deck%cards%keywords(cards(1))%place, 'TAIL=SPARSE does not go with '//what// &
+         ', which needs derivatives between all contact points; leave TAIL= out')
+   end subroutine check_tail
 
    !> Every material in use has what the steps need.
    subroutine check_materials(deck)

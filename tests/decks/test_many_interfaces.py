@@ -1,0 +1,128 @@
+"""Many interfaces between many bodies: the sparse tail against the full matrix of all contact
+unknowns, on rods of pellets that heat closes onto their tube, each pellet pressed on the next.
+"""
+
+import h5py
+import numpy as np
+import pytest
+from blocks import write
+from deck_runs import COUPLED, copy_deck, run, solve
+from physics import material, mesh
+
+HEIGHT, POWER, PRESS = 10.0, 0.4, 2.0
+KINDS = ["CAX4", "CAX8", "mortar", "tables", "transient"]
+
+
+def rod(pellets, tail=None, kind="CAX4", more=()):
+    """Return the cards of a rod; further ones stand before its step."""
+    element = kind if kind.startswith("CAX") else "CAX4"
+    rows = kind == "tables"
+    stores = {"density": 1e-5, "specific_heat": 300.0} if kind == "transient" else {}
+
+    def over(hot, *values):
+        return [(*values, 0.0), (hot * values[0], *values[1:], 1000.0)] if rows else list(values)
+
+    pair = ", PAIRING=SURFACES" if kind == "mortar" else ", PAIRING=NODES"
+    names = [f"P{k}" for k in range(pellets)]
+    cards = [*mesh("TUBE", [4.12, 4.7], np.linspace(0, HEIGHT * pellets, 4 * pellets + 1), element,
+                   first=100001),
+             *material("TUBE", over(0.8, 7e4, 0.35), over(1.2, 6e-6), over(0.7, 0.017), **stores)]
+    for k, name in enumerate(names):
+        cards += [*mesh(name, np.linspace(0, 4.1, 5), np.linspace(HEIGHT * k, HEIGHT * (k + 1), 5),
+                        element, first=100 * k + 1),
+                  *material(name, over(0.8, 1.8e5, 0.316), over(1.2, 1e-5), over(0.7, 3e-3), **stores)]
+    cards += ["*SURFACE INTERACTION, NAME=G", "*FRICTION", "0.1", "*GAP LAW, TYPE=GAS",
+              "3.E-4, 0.005"]
+    for k, name in enumerate(names):
+        cards += [f"*SURFACE, NAME=TUBE{k}", *[f"{100001 + 4 * k + e}, S4" for e in range(4)],
+                  f"*CONTACT PAIR, INTERACTION=G, NAME=W{k}{pair}", f"{name}.RIGHT, TUBE{k}"]
+        if k:
+            cards += [f"*CONTACT PAIR, INTERACTION=G, NAME=E{k}{pair}",
+                      f"{name}.BOTTOM, {names[k - 1]}.TOP"]
+    cards += [f"*SOLVER, TAIL={tail}"] if tail else []
+    step = ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "0.25, 1."]
+    if kind == "transient":
+        step = ["*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "25., 100."]
+    return ["*OPTIONS, ERRORS=NO", *cards, "*FIXED POINT, TOL=1E-12",
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", *[f"{n}, 0." for n in (*names, "TUBE")],
+            "*BOUNDARY", "TUBE.BOTTOM, 2", "P0.BOTTOM, 2", *[f"{n}.LEFT, 1" for n in names], *more,
+            "*STEP", *step, "*DFLUX", *[f"{n}, BF, {POWER}" for n in names],
+            "*SFILM", "TUBE.RIGHT, F, 300., 0.03", "*DSLOAD", f"{names[-1]}.TOP, P, {PRESS}",
+            "*END STEP"]
+
+
+def contact_of(result):
+    """Return the values of all contact points at the end, and their states."""
+    with h5py.File(result) as file:
+        groups = [file["contact"][name] for name in sorted(file["contact"])]
+        return {name: np.concatenate([g[name][-1] for g in groups])
+                for name in ("pressure", "shear", "heat_flux", "gap", "slip", "status")}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("pellets", [3, 8])
+def test_the_sparse_tail_gives_what_the_full_matrix_gives(tmp_path, pellets, kind):
+    found = {}
+    for tail in ("FULL", "SPARSE"):
+        deck = write(tmp_path / f"{tail}.inp", rod(pellets, tail, kind))
+        found[tail] = contact_of(solve(deck))
+    full, sparse = found["FULL"], found["SPARSE"]
+    assert np.array_equal(full["status"], sparse["status"])
+    assert 0 < np.sum(full["status"] > 0) < len(full["status"])
+    largest = np.max(np.abs(full["pressure"]))
+    for name, scale in (("pressure", largest), ("shear", largest),
+                        ("heat_flux", np.max(np.abs(full["heat_flux"]))),
+                        ("gap", np.max(np.abs(full["gap"]))), ("slip", np.max(np.abs(full["gap"])))):
+        assert sparse[name] == pytest.approx(full[name], rel=0, abs=1e-9 * scale), name
+
+
+def test_forces_on_every_pellet_balance(tmp_path):
+    """What presses on its top and what its wall takes leave what it presses on the next with."""
+    pellets = 12
+    result = solve(write(tmp_path / "rod.inp", rod(pellets, "SPARSE")))
+    with h5py.File(result) as file:
+        contact = file["contact"]
+        press = [PRESS * np.pi * 4.1**2]
+        press += [contact[f"E{k}"]["normal_force"][-1] for k in range(pellets - 1, 0, -1)]
+        wall = [contact[f"W{k}"]["shear_force"][-1] for k in range(pellets - 1, 0, -1)]
+    for above, below, taken in zip(press[:-1], press[1:], wall, strict=True):
+        assert abs(abs(below - above) - abs(taken)) <= 1e-9 * max(press)
+
+
+def test_a_rod_of_many_pellets_has_a_sparse_tail(tmp_path):
+    """Without *SOLVER; a full matrix of its contact unknowns would need thirty times the memory."""
+    sizes = {}
+    for tail in (None, "FULL"):
+        deck = write(tmp_path / f"{tail}.inp", rod(200, tail))
+        text = run("check", deck).stdout
+        sizes[tail] = float(text.split("memory of a run")[1].split()[1])
+    assert 10 * sizes[None] < sizes["FULL"]
+    deck = write(tmp_path / "rod.inp", rod(25))
+    with h5py.File(solve(deck)) as file:
+        assert file["summary"].attrs["solver"] == "SKYLINE, sparse tail"
+
+
+def test_newtons_method_follows_where_mixing_fails(tmp_path):
+    """The heat that crosses opens the face that it crosses: no mixing of conductances converges."""
+    found = {}
+    for tail in ("FULL", "SPARSE"):
+        deck = copy_deck(COUPLED, tmp_path / f"{tail}.inp", [f"*SOLVER, TAIL={tail}"])
+        found[tail] = contact_of(solve(deck))
+    scale = np.max(found["FULL"]["pressure"])
+    assert found["SPARSE"]["pressure"] == pytest.approx(found["FULL"]["pressure"], rel=0,
+                                                        abs=1e-7 * scale)
+
+
+@pytest.mark.parametrize(("card", "name"), [
+    (["*CONTINUATION"], "*CONTINUATION"),
+    (["*GAP HEAT GENERATION"], "heat of friction"),
+    (["*START, FROM=BOTH"], "*START, FROM=BOTH")])
+def test_what_needs_the_full_matrix_is_refused_on_a_sparse_tail(tmp_path, card, name):
+    cards = rod(3, "SPARSE")
+    place = cards.index("*GAP LAW, TYPE=GAS") if "GENERATION" in card[0] else cards.index("*STEP")
+    if name == "*CONTINUATION":
+        place += 3
+    cards[place:place] = card
+    process = run("check", write(tmp_path / "rod.inp", cards))
+    assert process.returncode == 1
+    assert f"TAIL=SPARSE does not go with {name}" in process.stderr + process.stdout
