@@ -38,8 +38,9 @@ contains
       run%deck_path = path
       run%solver = 'SKYLINE'
       if (model%solver == solver_mumps) run%solver = 'MUMPS'
-      if (allocated(simulation%bodies%mechanical%division%graph%value)) run%solver = &
-         run%solver//', sparse tail'
+      if (allocated(simulation%bodies%mechanical%division%graph%value)) then
+         run%solver = 'SKYLINE, sparse tail'
+      end if
       call name_physics(model, run)
       run%sizes = simulation%sizes
       if (any(solves_heat(model%steps%analysis))) call find_biot(model, simulation, run)

@@ -99,7 +99,7 @@ def test_a_rod_of_many_pellets_has_a_sparse_tail(tmp_path):
     assert 10 * sizes[None] < sizes["FULL"]
     deck = write(tmp_path / "rod.inp", rod(25))
     with h5py.File(solve(deck)) as file:
-        assert file["summary"].attrs["solver"] == "SKYLINE, sparse tail"
+        assert file["run"].attrs["solver"] == "SKYLINE, sparse tail"
 
 
 def test_newtons_method_follows_where_mixing_fails(tmp_path):
