@@ -132,16 +132,24 @@ contains
       end subroutine note
    end subroutine note_edges
 
-   !> Warns of interfaces that slide farther than their contact points allow.
+   !> Warns of interfaces that slide farther than their contact points allow, of many by name of the
+   !> worst alone.
    pure subroutine warn_of_slides(model, bodies, record)
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_record_type), intent(inout) :: record   ! with its contacts
+      integer, parameter :: most_named = 5
+      real(dp) :: excess(size(record%contacts)), least
       integer :: i
 
+      excess = merge(record%contacts%slide%excess, -huge(1.0_dp), record%contacts%slide%point > 0)
+      least = -huge(1.0_dp)
+      do i = 1, count(record%contacts%slide%point > 0) - most_named
+         least = minval(excess, mask=excess > least)
+      end do
       do i = 1, size(record%contacts)
          associate (slide => record%contacts(i)%slide)
-            if (slide%point == 0) cycle
+            if (slide%point == 0 .or. excess(i) <= least) cycle
             call record%warn('contact pair '//bodies%interfaces(i)%name//' slides by ', &
                slide%slip, ', too far for contact points of the undeformed mesh: slave node '// &
                to_text(model%mesh%node_number(bodies%points%slave( &
@@ -149,6 +157,11 @@ contains
                slide%excess)
          end associate
       end do
+      associate (others => count(record%contacts%slide%point > 0 .and. excess <= least))
+         if (others > 0) call record%warn('further contact pairs slide too far for contact '// &
+            'points of the undeformed mesh: ', real(others, dp), '; the result file has their slip', &
+            real(others, dp))
+      end associate
    end subroutine warn_of_slides
 
    !> Contact state of one interface.

@@ -13,8 +13,8 @@ HEIGHT, POWER, PRESS = 10.0, 0.4, 2.0
 KINDS = ["CAX4", "CAX8", "mortar", "tables", "transient"]
 
 
-def rod(pellets, tail=None, kind="CAX4", more=()):
-    """Return the cards of a rod; further ones stand before its step."""
+def rod(pellets, tail=None, kind="CAX4", expansion=1e-5):
+    """Return the cards of a rod."""
     element = kind if kind.startswith("CAX") else "CAX4"
     rows = kind == "tables"
     stores = {"density": 1e-5, "specific_heat": 300.0} if kind == "transient" else {}
@@ -30,7 +30,8 @@ def rod(pellets, tail=None, kind="CAX4", more=()):
     for k, name in enumerate(names):
         cards += [*mesh(name, np.linspace(0, 4.1, 5), np.linspace(HEIGHT * k, HEIGHT * (k + 1), 5),
                         element, first=100 * k + 1),
-                  *material(name, over(0.8, 1.8e5, 0.316), over(1.2, 1e-5), over(0.7, 3e-3), **stores)]
+                  *material(name, over(0.8, 1.8e5, 0.316), over(1.2, expansion), over(0.7, 3e-3),
+                           **stores)]
     cards += ["*SURFACE INTERACTION, NAME=G", "*FRICTION", "0.1", "*GAP LAW, TYPE=GAS",
               "3.E-4, 0.005"]
     for k, name in enumerate(names):
@@ -45,7 +46,7 @@ def rod(pellets, tail=None, kind="CAX4", more=()):
         step = ["*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "25., 100."]
     return ["*OPTIONS, ERRORS=NO", *cards, "*FIXED POINT, TOL=1E-12",
             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", *[f"{n}, 0." for n in (*names, "TUBE")],
-            "*BOUNDARY", "TUBE.BOTTOM, 2", "P0.BOTTOM, 2", *[f"{n}.LEFT, 1" for n in names], *more,
+            "*BOUNDARY", "TUBE.BOTTOM, 2", "P0.BOTTOM, 2", *[f"{n}.LEFT, 1" for n in names],
             "*STEP", *step, "*DFLUX", *[f"{n}, BF, {POWER}" for n in names],
             "*SFILM", "TUBE.RIGHT, F, 300., 0.03", "*DSLOAD", f"{names[-1]}.TOP, P, {PRESS}",
             "*END STEP"]
@@ -100,6 +101,17 @@ def test_a_rod_of_many_pellets_has_a_sparse_tail(tmp_path):
     deck = write(tmp_path / "rod.inp", rod(25))
     with h5py.File(solve(deck)) as file:
         assert file["run"].attrs["solver"] == "SKYLINE, sparse tail"
+
+
+def test_many_pairs_that_slide_too_far_are_warned_of_in_six_lines(tmp_path):
+    deck = write(tmp_path / "rod.inp", rod(20, expansion=3e-4))
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    last = [line for line in process.stderr.splitlines() if "slide" in line and "increment" in line]
+    named = {line.split("contact pair ")[1].split()[0] for line in last if "contact pair " in line}
+    further = [line for line in last if "further contact pairs slide too far" in line]
+    assert named
+    assert len(named) <= 4 * 5
+    assert further
 
 
 def test_newtons_method_follows_where_mixing_fails(tmp_path):
