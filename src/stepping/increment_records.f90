@@ -159,8 +159,7 @@ contains
       end do
       associate (others => count(record%contacts%slide%point > 0 .and. excess <= least))
          if (others > 0) call record%warn('further contact pairs slide too far for contact '// &
-            'points of the undeformed mesh: ', real(others, dp), '; the result file has their slip', &
-            real(others, dp))
+            'points of the undeformed mesh: ', real(others, dp), '; the result file has their slip')
       end associate
    end subroutine warn_of_slides
 
