@@ -33,7 +33,7 @@ def rod(pellets, tail=None, kind="CAX4", expansion=1e-5, friction=0.1):
                   *material(name, over(0.8, 1.8e5, 0.316), over(1.2, expansion), over(0.7, 3e-3),
                            **stores)]
     cards += ["*SURFACE INTERACTION, NAME=G", "*FRICTION", f"{friction}", "*GAP LAW, TYPE=GAS",
-              "3.E-4, 0.005"]
+              *(["3.E-4, 0.005, 0.", "9.E-4, 0.005, 1000."] if rows else ["3.E-4, 0.005"])]
     for k, name in enumerate(names):
         cards += [f"*SURFACE, NAME=TUBE{k}", *[f"{100001 + 4 * k + e}, S4" for e in range(4)],
                   f"*CONTACT PAIR, INTERACTION=G, NAME=W{k}{pair}", f"{name}.RIGHT, TUBE{k}"]
