@@ -27,16 +27,15 @@ contains
       type(sparse_matrix_type), intent(in) :: graph   !! pattern, both triangles
       type(front_tree_type) :: tree
       integer, dimension(graph%row_count) :: level
-      integer, allocatable :: before(:), cut(:), first(:), part(:), rest(:), separator(:), top(:)
+      integer, allocatable :: before(:), cut(:), first(:), rest(:), separator(:), top(:)
+      logical :: separates(graph%row_count)
       integer :: i, k, n
 
       call find_levels(graph, level, first)
       allocate (rest(maxval([0, level])), separator(maxval([0, level])), source=0)
-      allocate (part(graph%row_count), source=0)
-      do i = 1, size(part)
-         do k = graph%row_start(i), graph%row_start(i + 1) - 1
-            if (level(graph%column(k)) == level(i) + 1) part(i) = 1
-         end do
+      do i = 1, size(separates)
+         separates(i) = any(level(graph%column(graph%row_start(i):graph%row_start(i + 1) - 1)) == &
+            level(i) + 1)
       end do
       allocate (before(size(rest) + 1), source=0)
       do i = 1, size(level)
@@ -47,7 +46,7 @@ contains
       end do
       allocate (cut(size(rest)), source=0)
       do i = 1, size(level)
-         cut(level(i)) = cut(level(i)) + part(i)
+         if (separates(i)) cut(level(i)) = cut(level(i)) + 1
       end do
       allocate (tree%parent(2*size(rest) + 1), source=0)
       n = 0
@@ -59,7 +58,7 @@ contains
       n = n + 1
       tree%parent(top) = n
       tree%parent = tree%parent(:n)
-      tree%front = merge(separator(level), rest(level), part == 1)
+      tree%front = merge(separator(level), rest(level), separates)
       call find_touched(graph, tree)
    end function dissected
 

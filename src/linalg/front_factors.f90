@@ -245,7 +245,7 @@ contains
    pure subroutine eliminate(front, column_size)
       type(front_type), intent(inout) :: front
       real(dp), intent(in) :: column_size(:)
-      integer :: before, end, first, k, last, rows
+      integer :: before, final, first, k, last, rows
 
       rows = size(front%row)
       k = 0
@@ -255,18 +255,18 @@ contains
             last = shared
             do while (k < last)
                first = k + 1
-               end = min(k + width, last)
-               call eliminate_columns(front, column_size, end, k)
-               associate (pivots => k - first + 1, rest => size(front%column) - end)
+               final = min(k + width, last)
+               call eliminate_columns(front, column_size, final, k)
+               associate (pivots => k - first + 1, rest => size(front%column) - final)
                   if (pivots > 0 .and. rest > 0) then
                      call dtrsm('L', 'L', 'N', 'U', pivots, rest, 1.0_dp, a(first, first), rows, &
-                        a(first, end + 1), rows)
+                        a(first, final + 1), rows)
                      if (rows > k) call dgemm('N', 'N', rows - k, rest, pivots, -1.0_dp, &
-                        a(k + 1, first), rows, a(first, end + 1), rows, 1.0_dp, a(k + 1, end + 1), &
-                        rows)
+                        a(k + 1, first), rows, a(first, final + 1), rows, 1.0_dp, &
+                        a(k + 1, final + 1), rows)
                   end if
                end associate
-               if (k < end) then
+               if (k < final) then
                   call exchange_columns(front, k + 1, last)
                   last = last - 1
                end if
@@ -278,22 +278,22 @@ contains
    end subroutine eliminate
 
    !> Eliminates columns up to an end, or to one without a good pivot.
-   pure subroutine eliminate_columns(front, column_size, end, k)
+   pure subroutine eliminate_columns(front, column_size, final, k)
       type(front_type), intent(inout) :: front
       real(dp), intent(in) :: column_size(:)
-      integer, intent(in) :: end
+      integer, intent(in) :: final
       integer, intent(inout) :: k            ! columns eliminated so far
       integer :: c, i
 
       associate (a => front%matrix)
-         do while (k < end)
+         do while (k < final)
             i = k + maxloc(abs(a(k + 1:front%shared, k + 1)), dim=1)
             if (abs(a(i, k + 1)) < good*maxval(abs(a(k + 1:, k + 1))) .or. &
                abs(a(i, k + 1)) <= lost*column_size(front%column(k + 1))) return
             k = k + 1
             call exchange_rows(front, i, k)
             a(k + 1:, k) = a(k + 1:, k)/a(k, k)
-            do c = k + 1, end
+            do c = k + 1, final
                if (abs(a(k, c)) > 0.0_dp) a(k + 1:, c) = a(k + 1:, c) - a(k, c)*a(k + 1:, k)
             end do
          end do
