@@ -4,7 +4,7 @@ module equilibrium_reduction
    use connections, only: connections_type
    use field_constraints, only: cycle_compliance, in_cycle, stiffness_alone
    use contact_system, only: contact_system_type
-   use dense, only: column_space
+   use dense, only: column_space, transposed_product
    use errors, only: error_type, status_deck
    use field_problem, only: field_problem_type, field_reduction_type
    use kinds, only: dp
@@ -136,7 +136,14 @@ contains
          if (contact%length(i) > 0.0_dp) contact%motion(:, i) = &
             contact%rigid(:, i)/contact%length(i)
       end do
-      call contact%products%factor(matmul(transpose(contact%motion), contact%motion), singular)
+      call contact%along%reserve(size(contact%length), count(abs(contact%motion) > 0.0_dp))
+      do i = 1, size(contact%length)
+         associate (moved => pack([(dof, dof=1, size(is_face))], &
+            abs(contact%motion(:, i)) > 0.0_dp))
+            call contact%along%add(moved, contact%motion(moved, i))
+         end associate
+      end do
+      call contact%products%factor(transposed_product(contact%motion, contact%motion), singular)
    end subroutine move_faces
 
    !> The links of the cycles, the compliance of their stuck contact points, and what each contact

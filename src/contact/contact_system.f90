@@ -88,8 +88,9 @@ module contact_system
       real(dp), allocatable :: rigid(:, :)  !! (tail, q) unsupported rigid motions
       !> (tail, q) the same, orthonormal; on a sparse tail each of one body and of length 1
       real(dp), allocatable :: motion(:, :)
-      real(dp), allocatable :: length(:)    !! (q) of these, on a sparse tail
-      type(lu_type) :: products             !! of motion^T motion, likewise
+      real(dp), allocatable :: length(:)    !! (q) of these, on a sparse tail; likewise:
+      type(sum_list_type) :: along          !! (q, tail) entries of motion^T that are not 0
+      type(lu_type) :: products             !! of motion^T motion
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
    contains
       procedure :: set_fronts
@@ -479,7 +480,8 @@ contains
       !> (q) of the applied forces along the rigid motions; absent for none [force]
       real(dp), intent(in), optional :: resultant(:)
       real(dp) :: balanced(size(load))       !! (tail) [force]
-      real(dp) :: lacking(size(self%motion, 2), 1), wanted(size(self%rigid, 2))
+      real(dp) :: driven(size(self%motion, 2)), lacking(size(self%motion, 2), 1), &
+         wanted(size(self%rigid, 2))
 
       balanced = load
       if (size(self%motion, 2) == 0) return
@@ -489,9 +491,11 @@ contains
          balanced = load - matmul(self%motion, matmul(load, self%motion)) + &
             least_squares(transpose(self%rigid), wanted)
       else
-         lacking(:, 1) = wanted/max(self%length, tiny(1.0_dp)) - matmul(load, self%motion)
+         driven = 0.0_dp
+         call self%along%add_totals(load, driven)
+         lacking(:, 1) = wanted/max(self%length, tiny(1.0_dp)) - driven
          call self%products%solve(lacking)
-         balanced = load + matmul(self%motion, lacking(:, 1))
+         call self%along%add_shares(lacking(:, 1), balanced)
       end if
    end function balanced
 
