@@ -32,7 +32,7 @@ PARTS = {
         "interface_warnings", "surface_chains", "zone_edges"} | {
         "balances:contact_violation", "balances:force_residual", "equilibrium_reduction",
         "element_elasticity", "field_recovery:stress_samples", "material_points:stress",
-        "increment_checks:check_violation", "increment_checks:warn_of_choices",
+        "increment_checks:warn_of_choices",
         "balances:balance_forces", "increment_solution:remember_slip",
         "increment_solution:load_mechanics", "point_properties:elasticity_in",
         "stiffness_matrix",
@@ -57,7 +57,7 @@ PARTS = {
     "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly",
                                   "contact_system:free_motions", "contact_system:is_driven",
-                                  "contact_system:balanced_load", "contact_system:least_drive"},
+                                  "contact_system:is_driven", "contact_system:least_drive"},
     "films": {"loads:film_matrix", "unit_loads:film_matrix"},
     "estimated errors": {
         "divided_mesh", "doubled_increments", "error_estimator",
