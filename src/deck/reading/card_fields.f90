@@ -16,15 +16,19 @@ contains
    !> Whether a line is a comment card.
    pure logical function is_comment(line)
       character(*), intent(in) :: line   !! card image
+      integer :: first
 
-      is_comment = index(line(first_text(line):), '**') == 1
+      first = first_text(line)
+      is_comment = line(first:min(first + 1, len(line))) == '**'
    end function is_comment
 
    !> Whether a line begins a keyword card; comment cards are not asked for.
    pure logical function is_keyword(line)
       character(*), intent(in) :: line   !! card image
+      integer :: first
 
-      is_keyword = index(line(first_text(line):), '*') == 1
+      first = first_text(line)
+      is_keyword = line(first:min(first, len(line))) == '*'
    end function is_keyword
 
    !> Whether a line holds nothing.
