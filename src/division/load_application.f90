@@ -63,7 +63,7 @@ contains
       end if
       do i = 1, model%requests%temperatures%count
          associate (request => model%requests%temperatures%items(i))
-            nodes = nodes_of(request, model%mesh)
+            nodes = request%members(model%mesh%node_sets)
             model%initial_temperature(pack(nodes, nodes >= first_new)) = request%value
          end associate
       end do
@@ -82,19 +82,6 @@ contains
       deck_node_count = size(mesh%node_number)
       if (allocated(mesh%deck_element)) deck_node_count = mesh%deck_nodes
    end function deck_node_count
-
-   !> Nodes that a request names.
-   pure function nodes_of(request, mesh) result(nodes)
-      type(request_type), intent(in) :: request
-      type(mesh_type), intent(in) :: mesh
-      integer, allocatable :: nodes(:)
-
-      if (request%set > 0) then
-         nodes = mesh%node_sets(request%set)%members
-      else
-         nodes = [request%item]
-      end if
-   end function nodes_of
 
    pure function parts_of(mesh) result(parts)
       type(mesh_type), intent(in) :: mesh
@@ -126,7 +113,7 @@ contains
       integer :: side
 
       if (acts_on_nodes(request%kind)) then
-         items = nodes_of(request, mesh)
+         items = request%members(mesh%node_sets)
          items = pack(items, items <= deck_node_count(mesh))
          return
       else if (request%set > 0) then
@@ -215,7 +202,7 @@ contains
          do i = 1, model%requests%supports%count
             associate (request => model%requests%supports%items(i))
                if (max(1, request%step) /= step .or. (request%step == 0 .and. is_new)) cycle
-               nodes = nodes_of(request, model%mesh)
+               nodes = request%members(model%mesh%node_sets)
                if (pass == 2) supports(n + 1:n + size(nodes)) = [(boundary_type(nodes(j), &
                   request%component, request%value, request%amplitude, request%card, &
                   request%keeps), j=1, size(nodes))]
@@ -249,7 +236,7 @@ contains
                model%fields = [model%fields, field]
                k = size(model%fields)
             end if
-            nodes = nodes_of(request, model%mesh)
+            nodes = request%members(model%mesh%node_sets)
             do f = 1, size(model%fields)
                if (model%fields(f)%step /= request%step) cycle
                model%fields(f)%given(nodes) = f == k
