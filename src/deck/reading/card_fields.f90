@@ -7,7 +7,7 @@ module card_fields
    implicit none
    private
    public :: split_fields, drop_empty_end, without_quotes
-   public :: is_comment, is_keyword, is_blank, first_text, last_text
+   public :: is_comment, is_keyword, first_text, last_text
 
    character(*), parameter :: blanks = ' '//achar(9)   !! what separates words
 
@@ -30,13 +30,6 @@ contains
       first = first_text(line)
       is_keyword = line(first:min(first, len(line))) == '*'
    end function is_keyword
-
-   !> Whether a line holds nothing.
-   pure logical function is_blank(line)
-      character(*), intent(in) :: line   !! card image
-
-      is_blank = verify(line, blanks) == 0
-   end function is_blank
 
    !> Position of the first character that is not blank; behind the line where there is none.
    pure integer function first_text(line)
