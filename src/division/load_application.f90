@@ -11,7 +11,7 @@ module load_application
    use local_refinement, only: hanging_rows
    use mesh, only: add_node, mesh_type
    use model, only: model_type
-   use sorting, only: sort_order
+   use sorting, only: invert_lists, sort_order
    use steps, only: acts_on_nodes, boundary_type, dof_temperature, load_film_coefficient, &
       load_film_sink, load_force, load_temperature, load_type, loaded_side
    use sum_lists, only: sum_list_type
@@ -86,22 +86,11 @@ contains
    pure function parts_of(mesh) result(parts)
       type(mesh_type), intent(in) :: mesh
       type(parts_type) :: parts
-      integer :: e, k
+      integer :: owner(1, size(mesh%element_kind)), e
 
-      if (allocated(mesh%deck_element)) then
-         parts%element = sort_order(mesh%deck_element)
-         allocate (parts%start(maxval(mesh%deck_element) + 1), source=1)
-         do e = 1, size(mesh%deck_element)
-            k = mesh%deck_element(e) + 1
-            parts%start(k) = parts%start(k) + 1
-         end do
-         do k = 2, size(parts%start)
-            parts%start(k) = parts%start(k) + parts%start(k - 1) - 1
-         end do
-      else
-         parts%element = [(e, e=1, size(mesh%element_kind))]
-         parts%start = [(e, e=1, size(mesh%element_kind) + 1)]
-      end if
+      owner(1, :) = [(e, e=1, size(owner))]
+      if (allocated(mesh%deck_element)) owner(1, :) = mesh%deck_element
+      call invert_lists(owner, spread(1, 1, size(owner)), maxval(owner), parts%start, parts%element)
    end function parts_of
 
    !> Nodes or elements that a load of a request acts on.

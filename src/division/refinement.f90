@@ -13,7 +13,7 @@ module refinement
    use text, only: to_text
    implicit none
    private
-   public :: refine, refine_chosen, divide_model, numbering_fault
+   public :: refine, refine_chosen, divide_model, numbering_fault, parents_of
 
    !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
    integer, parameter :: most_elements = 2**23 - 1
@@ -21,7 +21,8 @@ module refinement
    !> Nodes of the children of quadrilaterals and triangles, corners first, among those of
    !> nodes_of_children. The fourth child of a triangle lies between its midside nodes.
    integer, parameter :: quad_children(8, 4) = reshape([1, 5, 17, 8, 9, 18, 21, 16, &
-      5, 2, 6, 17, 13, 10, 19, 18, 17, 6, 3, 7, 19, 14, 11, 20, 8, 17, 7, 4, 21, 20, 15, 12], [8, 4])
+      5, 2, 6, 17, 13, 10, 19, 18, 17, 6, 3, 7, 19, 14, 11, 20, &
+      8, 17, 7, 4, 21, 20, 15, 12], [8, 4])
    integer, parameter :: triangle_children(6, 4) = reshape([1, 4, 6, 7, 13, 12, &
       4, 2, 5, 10, 8, 14, 6, 5, 3, 15, 11, 9, 4, 5, 6, 14, 15, 13], [6, 4])
 
@@ -185,7 +186,7 @@ contains
    !> The element that each one was before; children have their section and kind from it.
    pure function parents_of(division) result(parent)
       type(division_type), intent(in) :: division
-      integer :: parent(division%elements_after)
+      integer :: parent(division%elements_after)   !! (elements afterwards)
       integer :: e, child
 
       parent(:division%elements) = [(e, e=1, division%elements)]

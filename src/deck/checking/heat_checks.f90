@@ -54,7 +54,7 @@ contains
          end if
          if (.not. any(abs(given%items(:given%count)%value) > 0.0_dp)) return
          if (.not. (any(solves_heat(deck%model%steps%analysis)) .or. &
-            any(deck%model%materials%has_expansion))) return
+            any(deck%model%materials%has(of_expansion)))) return
          starts_at_0 = .false.
          starts_at_0([mesh%element_nodes]) = .true.
          starts_at_0(0) = .false.
