@@ -60,11 +60,7 @@ contains
          starts_at_0(0) = .false.
          where (deck%dropped) starts_at_0(1:) = .false.
          do i = 1, given%count
-            if (given%items(i)%set > 0) then
-               starts_at_0(mesh%node_sets(given%items(i)%set)%members) = .false.
-            else
-               starts_at_0(given%items(i)%item) = .false.
-            end if
+            starts_at_0(given%items(i)%members(mesh%node_sets)) = .false.
          end do
          do i = 1, size(deck%model%couplings)
             if (.not. deck%model%couplings(i)%is_section()) cycle
