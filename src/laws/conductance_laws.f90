@@ -53,8 +53,7 @@ module conductance_laws
       !> (rows) ascending gamma >= 0, and view factors there; unallocated where it is 1
       real(dp), allocatable :: view_gap(:), view_factor(:)
       type(conductance_table_type) :: closed_table !! over p [stress]
-      !> what varies with the temperatures of the faces; unallocated where nothing does
-      type(law_by_temperature_type), allocatable :: by_temperature
+      type(law_by_temperature_type) :: by_temperature   !! beside the temperatures of the tables
    end type conductance_law_type
 
 contains
@@ -183,7 +182,9 @@ contains
    elemental logical function varies_with_temperature(law)
       type(conductance_law_type), intent(in) :: law
 
-      varies_with_temperature = allocated(law%by_temperature)
+      varies_with_temperature = law%by_temperature%radiance > 0.0_dp .or. &
+         allocated(law%by_temperature%gas_temperature) .or. &
+         allocated(law%open_table%temperature) .or. allocated(law%closed_table%temperature)
    end function varies_with_temperature
 
    !> Whether omega is the same at every gap, pressure and temperature.

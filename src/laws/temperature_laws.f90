@@ -8,7 +8,7 @@
 !> with the mean and the jump of the faces nothing of it is lost.
 module temperature_laws
    use conductance_laws, only: conductance, conductance_law_type, conductance_table_type, &
-      law_by_temperature_type, law_jump, law_none, law_pressure, line_slope, line_value, &
+      law_jump, law_none, law_pressure, line_slope, line_value, &
       varies_with_temperature, view_at
    use kinds, only: dp
    implicit none
@@ -32,7 +32,7 @@ contains
       type(conductance_law_type) :: there
 
       there = law
-      if (.not. allocated(law%by_temperature)) return
+      if (.not. varies_with_temperature(law)) return
       associate (rows => law%by_temperature, mean => faces%mean)
          if (allocated(rows%gas_temperature)) then
             there%gas_a = line_value(rows%gas_temperature, rows%gas_a, mean)
@@ -55,22 +55,21 @@ contains
       real(dp) :: derivatives(2)                         !! [omega/temperature]
 
       derivatives = 0.0_dp
-      if (.not. allocated(law%by_temperature)) return
+      if (.not. varies_with_temperature(law)) return
       if (closed .and. law%closed_kind == law_pressure) then
          if (allocated(law%closed_table%temperature)) derivatives(1) = line_value( &
             law%closed_table%abscissa, slope_of(law%closed_table, faces%mean), &
             max(pressure, 0.0_dp))
       else if (.not. closed) then
-         derivatives = open_derivatives(law, law%by_temperature, faces, max(gap, 0.0_dp))
+         derivatives = open_derivatives(law, faces, max(gap, 0.0_dp))
       else if (law%closed_kind == law_none .or. law%closed_adds) then
-         derivatives = open_derivatives(law, law%by_temperature, faces, 0.0_dp)
+         derivatives = open_derivatives(law, faces, 0.0_dp)
       end if
    end function temperature_derivatives
 
    !> Those of the open side.
-   pure function open_derivatives(law, rows, faces, gap) result(derivatives)
+   pure function open_derivatives(law, faces, gap) result(derivatives)
       type(conductance_law_type), intent(in) :: law
-      type(law_by_temperature_type), intent(in) :: rows
       type(face_temperatures_type), intent(in) :: faces
       real(dp), intent(in) :: gap
       real(dp) :: derivatives(2)
@@ -79,24 +78,26 @@ contains
 
       derivatives = 0.0_dp
       there = law_at(law, faces)
-      if (allocated(rows%gas_temperature)) then
-         length = there%gas_b + there%added_length + gap
-         derivatives(1) = line_slope(rows%gas_temperature, rows%gas_a, faces%mean)/length - &
-            there%gas_a/length*line_slope(rows%gas_temperature, rows%gas_b, faces%mean)/length
-      end if
-      if (allocated(law%open_table%temperature)) then
-         radiation = there%radiation
-         there%radiation = 0.0_dp
-         there%open_table%omega = slope_of(law%open_table, faces%mean)
-         derivatives(1) = conductance(there, .false., gap, 0.0_dp)
-         there%radiation = radiation
-      end if
-      if (there%radiation > 0.0_dp) then
-         seen = rows%radiance*view_at(law, gap)
-         derivatives(1) = derivatives(1) + seen* &
-            (12*(faces%mean - rows%absolute_zero)**2 + faces%jump**2)
-         derivatives(2) = 2*seen*(faces%mean - rows%absolute_zero)*faces%jump
-      end if
+      associate (rows => law%by_temperature)
+         if (allocated(rows%gas_temperature)) then
+            length = there%gas_b + there%added_length + gap
+            derivatives(1) = line_slope(rows%gas_temperature, rows%gas_a, faces%mean)/length - &
+               there%gas_a/length*line_slope(rows%gas_temperature, rows%gas_b, faces%mean)/length
+         end if
+         if (allocated(law%open_table%temperature)) then
+            radiation = there%radiation
+            there%radiation = 0.0_dp
+            there%open_table%omega = slope_of(law%open_table, faces%mean)
+            derivatives(1) = conductance(there, .false., gap, 0.0_dp)
+            there%radiation = radiation
+         end if
+         if (there%radiation > 0.0_dp) then
+            seen = rows%radiance*view_at(law, gap)
+            derivatives(1) = derivatives(1) + seen* &
+               (12*(faces%mean - rows%absolute_zero)**2 + faces%jump**2)
+            derivatives(2) = 2*seen*(faces%mean - rows%absolute_zero)*faces%jump
+         end if
+      end associate
    end function open_derivatives
 
    !> Sets a table of several temperatures to a mean temperature.
@@ -147,8 +148,7 @@ contains
    elemental logical function radiates(law)
       type(conductance_law_type), intent(in) :: law      !! as the deck has it
 
-      radiates = .false.
-      if (allocated(law%by_temperature)) radiates = law%by_temperature%radiance > 0.0_dp
+      radiates = law%by_temperature%radiance > 0.0_dp
    end function radiates
 
    !> Whether faces radiate until they meet, and no longer when they have.
@@ -169,12 +169,11 @@ contains
       real(dp) :: largest
       integer :: i
 
-      if (.not. allocated(law%by_temperature)) return
+      if (.not. varies_with_temperature(law)) return
       temperature = [real(dp) ::]
-      associate (rows => law%by_temperature)
-         faces%mean = rows%absolute_zero
-         if (allocated(rows%gas_temperature)) temperature = rows%gas_temperature
-      end associate
+      faces%mean = law%by_temperature%absolute_zero
+      if (allocated(law%by_temperature%gas_temperature)) temperature = &
+         law%by_temperature%gas_temperature
       if (allocated(law%open_table%temperature)) temperature = [temperature, &
          law%open_table%temperature]
       if (allocated(law%closed_table%temperature)) temperature = [temperature, &
@@ -194,8 +193,7 @@ contains
       type(conductance_law_type), intent(in) :: law      !! as the deck has it
       type(face_temperatures_type), intent(in) :: faces
 
-      is_below_zero = radiates(law)
-      if (is_below_zero) is_below_zero = faces%mean - 0.5_dp*abs(faces%jump) < &
+      is_below_zero = radiates(law) .and. faces%mean - 0.5_dp*abs(faces%jump) < &
          law%by_temperature%absolute_zero
    end function is_below_zero
 

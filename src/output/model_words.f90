@@ -276,10 +276,6 @@ contains
       else
          words = 'A/(B + gap)'
       end if
-      if (.not. allocated(law%by_temperature)) then
-         words = words//constants(law%gas_a, law%gas_b)
-         return
-      end if
       associate (rows => law%by_temperature)
          words = words//radiation_words(law)//constants(law%gas_a, law%gas_b)
          if (.not. allocated(rows%gas_temperature)) return
@@ -304,7 +300,6 @@ contains
       character(:), allocatable :: words
 
       words = ''
-      if (.not. allocated(law%by_temperature)) return
       associate (rows => law%by_temperature)
          if (rows%radiance <= 0.0_dp) return
          words = ' + '//to_text(rows%radiance)//' (T1^2 + T2^2) (T1 + T2)'

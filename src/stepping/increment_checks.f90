@@ -3,7 +3,7 @@
 !> temperatures that jump where a step that stores heat begins, on a mesh that is too coarse for its
 !> increments. Beside these temperatures overshoot until the heat has crossed an element.
 module increment_checks
-   use conductance_laws, only: law_by_temperature_type, law_clearance, law_none, law_pressure
+   use conductance_laws, only: law_clearance, law_none, law_pressure
    use connections, only: connections_type
    use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type
@@ -252,14 +252,12 @@ contains
       integer, intent(in) :: i                                 ! index of the interface
       integer, intent(in) :: slave(:)                          ! (m) slave nodes
       type(increment_record_type), intent(inout) :: record     ! receives the warnings
-      type(law_by_temperature_type) :: by
       logical :: closed(size(slave)), opens(size(slave))
       real(dp) :: gap(size(slave)), mean(size(slave)), pressure(size(slave))
 
       associate (contact => record%contacts(i), &
          interaction => model%interactions(model%contacts(i)%interaction))
-         associate (law => interaction%law)
-            if (allocated(law%by_temperature)) by = law%by_temperature
+         associate (law => interaction%law, by => interaction%law%by_temperature)
             closed = contact%contact_state /= contact_open
             ! The open law at gap 0 is the closed one, or a part of it.
             opens = contact%conductance > 0.0_dp .and. &

@@ -51,8 +51,6 @@ contains
             return
          end if
       end if
-      if (allocated(table%temperature) .and. .not. allocated(law%by_temperature)) allocate ( &
-         law%by_temperature)
       if (is_open) then
          law%open_kind = law_clearance
          law%open_ends = .true.

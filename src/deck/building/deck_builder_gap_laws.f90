@@ -141,7 +141,6 @@ contains
          if (.not. deck%model%constants%has_radiation) call deck%error(card%place_of( &
             'EMISSIVITY'), 'EMISSIVITY= needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN '// &
             'BOLTZMANN=')
-         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
          law%by_temperature%radiance = emissivity*deck%model%constants%stefan_boltzmann
          law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
       end if
@@ -167,7 +166,6 @@ contains
       law%gas_a = values(1, 1)
       law%gas_b = values(2, 1)
       if (size(card%data) == 1) return
-      if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
       law%by_temperature%gas_temperature = values(3, :)
       law%by_temperature%gas_a = values(1, :)
       law%by_temperature%gas_b = values(2, :)
