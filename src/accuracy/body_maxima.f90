@@ -10,6 +10,7 @@ module body_maxima
    use mesh, only: mesh_type
    use mesh_division, only: child_element
    use records, only: field_record_type
+   use refinement, only: parents_of
    implicit none
    private
    public :: places_type, values_type, places_of, divided_places, divided_point, vertex_near, &
@@ -73,17 +74,9 @@ contains
       type(divided_mesh_type), intent(in) :: divided
       logical, intent(in) :: counts(:, :)                 !! (maxima, elements) before
       type(places_type) :: found
-      logical :: fine(size(counts, 1), divided%division%elements_after)
-      integer :: child, e
 
-      do e = 1, size(counts, 2)
-         fine(:, e) = counts(:, e)
-         if (.not. divided%is_divided(e)) cycle
-         do child = 1, 4
-            fine(:, child_element(divided%division, e, child)) = counts(:, e)
-         end do
-      end do
-      found = places_of(divided%model%mesh, divided%points(), divided%fields, fine)
+      found = places_of(divided%model%mesh, divided%points(), divided%fields, &
+         counts(:, parents_of(divided%division)))
    end function divided_places
 
    !> The point of a divided mesh that a point is there.

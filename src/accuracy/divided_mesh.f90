@@ -18,11 +18,11 @@ module divided_mesh
    use kinds, only: dp
    use load_histories, only: end_of_step
    use local_refinement, only: choose_neighbours, elements_at_surfaces, largest_part
-   use mesh_division, only: child_element, divide, division_type, refined_members
+   use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type
    use records, only: field_record_type
    use reduced_bodies, only: reduced_bodies_type
-   use refinement, only: divide_model
+   use refinement, only: divide_model, parents_of
    use solution_state, only: solution_state_type
    use steps, only: boundary_type, solves_heat, step_type
    use simulation, only: make_initial_state, simulation_type
@@ -201,19 +201,6 @@ contains
       self%run%state = self%initial
    end subroutine prepare
 
-   !> Which elements are parts of others.
-   pure function parts_of(self, chosen) result(is_part)
-      type(divided_mesh_type), intent(in) :: self
-      logical, intent(in) :: chosen(:)                    ! (elements before), all divided
-      logical :: is_part(self%division%elements_after)
-      integer :: child, e
-
-      is_part = .false.
-      do e = 1, size(chosen)
-         if (chosen(e)) is_part([(child_element(self%division, e, child), child=1, 4)]) = .true.
-      end do
-   end function parts_of
-
    !> Prescribes what all nodes of a side or element have prescribed at the new nodes on it, too:
    !> the deck may name nodes one by one.
    subroutine hold_new_nodes(division, model)
@@ -341,7 +328,7 @@ contains
       if (allocated(self%fields)) deallocate (self%fields)
       allocate (self%fields)
       self%fields%temperature = state%temperature
-      call self%run%recovery%prepare(self%model, parts_of(self, also))
+      call self%run%recovery%prepare(self%model, also(parents_of(self%division)))
       if (allocated(state%stress_temperature)) call self%run%recovery%recover_stress(self%model, &
          reshape(state%displacement, [2, size(state%temperature)]), state%stress_temperature - &
          self%model%initial_temperature, state%history, self%fields%stress, estimate)

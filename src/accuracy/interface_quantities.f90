@@ -5,7 +5,6 @@ module interface_quantities
    use contact_quantities, only: contact_values, estimated
    use contact_system, only: contact_open, contact_slip
    use increment_records, only: measure_contact
-   use friction_laws, only: friction_law_type
    use heat_equation, only: heat_across
    use kinds, only: dp
    use quantity_types, only: quantity_type
@@ -14,7 +13,7 @@ module interface_quantities
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: closed_length, contact_of, contact_width, edge_spacing, is_end_of_face, &
+   public :: closed_length, contact_width, edge_spacing, is_end_of_face, &
       peak_is_at_end, peaks_at_corner, point_before, quantities_of, quantities_of_state, &
       regime_of, resolved_length, rises_to_end, turns_at_peak
 
@@ -34,29 +33,9 @@ contains
       end associate
    end function regime_of
 
-   !> The record of an interface, as far as estimates look at it: all but slip, temperatures,
-   !> conductance and heat flux.
-   pure function contact_of(points, friction, contact_state, gap, force, shear_force, &
-      heat) result(contact)
-      type(contact_points_type), intent(in) :: points !! the contact points of the interface
-      type(friction_law_type), intent(in) :: friction !! the law of all of them
-      integer, intent(in) :: contact_state(:)         !! (m) open, slip or stick
-      real(dp), intent(in) :: gap(:)                  !! (m) [length]
-      real(dp), intent(in) :: force(:)                !! (m) nodal, positive in compression [force]
-      real(dp), intent(in) :: shear_force(:)          !! (m) on the slave [force]
-      real(dp), intent(in) :: heat(:)                 !! (m) from slave to master [power]
-      type(contact_record_type) :: contact
-
-      contact%contact_state = contact_state
-      contact%gap = gap
-      call measure_contact(points, friction, contact_state /= contact_open, force, shear_force, &
-         contact)
-      contact%heat_rate = sum(heat)
-   end function contact_of
-
    !> The estimated quantities of an interface.
    pure function quantities_of(contact) result(values)
-      type(contact_record_type), intent(in) :: contact   !! as from contact_of
+      type(contact_record_type), intent(in) :: contact   !! its state
       real(dp) :: values(size(estimated))                !! NaN for an edge where there is none
       integer :: q
 
@@ -71,6 +50,7 @@ contains
       type(solution_state_type), intent(in) :: state
       real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
       type(contact_points_type) :: points
+      type(contact_record_type) :: record   ! without slip, temperatures, conductance, heat flux
       integer :: first, i, last
 
       associate (start => bodies%points%interface_start, contact => state%contact)
@@ -78,11 +58,13 @@ contains
             first = start(i)
             last = start(i + 1) - 1
             call bodies%view(i, points)
-            values(:, i) = quantities_of(contact_of(points, bodies%laws%friction(first), &
-               contact%contact_state(first:last), contact%gap(first:last), &
-               contact%force(first:last), contact%shear_force(first:last), &
-               heat_across(points%weight, state%flux_conductance(first:last), &
-               state%jump(first:last))))
+            record%contact_state = contact%contact_state(first:last)
+            record%gap = contact%gap(first:last)
+            call measure_contact(points, bodies%laws%friction(first), record%contact_state /= &
+               contact_open, contact%force(first:last), contact%shear_force(first:last), record)
+            record%heat_rate = sum(heat_across(points%weight, &
+               state%flux_conductance(first:last), state%jump(first:last)))
+            values(:, i) = quantities_of(record)
          end do
       end associate
    end subroutine quantities_of_state

@@ -11,7 +11,7 @@ module load_application
    use local_refinement, only: hanging_rows
    use mesh, only: add_node, mesh_type
    use model, only: model_type
-   use sorting, only: sort_order
+   use sorting, only: invert_lists, sort_order
    use steps, only: acts_on_nodes, boundary_type, dof_temperature, load_film_coefficient, &
       load_film_sink, load_force, load_temperature, load_type, loaded_side
    use sum_lists, only: sum_list_type
@@ -63,7 +63,7 @@ contains
       end if
       do i = 1, model%requests%temperatures%count
          associate (request => model%requests%temperatures%items(i))
-            nodes = nodes_of(request, model%mesh)
+            nodes = request%members(model%mesh%node_sets)
             model%initial_temperature(pack(nodes, nodes >= first_new)) = request%value
          end associate
       end do
@@ -83,38 +83,14 @@ contains
       if (allocated(mesh%deck_element)) deck_node_count = mesh%deck_nodes
    end function deck_node_count
 
-   !> Nodes that a request names.
-   pure function nodes_of(request, mesh) result(nodes)
-      type(request_type), intent(in) :: request
-      type(mesh_type), intent(in) :: mesh
-      integer, allocatable :: nodes(:)
-
-      if (request%set > 0) then
-         nodes = mesh%node_sets(request%set)%members
-      else
-         nodes = [request%item]
-      end if
-   end function nodes_of
-
    pure function parts_of(mesh) result(parts)
       type(mesh_type), intent(in) :: mesh
       type(parts_type) :: parts
-      integer :: e, k
+      integer :: owner(1, size(mesh%element_kind)), e
 
-      if (allocated(mesh%deck_element)) then
-         parts%element = sort_order(mesh%deck_element)
-         allocate (parts%start(maxval(mesh%deck_element) + 1), source=1)
-         do e = 1, size(mesh%deck_element)
-            k = mesh%deck_element(e) + 1
-            parts%start(k) = parts%start(k) + 1
-         end do
-         do k = 2, size(parts%start)
-            parts%start(k) = parts%start(k) + parts%start(k - 1) - 1
-         end do
-      else
-         parts%element = [(e, e=1, size(mesh%element_kind))]
-         parts%start = [(e, e=1, size(mesh%element_kind) + 1)]
-      end if
+      owner(1, :) = [(e, e=1, size(owner))]
+      if (allocated(mesh%deck_element)) owner(1, :) = mesh%deck_element
+      call invert_lists(owner, spread(1, 1, size(owner)), maxval(owner), parts%start, parts%element)
    end function parts_of
 
    !> Nodes or elements that a load of a request acts on.
@@ -126,7 +102,7 @@ contains
       integer :: side
 
       if (acts_on_nodes(request%kind)) then
-         items = nodes_of(request, mesh)
+         items = request%members(mesh%node_sets)
          items = pack(items, items <= deck_node_count(mesh))
          return
       else if (request%set > 0) then
@@ -215,7 +191,7 @@ contains
          do i = 1, model%requests%supports%count
             associate (request => model%requests%supports%items(i))
                if (max(1, request%step) /= step .or. (request%step == 0 .and. is_new)) cycle
-               nodes = nodes_of(request, model%mesh)
+               nodes = request%members(model%mesh%node_sets)
                if (pass == 2) supports(n + 1:n + size(nodes)) = [(boundary_type(nodes(j), &
                   request%component, request%value, request%amplitude, request%card, &
                   request%keeps), j=1, size(nodes))]
@@ -249,7 +225,7 @@ contains
                model%fields = [model%fields, field]
                k = size(model%fields)
             end if
-            nodes = nodes_of(request, model%mesh)
+            nodes = request%members(model%mesh%node_sets)
             do f = 1, size(model%fields)
                if (model%fields(f)%step /= request%step) cycle
                model%fields(f)%given(nodes) = f == k
@@ -279,22 +255,15 @@ contains
    !> divisions begin with.
    pure subroutine make_explicit(model)
       type(model_type), intent(inout) :: model       !! requests applied
-      type(request_type) :: request
       integer :: i, s
 
       model%requests%loads%count = 0
       do s = 1, size(model%steps)
-         request%step = s
          do i = 1, size(model%steps(s)%loads)
             associate (load => model%steps(s)%loads(i))
-               if (load%kind == load_temperature) cycle
-               request%kind = load%kind
-               request%item = load%item
-               request%component = load%component
-               request%value = load%value
-               request%amplitude = load%amplitude
-               request%card = load%card
-               call model%requests%loads%add(request)
+               if (load%kind /= load_temperature) call model%requests%loads%add(request_type( &
+                  item=load%item, step=s, kind=load%kind, component=load%component, &
+                  value=load%value, amplitude=load%amplitude, card=load%card))
             end associate
          end do
       end do

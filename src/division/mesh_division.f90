@@ -2,12 +2,12 @@
 !> shape functions. Where an element on one side of a side is divided and the one on the other is
 !> not, the new nodes of that side hang (hanging_nodes).
 module mesh_division
-   use element_kinds, only: element_node_count, kind_count, quad4, quad4_enhanced, quad8, &
-      quad8_reduced, triangle6
+   use element_kinds, only: element_node_count, kind_count, triangle6
    use element_sides, only: element_sides_type, find_sides
    use local_refinement, only: coarse_side, fine_sides, hanging_count, nodes_between
    use kinds, only: dp
    use mesh, only: mesh_type
+   use shape_functions, only: element_shape, side_shape
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -17,24 +17,12 @@ module mesh_division
    !> New nodes inside an element by its kind.
    integer, parameter :: inner_count(kind_count) = [5, 5, 1, 3, 0, 1]
 
-   !> Shape functions of a three-node side at xi = -1/2; reversed at xi = 1/2.
-   real(dp), parameter :: quarter_weights(3) = [0.375_dp, 0.75_dp, -0.125_dp]
-
-   !> Shape functions of eight nodes at the centre and half way from it to the midside nodes of
-   !> sides 1..4.
-   real(dp), parameter :: quad8_weights(8, 5) = reshape( &
-      [-0.25_dp, -0.25_dp, -0.25_dp, -0.25_dp, 0.5_dp, 0.5_dp, 0.5_dp, 0.5_dp, &
-      -0.1875_dp, -0.1875_dp, -0.1875_dp, -0.1875_dp, 0.75_dp, 0.375_dp, 0.25_dp, 0.375_dp, &
-      -0.1875_dp, -0.1875_dp, -0.1875_dp, -0.1875_dp, 0.375_dp, 0.75_dp, 0.375_dp, 0.25_dp, &
-      -0.1875_dp, -0.1875_dp, -0.1875_dp, -0.1875_dp, 0.25_dp, 0.375_dp, 0.75_dp, 0.375_dp, &
-      -0.1875_dp, -0.1875_dp, -0.1875_dp, -0.1875_dp, 0.375_dp, 0.25_dp, 0.375_dp, 0.75_dp], &
-      [8, 5])
-
-   !> Shape functions of six nodes half way between the midside nodes of the sides at corners 1..3.
-   real(dp), parameter :: triangle6_weights(6, 3) = reshape( &
-      [0.0_dp, -0.125_dp, -0.125_dp, 0.5_dp, 0.25_dp, 0.5_dp, &
-      -0.125_dp, 0.0_dp, -0.125_dp, 0.5_dp, 0.5_dp, 0.25_dp, &
-      -0.125_dp, -0.125_dp, 0.0_dp, 0.25_dp, 0.5_dp, 0.5_dp], [6, 3])
+   !> xi, eta of the new nodes inside an element: of a square at its centre and half way from it to
+   !> each side, of a triangle half way between the midside nodes at each corner.
+   real(dp), parameter :: in_square(2, 5) = reshape([0.0_dp, 0.0_dp, 0.0_dp, -0.5_dp, &
+      0.5_dp, 0.0_dp, 0.0_dp, 0.5_dp, -0.5_dp, 0.0_dp], [2, 5])
+   real(dp), parameter :: in_triangle(2, 3) = reshape([0.25_dp, 0.25_dp, 0.5_dp, 0.25_dp, &
+      0.25_dp, 0.5_dp], [2, 3])
 
    !> Where the new nodes are: behind the old ones those of each side, then those in each element.
    !> A side of three nodes gets two new ones, a side of two its midpoint.
@@ -191,24 +179,6 @@ contains
       inner_node = division%inner_start(element) + position
    end function inner_node
 
-   !> Shape functions of an element's nodes at a new node inside it.
-   pure function inner_weights(kind, position) result(weights)
-      integer, intent(in) :: kind
-      integer, intent(in) :: position
-      real(dp) :: weights(element_node_count(kind))
-
-      select case (kind)
-      case (quad8, quad8_reduced)
-         weights = quad8_weights(:, position)
-      case (quad4, quad4_enhanced)
-         weights = 0.25_dp
-      case (triangle6)
-         weights = triangle6_weights(:, position)
-      case default
-         weights = 0.0_dp
-      end select
-   end function inner_weights
-
    !> Index of a child of a divided element: the first takes its parent's place.
    pure integer function child_element(division, parent, child)
       type(division_type), intent(in) :: division
@@ -225,6 +195,7 @@ contains
       type(mesh_type), intent(in) :: mesh              ! the mesh before
       type(division_type), intent(inout) :: division   ! numbered
       integer :: e, i, s
+      real(dp) :: point(2)
 
       associate (weights => division%weights, sides => division%sides)
          weights%row_count = division%nodes_after
@@ -240,18 +211,20 @@ contains
             i = division%between(1, s)
             if (i <= division%nodes) cycle
             if (sides%ends(2, s) == 0) then
-               call set_row(weights, i, sides%ends([1, 3], s), [0.5_dp, 0.5_dp])
+               call set_row(weights, i, sides%ends([1, 3], s), side_shape(2, 0.0_dp))
             else
-               call set_row(weights, i, sides%ends(:, s), quarter_weights)
-               call set_row(weights, i + 1, sides%ends(3:1:-1, s), quarter_weights)
+               call set_row(weights, i, sides%ends(:, s), side_shape(3, -0.5_dp))
+               call set_row(weights, i + 1, sides%ends(3:1:-1, s), side_shape(3, -0.5_dp))
             end if
          end do
          do e = 1, division%elements
             if (division%rank(e) == 0) cycle
             associate (kind => mesh%element_kind(e))
                do i = 1, inner_count(kind)
+                  point = in_square(:, i)
+                  if (kind == triangle6) point = in_triangle(:, i)
                   call set_row(weights, inner_node(division, e, i), &
-                     mesh%element_nodes(:element_node_count(kind), e), inner_weights(kind, i))
+                     mesh%element_nodes(:element_node_count(kind), e), element_shape(kind, point))
                end do
             end associate
          end do

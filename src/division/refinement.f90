@@ -3,8 +3,7 @@
 !> temperatures follow; loads and supports are applied anew.
 module refinement
    use mesh_bodies, only: find_bodies
-   use element_kinds, only: element_corner_count, quad4, quad4_enhanced, quad8, quad8_reduced, &
-      triangle6
+   use element_kinds, only: element_corner_count, element_node_count
    use kinds, only: dp, long
    use load_application, only: apply_requests, apply_transforms
    use mesh, only: mesh_type
@@ -14,10 +13,18 @@ module refinement
    use text, only: to_text
    implicit none
    private
-   public :: refine, refine_chosen, divide_model, numbering_fault
+   public :: refine, refine_chosen, divide_model, numbering_fault, parents_of
 
    !> The entries of all elements' 16 x 16 matrices are numbered in default integers.
    integer, parameter :: most_elements = 2**23 - 1
+
+   !> Nodes of the children of quadrilaterals and triangles, corners first, among those of
+   !> nodes_of_children. The fourth child of a triangle lies between its midside nodes.
+   integer, parameter :: quad_children(8, 4) = reshape([1, 5, 17, 8, 9, 18, 21, 16, &
+      5, 2, 6, 17, 13, 10, 19, 18, 17, 6, 3, 7, 19, 14, 11, 20, &
+      8, 17, 7, 4, 21, 20, 15, 12], [8, 4])
+   integer, parameter :: triangle_children(6, 4) = reshape([1, 4, 6, 7, 13, 12, &
+      4, 2, 5, 10, 8, 14, 6, 5, 3, 15, 11, 9, 4, 5, 6, 14, 15, 13], [6, 4])
 
 contains
 
@@ -179,7 +186,7 @@ contains
    !> The element that each one was before; children have their section and kind from it.
    pure function parents_of(division) result(parent)
       type(division_type), intent(in) :: division
-      integer :: parent(division%elements_after)
+      integer :: parent(division%elements_after)   !! (elements afterwards)
       integer :: e, child
 
       parent(:division%elements) = [(e, e=1, division%elements)]
@@ -217,112 +224,52 @@ contains
       faces = after(:, :n)
    end subroutine refine_faces
 
+   !> Nodes of the four children of an element, (8, 4) as in mesh_type: of its corners, the middles
+   !> of its sides, the nodes near the first corner and near the second one of each side, and those
+   !> inside.
+   pure function nodes_of_children(division, kind, nodes, e) result(children)
+      type(division_type), intent(in) :: division
+      integer, intent(in) :: kind, nodes(8), e
+      integer :: children(8, 4)
+      integer :: corners, f, i, own(21)
+
+      corners = element_corner_count(kind)
+      own(:2*corners) = nodes(:2*corners)
+      do f = 1, corners
+         own(2*corners + f) = side_node(division, e, f, nodes(f))
+         own(3*corners + f) = side_node(division, e, f, nodes(mod(f, corners) + 1))
+      end do
+      ! A side of two nodes has one new node, its middle.
+      if (element_node_count(kind) == corners) own(corners + 1:2*corners) = &
+         own(2*corners + 1:3*corners)
+      own(4*corners + 1:) = [(inner_node(division, e, i), i=1, size(own) - 4*corners)]
+      children = 0
+      associate (n => element_node_count(kind))
+         if (corners == 4) children(:n, :) = reshape(own([quad_children(:n, :)]), [n, 4])
+         if (corners == 3) children(:n, :) = reshape(own([triangle_children(:n, :)]), &
+            [n, 4])
+      end associate
+   end function nodes_of_children
+
    !> Puts the children in the place of the elements that are divided.
    subroutine refine_elements(division, kinds, element_nodes)
       type(division_type), intent(in) :: division
       integer, intent(in) :: kinds(:)                           !! (elements) before
       integer, allocatable, intent(inout) :: element_nodes(:, :) !! (8, elements) as in mesh_type
       integer, allocatable :: children(:, :)
-      integer :: e, nodes(8, 4), child
+      integer :: e, child
 
       allocate(children(8, division%elements_after))
       children(:, :division%elements) = element_nodes
       do e = 1, division%elements
          if (division%rank(e) == 0) cycle
-         nodes = 0
-         select case (kinds(e))
-         case (quad8, quad8_reduced)
-            nodes = quad8_children(division, element_nodes(:, e), e)
-         case (quad4, quad4_enhanced)
-            nodes(:4, :) = quad4_children(division, element_nodes(:, e), e)
-         case (triangle6)
-            nodes(:6, :) = triangle6_children(division, element_nodes(:, e), e)
-         case default
-            nodes(:3, :) = triangle3_children(division, element_nodes(:, e), e)
-         end select
-         do child = 1, 4
-            children(:, child_element(division, e, child)) = nodes(:, child)
-         end do
+         associate (nodes => nodes_of_children(division, kinds(e), element_nodes(:, e), e))
+            do child = 1, 4
+               children(:, child_element(division, e, child)) = nodes(:, child)
+            end do
+         end associate
       end do
       call move_alloc(children, element_nodes)
    end subroutine refine_elements
-
-   !> Nodes of the four children of an eight-node element.
-   pure function quad8_children(division, nodes, e) result(children)
-      type(division_type), intent(in) :: division
-      integer, intent(in) :: nodes(8), e
-      integer :: children(8, 4)
-      integer :: f, centre, inner(4), near_first(4), near_second(4)
-
-      centre = inner_node(division, e, 1)
-      do f = 1, 4
-         near_first(f) = side_node(division, e, f, nodes(f))
-         near_second(f) = side_node(division, e, f, nodes(mod(f, 4) + 1))
-         inner(f) = inner_node(division, e, 1 + f)
-      end do
-      associate (c => nodes(1:4), m => nodes(5:8))
-         children(:, 1) = [c(1), m(1), centre, m(4), &
-            near_first(1), inner(1), inner(4), near_second(4)]
-         children(:, 2) = [m(1), c(2), m(2), centre, &
-            near_second(1), near_first(2), inner(2), inner(1)]
-         children(:, 3) = [centre, m(2), c(3), m(3), &
-            inner(2), near_second(2), near_first(3), inner(3)]
-         children(:, 4) = [m(4), centre, m(3), c(4), &
-            inner(4), inner(3), near_second(3), near_first(4)]
-      end associate
-   end function quad8_children
-
-   !> Nodes of the four children of a four-node element.
-   pure function quad4_children(division, nodes, e) result(children)
-      type(division_type), intent(in) :: division
-      integer, intent(in) :: nodes(8), e
-      integer :: children(4, 4)
-      integer :: f, centre, m(4)
-
-      centre = inner_node(division, e, 1)
-      m = [(side_node(division, e, f, nodes(f)), f=1, 4)]
-      associate (c => nodes(1:4))
-         children(:, 1) = [c(1), m(1), centre, m(4)]
-         children(:, 2) = [m(1), c(2), m(2), centre]
-         children(:, 3) = [centre, m(2), c(3), m(3)]
-         children(:, 4) = [m(4), centre, m(3), c(4)]
-      end associate
-   end function quad4_children
-
-   !> Nodes of the four children of a six-node triangle; the fourth lies between its midside nodes.
-   pure function triangle6_children(division, nodes, e) result(children)
-      type(division_type), intent(in) :: division
-      integer, intent(in) :: nodes(8), e
-      integer :: children(6, 4)
-      integer :: f, inner(3), near_first(3), near_second(3)
-
-      do f = 1, 3
-         near_first(f) = side_node(division, e, f, nodes(f))
-         near_second(f) = side_node(division, e, f, nodes(mod(f, 3) + 1))
-         inner(f) = inner_node(division, e, f)
-      end do
-      associate (c => nodes(1:3), m => nodes(4:6))
-         children(:, 1) = [c(1), m(1), m(3), near_first(1), inner(1), near_second(3)]
-         children(:, 2) = [m(1), c(2), m(2), near_second(1), near_first(2), inner(2)]
-         children(:, 3) = [m(3), m(2), c(3), inner(3), near_second(2), near_first(3)]
-         children(:, 4) = [m(1), m(2), m(3), inner(2), inner(3), inner(1)]
-      end associate
-   end function triangle6_children
-
-   !> Nodes of the four children of a three-node triangle; the fourth is in the middle.
-   pure function triangle3_children(division, nodes, e) result(children)
-      type(division_type), intent(in) :: division
-      integer, intent(in) :: nodes(8), e
-      integer :: children(3, 4)
-      integer :: f, m(3)
-
-      m = [(side_node(division, e, f, nodes(f)), f=1, 3)]
-      associate (c => nodes(1:3))
-         children(:, 1) = [c(1), m(1), m(3)]
-         children(:, 2) = [m(1), c(2), m(2)]
-         children(:, 3) = [m(3), m(2), c(3)]
-         children(:, 4) = m
-      end associate
-   end function triangle3_children
 
 end module refinement

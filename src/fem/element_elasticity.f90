@@ -41,8 +41,7 @@ contains
       real(dp) :: stress(4, point_count(kind), 2*element_node_count(kind)), weighted(4, 4)
       integer :: g, j
 
-      call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
-      call enhance(kind, plane, coordinates, e, volumes, b)
+      call strain_matrices(kind, plane, coordinates, thickness, b, volumes, e)
       do g = 1, size(volumes)
          weighted = volumes(g)*e(:, :, min(g, size(e, 3)))
          do j = 1, size(k, 1)
@@ -76,8 +75,7 @@ contains
       integer :: g, i, q
 
       call integration_rule(kind, points, weights)
-      call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
-      call enhance(kind, plane, coordinates, e, volumes, b)
+      call strain_matrices(kind, plane, coordinates, thickness, b, volumes, e)
       load = 0.0_dp
       do g = 1, size(volumes)
          psi = element_shape(kind, points(:, g))
@@ -108,12 +106,13 @@ contains
       end do
    end function element_stress_force
 
-   !> B at all integration points, with the mean dilatation where the element uses it, and the
-   !> volumes that the points stand for.
-   pure subroutine strain_matrices(kind, plane, coordinates, thickness, b, volumes)
+   !> B at all integration points, with the mean dilatation where the element uses it or, for an
+   !> elasticity, with the enhanced strains that it has; and the volumes that the points stand for.
+   pure subroutine strain_matrices(kind, plane, coordinates, thickness, b, volumes, e)
       integer, intent(in) :: kind, plane
       real(dp), intent(in) :: coordinates(:, :), thickness
       real(dp), intent(out) :: b(:, :, :), volumes(:)
+      real(dp), intent(in), optional :: e(:, :, :)
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
       real(dp), dimension(size(b, 3)) :: change, mean
       integer :: g, i
@@ -124,6 +123,8 @@ contains
             volumes(g))
       end do
       volumes = volumes*weights
+      if (present(e) .and. kind == quad4_enhanced) call enhance_strains(coordinates, points, &
+         plane == axisymmetric, e, volumes, b)
       if (kind /= quad4 .or. plane == plane_stress) return
       ! Mean of eps_xx + eps_yy + eps_zz over the volume, per degree of freedom.
       mean = 0.0_dp
@@ -138,18 +139,6 @@ contains
          end do
       end do
    end subroutine strain_matrices
-
-   !> Adds to B the enhanced strains of the kinds that have them.
-   pure subroutine enhance(kind, plane, coordinates, e, volumes, b)
-      integer, intent(in) :: kind, plane
-      real(dp), intent(in) :: coordinates(:, :), e(:, :, :), volumes(:)
-      real(dp), intent(inout) :: b(:, :, :)
-      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
-
-      if (kind /= quad4_enhanced) return
-      call integration_rule(kind, points, weights)
-      call enhance_strains(coordinates, points, plane == axisymmetric, e, volumes, b)
-   end subroutine enhance
 
    !> B at a point, and the volume per d xi d eta.
    pure subroutine strain_matrix(kind, plane, coordinates, thickness, point, b, volume)

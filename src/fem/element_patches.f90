@@ -34,6 +34,8 @@ module element_patches
 
    !> Elements round each corner, and their recovery points.
    type :: layout_type
+      type(mesh_type), pointer :: mesh => null()
+      type(point_map_type), pointer :: points => null()   !! where averaged fields live
       integer, allocatable :: first_sample(:)    !! (elements + 1) first recovery point
       real(dp), allocatable :: position(:, :)    !! (2, recovery points) [length]
       integer, allocatable :: start(:)           !! (points + 1) first of the elements round each
@@ -69,9 +71,7 @@ contains
 
    !> Corners whose fits hold at a corner: its own, or, where its elements are too few for one, as
    !> at the outline of a body, those of its neighbours inside; without any its own, widened.
-   pure function centres_for(mesh, points, layout, corner, has_fit) result(centres)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
+   pure function centres_for(layout, corner, has_fit) result(centres)
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: corner
       logical, intent(in) :: has_fit(:)
@@ -85,8 +85,8 @@ contains
       ! First along sides, then across elements.
       do reach = 1, 2
          do k = layout%start(corner), layout%start(corner + 1) - 1
-            associate (mine => points%element_points(:, layout%around(k)))
-               corners = element_corner_count(mesh%element_kind(layout%around(k)))
+            associate (mine => layout%points%element_points(:, layout%around(k)))
+               corners = element_corner_count(layout%mesh%element_kind(layout%around(k)))
                do q = 1, corners
                   other = mine(q)
                   if (.not. has_fit(other) .or. any(centres == other)) cycle
@@ -102,9 +102,7 @@ contains
    end function centres_for
 
    !> Whether the elements round a corner close a ring, so that it is not on the outline.
-   pure logical function is_surrounded(mesh, points, layout, corner)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
+   pure logical function is_surrounded(layout, corner)
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: corner                 !! a point
       integer :: corners, k, q
@@ -113,10 +111,10 @@ contains
       allocate (before(0), after(0))
       do k = layout%start(corner), layout%start(corner + 1) - 1
          associate (e => layout%around(k))
-            corners = element_corner_count(mesh%element_kind(e))
-            q = findloc(points%element_points(:corners, e), corner, dim=1)
-            before = [before, points%element_points(modulo(q - 2, corners) + 1, e)]
-            after = [after, points%element_points(modulo(q, corners) + 1, e)]
+            corners = element_corner_count(layout%mesh%element_kind(e))
+            q = findloc(layout%points%element_points(:corners, e), corner, dim=1)
+            before = [before, layout%points%element_points(modulo(q - 2, corners) + 1, e)]
+            after = [after, layout%points%element_points(modulo(q, corners) + 1, e)]
          end associate
       end do
       is_surrounded = size(before) > 0
@@ -126,9 +124,7 @@ contains
    end function is_surrounded
 
    !> Midside points of the sides that end at a corner, each once.
-   pure function midsides_at(mesh, points, layout, corner) result(near)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
+   pure function midsides_at(layout, corner) result(near)
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: corner
       integer, allocatable :: near(:)
@@ -137,26 +133,24 @@ contains
       allocate (near(0))
       do k = layout%start(corner), layout%start(corner + 1) - 1
          associate (e => layout%around(k))
-            corners = element_corner_count(mesh%element_kind(e))
-            if (element_node_count(mesh%element_kind(e)) == corners) cycle
-            q = findloc(points%element_points(:corners, e), corner, dim=1)
+            corners = element_corner_count(layout%mesh%element_kind(e))
+            if (element_node_count(layout%mesh%element_kind(e)) == corners) cycle
+            q = findloc(layout%points%element_points(:corners, e), corner, dim=1)
             sides = corners + [q, modulo(q - 2, corners) + 1]
             do i = 1, 2
-               associate (midside => points%element_points(sides(i), e))
+               associate (midside => layout%points%element_points(sides(i), e))
                   ! Where it hangs on a larger element it is a corner, with a fit of its own.
                   if (layout%start(midside + 1) > layout%start(midside)) cycle
                end associate
-               if (any(near == points%element_points(sides(i), e))) cycle
-               near = [near, points%element_points(sides(i), e)]
+               if (any(near == layout%points%element_points(sides(i), e))) cycle
+               near = [near, layout%points%element_points(sides(i), e)]
             end do
          end associate
       end do
    end function midsides_at
 
    !> Fits the elements round a corner, with their neighbours where they are too few.
-   pure subroutine fit_round_corner(mesh, points, layout, corner, layers, patch, fit)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
+   pure subroutine fit_round_corner(layout, corner, layers, patch, fit)
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: corner
       integer, intent(in) :: layers                 !! times that the patch may be widened
@@ -169,22 +163,22 @@ contains
       patch = layout%around(layout%start(corner):layout%start(corner + 1) - 1)
       terms = quadratic_terms
       fewest = 2*terms
-      if (any(is_linear(mesh%element_kind(patch)))) then
+      if (any(is_linear(layout%mesh%element_kind(patch)))) then
          terms = linear_terms
          fewest = terms + 1
       end if
       before = 0
       do layer = 0, layers
-         if (layer > 0) call widen(mesh, points, layout, patch)
+         if (layer > 0) call widen(layout, patch)
          if (size(patch) == before) exit
          before = size(patch)
          sites = sites_of(layout, patch)
-         fit = make_fit(sites, corners_of(mesh, patch), terms)
+         fit = make_fit(sites, corners_of(layout, patch), terms)
          if (fit%complete .and. size(sites, 2) >= fewest) exit
       end do
       if (terms == quadratic_terms .and. size(sites, 2) >= fewest_for_cubic .and. &
-         all(element_corner_count(mesh%element_kind(patch)) == 4)) then
-         cubic = make_fit(sites, corners_of(mesh, patch), cubic_terms)
+         all(element_corner_count(layout%mesh%element_kind(patch)) == 4)) then
+         cubic = make_fit(sites, corners_of(layout, patch), cubic_terms)
          if (cubic%complete) fit = cubic
       end if
       fit%ample = fit%complete .and. size(sites, 2) >= fewest
@@ -198,22 +192,20 @@ contains
    end function is_linear
 
    !> Adds the elements beyond the sides of a patch.
-   pure subroutine widen(mesh, points, layout, patch)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
+   pure subroutine widen(layout, patch)
       type(layout_type), intent(in) :: layout
       integer, allocatable, intent(inout) :: patch(:)
       integer :: corners, i, k, q, side(2), within
 
       within = size(patch)
       do i = 1, within
-         corners = element_corner_count(mesh%element_kind(patch(i)))
+         corners = element_corner_count(layout%mesh%element_kind(patch(i)))
          do q = 1, corners
-            side = points%element_points([q, modulo(q, corners) + 1], patch(i))
+            side = layout%points%element_points([q, modulo(q, corners) + 1], patch(i))
             do k = layout%start(side(1)), layout%start(side(1) + 1) - 1
                associate (other => layout%around(k))
                   if (any(patch == other)) cycle
-                  if (all(points%element_points(:, other) /= side(2))) cycle
+                  if (all(layout%points%element_points(:, other) /= side(2))) cycle
                   patch = [patch, other]
                end associate
             end do
@@ -245,17 +237,18 @@ contains
       sites = sites(:, :n)
    end function sites_of
 
-   pure function corners_of(mesh, patch) result(corners)
-      type(mesh_type), intent(in) :: mesh
+   pure function corners_of(layout, patch) result(corners)
+      type(layout_type), intent(in) :: layout
       integer, intent(in) :: patch(:)
       real(dp), allocatable :: corners(:, :)
       integer :: c, i, n
 
-      allocate (corners(2, sum(element_corner_count(mesh%element_kind(patch)))))
+      allocate (corners(2, sum(element_corner_count(layout%mesh%element_kind(patch)))))
       n = 0
       do i = 1, size(patch)
-         c = element_corner_count(mesh%element_kind(patch(i)))
-         corners(:, n + 1:n + c) = mesh%coordinates(:, mesh%element_nodes(:c, patch(i)))
+         c = element_corner_count(layout%mesh%element_kind(patch(i)))
+         corners(:, n + 1:n + c) = &
+            layout%mesh%coordinates(:, layout%mesh%element_nodes(:c, patch(i)))
          n = n + c
       end do
    end function corners_of

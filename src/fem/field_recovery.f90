@@ -13,7 +13,6 @@ module field_recovery
    use element_kinds, only: element_node_count, kind_count, quad8, quad8_reduced, triangle3, &
       triangle6
    use kinds, only: dp
-   use materials, only: material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
    use material_points, only: material_points_type
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule, point_rule, &
@@ -23,7 +22,7 @@ module field_recovery
    use shape_functions, only: node_position
    implicit none
    private
-   public :: point_map_type, make_points, recovery_rules, prepare_samples, stress_samples, &
+   public :: point_map_type, make_points, recovery_rules, stress_samples, &
       heat_flux_samples, average_samples, fit_of_points, element_error_type, measure_stress, &
       measure_heat_flux, error_rules, error_record_type
 
@@ -93,17 +92,6 @@ contains
       end do
    end function make_points
 
-   !> Prepares the recovery points of all elements.
-   subroutine prepare_samples(mesh, sections, materials, orientations, fields)
-      type(mesh_type), intent(in) :: mesh
-      type(section_type), intent(in) :: sections(:)
-      type(material_type), intent(in) :: materials(:)
-      type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
-      type(material_points_type), intent(out) :: fields
-
-      call fields%prepare(mesh, sections, materials, orientations, recovery_rules())
-   end subroutine prepare_samples
-
    !> Recovery points of every kind of element. Equal weights are right for the four-node element,
    !> whose mean dilatation is that over these points.
    pure function recovery_rules() result(rules)
@@ -117,7 +105,7 @@ contains
 
    !> Stress at all recovery points along x and y, eq. (1.5).
    pure subroutine stress_samples(fields, mesh, displacement, temperature, samples)
-      type(material_points_type), intent(in) :: fields   !! of prepare_samples
+      type(material_points_type), intent(in) :: fields   !! at recovery_rules
       type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: displacement(:, :)      !! (2, nodes) [length]
       real(dp), intent(in) :: temperature(:) !! (nodes) over the natural state [temperature]
@@ -136,7 +124,7 @@ contains
 
    !> Heat flux at all recovery points along x and y, eq. (1.4).
    pure subroutine heat_flux_samples(fields, mesh, temperature, samples)
-      type(material_points_type), intent(in) :: fields   !! of prepare_samples
+      type(material_points_type), intent(in) :: fields   !! at recovery_rules
       type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: temperature(:)          !! (nodes) [temperature]
       real(dp), intent(out) :: samples(:, :)          !! (2, recovery points) [power/length^2]

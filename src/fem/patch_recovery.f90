@@ -43,10 +43,10 @@ module patch_recovery
 contains
 
    !> Fits the patches, of some elements alone where only what these have is asked for.
-   pure subroutine prepare(self, mesh, points, first_sample, position, counts)
+   subroutine prepare(self, mesh, points, first_sample, position, counts)
       class(patch_recovery_type), intent(inout) :: self !! the weights, not yet formed
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points        !! where averaged fields live
+      type(mesh_type), intent(in), target :: mesh
+      type(point_map_type), intent(in), target :: points   !! where averaged fields live
       integer, intent(in) :: first_sample(:)            !! (elements + 1) first recovery point
       real(dp), intent(in) :: position(:, :)            !! (2, recovery points) x, y [length]
       logical, intent(in) :: counts(:)                  !! (elements)
@@ -58,29 +58,31 @@ contains
       integer :: c, i, p
       real(dp) :: share
 
+      layout%mesh => mesh
+      layout%points => points
       layout%first_sample = first_sample
       layout%position = position
       call invert_lists(points%element_points, merge(element_corner_count(mesh%element_kind), &
          0, counts), size(rows), layout%start, layout%around)
-      layout%is_centred = is_linear(mesh%element_kind) .and. .not. is_row(mesh, points, layout)
+      layout%is_centred = is_linear(mesh%element_kind) .and. .not. is_row(layout)
       allocate (self%inside(size(rows)), source=.false.)
       do p = 1, size(rows)
          has_fit(p) = .false.
          if (layout%start(p + 1) > layout%start(p)) then
-            call fit_round_corner(mesh, points, layout, p, 0, patch, fit)
+            call fit_round_corner(layout, p, 0, patch, fit)
             has_fit(p) = fit%ample
             ! Averages over linear elements are as good inside a regular mesh as fits are.
-            self%inside(p) = fit%ample .and. is_surrounded(mesh, points, layout, p) .and. &
+            self%inside(p) = fit%ample .and. is_surrounded(layout, p) .and. &
                .not. any(is_linear(mesh%element_kind(patch)))
          end if
       end do
       do p = 1, size(rows)
          if (layout%start(p + 1) == layout%start(p)) cycle
-         centres = centres_for(mesh, points, layout, p, has_fit)
-         near = midsides_at(mesh, points, layout, p)
+         centres = centres_for(layout, p, has_fit)
+         near = midsides_at(layout, p)
          share = 1.0_dp/size(centres)
          do c = 1, size(centres)
-            call fit_round_corner(mesh, points, layout, centres(c), most_layers, patch, fit)
+            call fit_round_corner(layout, centres(c), most_layers, patch, fit)
             call add_weights(rows(p), layout, patch, &
                share*fit%weights_at(mesh%coordinates(:, points%node(p))))
             ! A midside node has the mean of what holds at the ends of its side.
@@ -92,29 +94,27 @@ contains
       end do
       call self%smooth%join(rows)
       do p = 1, size(rows)
-         if (self%inside(p)) self%inside(midsides_at(mesh, points, layout, p)) = .true.
+         if (self%inside(p)) self%inside(midsides_at(layout, p)) = .true.
       end do
-      self%curvature = curvature_sums(mesh, points, layout, self%inside)
+      self%curvature = curvature_sums(layout, self%inside)
    end subroutine prepare
 
    !> Whether elements with incompatible modes, which follow bending, have no neighbours on two
    !> opposite sides, so that the centres do not show it.
-   pure function is_row(mesh, points, layout)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
+   pure function is_row(layout)
       type(layout_type), intent(in) :: layout
-      logical :: is_row(size(mesh%element_kind))
+      logical :: is_row(size(layout%mesh%element_kind))
       logical :: is_free(4)
       integer :: e, k, q
 
       do e = 1, size(is_row)
          is_row(e) = .false.
-         if (mesh%element_kind(e) /= quad4_enhanced) cycle
+         if (layout%mesh%element_kind(e) /= quad4_enhanced) cycle
          is_free = .true.
          do q = 1, 4
-            associate (side => points%element_points([q, modulo(q, 4) + 1], e))
+            associate (side => layout%points%element_points([q, modulo(q, 4) + 1], e))
                do k = layout%start(side(1)), layout%start(side(1) + 1) - 1
-                  if (layout%around(k) /= e .and. any(points%element_points(:, &
+                  if (layout%around(k) /= e .and. any(layout%points%element_points(:, &
                      layout%around(k)) == side(2))) is_free(q) = .false.
                end do
             end associate
@@ -151,32 +151,30 @@ contains
    end subroutine improve
 
    !> The weights of what is left out at the points of the outline; none elsewhere.
-   pure function curvature_sums(mesh, points, layout, inside) result(sums)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
+   pure function curvature_sums(layout, inside) result(sums)
       type(layout_type), intent(in) :: layout
       logical, intent(in) :: inside(:)             !! (points) that have fits of their own
       type(sample_sums_type) :: sums
-      type(row_type) :: rows(size(points%node))
+      type(row_type) :: rows(size(layout%points%node))
       integer, allocatable :: centres(:), near(:)
       integer :: c, i, p
       real(dp) :: share
 
       do p = 1, size(rows)
          if (inside(p) .or. layout%start(p + 1) == layout%start(p)) cycle
-         centres = centres_for(mesh, points, layout, p, inside)
-         near = midsides_at(mesh, points, layout, p)
+         centres = centres_for(layout, p, inside)
+         near = midsides_at(layout, p)
          share = 1.0_dp/size(centres)
          do c = 1, size(centres)
             if (.not. inside(centres(c))) cycle
             associate (patch => layout%around(layout%start(centres(c)): &
                layout%start(centres(c) + 1) - 1))
-               if (.not. suits(mesh, patch)) cycle
-               call add_curvature(rows(p), mesh, points, layout, patch, p, share)
+               if (.not. suits(layout%mesh, patch)) cycle
+               call add_curvature(rows(p), layout, patch, p, share)
                ! A midside node has the mean of what is missing at the ends of its side.
                do i = 1, size(near)
-                  if (.not. inside(near(i))) call add_curvature(rows(near(i)), mesh, points, &
-                     layout, patch, near(i), share/2)
+                  if (.not. inside(near(i))) call add_curvature(rows(near(i)), layout, patch, &
+                     near(i), share/2)
                end do
             end associate
          end do
@@ -209,10 +207,8 @@ contains
 
    !> Adds the difference, at a point, of the polynomial of a patch and of its bilinear
    !> extrapolation in the elements of the patch that meet there.
-   pure subroutine add_curvature(row, mesh, points, layout, patch, point, share)
+   pure subroutine add_curvature(row, layout, patch, point, share)
       type(row_type), intent(inout) :: row
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: patch(:)
       integer, intent(in) :: point
@@ -223,13 +219,13 @@ contains
       integer :: i, meeting, q, s
 
       sites = sites_of(layout, patch)
-      fit = make_fit(sites, corners_of(mesh, patch), quadratic_terms)
-      missing = fit%weights_at(mesh%coordinates(:, points%node(point)))
+      fit = make_fit(sites, corners_of(layout, patch), quadratic_terms)
+      missing = fit%weights_at(layout%mesh%coordinates(:, layout%points%node(point)))
       extrapolated = 0*missing
       nodes = node_position(quad8)
       meeting = 0
       do i = 1, size(patch)
-         q = findloc(points%element_points(:, patch(i)), point, dim=1)
+         q = findloc(layout%points%element_points(:, patch(i)), point, dim=1)
          if (q == 0) cycle
          meeting = meeting + 1
          associate (weights => recovery_weights(quad8, nodes(:, q)), n => recovery_count(quad8))

@@ -250,10 +250,12 @@ contains
       real(dp), allocatable :: coordinate(:)             !! ascending [length]
 
       coordinate = [-self%width, 0.0_dp]
-      if (self%law%closed_kind == law_pressure) coordinate = &
-         [-self%width - self%law%table_pressure(size(self%law%table_pressure):1:-1)/self%modulus, &
-         coordinate]
-      if (self%law%open_kind == law_clearance) coordinate = [coordinate, self%law%table_gap]
+      associate (pressure => self%law%closed_table%abscissa)
+         if (self%law%closed_kind == law_pressure) coordinate = &
+            [-self%width - pressure(size(pressure):1:-1)/self%modulus, coordinate]
+      end associate
+      if (self%law%open_kind == law_clearance) coordinate = &
+         [coordinate, self%law%open_table%abscissa]
       if (allocated(self%law%view_gap)) coordinate = [coordinate, self%law%view_gap]
    end function kinks
 

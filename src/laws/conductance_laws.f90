@@ -4,10 +4,10 @@ module conductance_laws
    use kinds, only: dp
    implicit none
    private
-   public :: conductance_law_type, law_by_temperature_type, law_none, law_gas, law_power, &
-      law_clearance, law_pressure, conductance, conductance_derivative, conductance_inverse, &
-      law_jump, table_jump, is_constant, varies_with_temperature, line_value, line_slope, &
-      line_abscissa, view_at
+   public :: conductance_law_type, conductance_table_type, law_by_temperature_type, law_none, &
+      law_gas, law_power, law_clearance, law_pressure, conductance, conductance_derivative, &
+      conductance_inverse, law_jump, table_jump, is_constant, varies_with_temperature, &
+      line_value, line_slope, view_at
 
    integer, parameter :: law_none = 0        !! this side of the law was not given
    integer, parameter :: law_gas = 1         !! open: omega = A/(B + gamma) + radiation
@@ -20,13 +20,18 @@ module conductance_laws
       !> (rows) ascending mean temperatures of A and B there; unallocated where they are constant
       real(dp), allocatable :: gas_temperature(:)
       real(dp), allocatable :: gas_a(:), gas_b(:)
-      !> (columns) ascending mean temperatures, and (rows, columns) omega of the tables there;
-      !> unallocated where the table is of one temperature
-      real(dp), allocatable :: open_temperature(:), open_columns(:, :)
-      real(dp), allocatable :: closed_temperature(:), closed_columns(:, :)
       real(dp) :: radiance = 0.0_dp        !! sigma eps of two faces [power/(length^2 T^4)]
       real(dp) :: absolute_zero = 0.0_dp   !! of radiation [temperature]
    end type law_by_temperature_type
+
+   !> Conductance over the gap or the pressure. That of several temperatures has all abscissas at
+   !> each of them, on the straight lines between the rows of this temperature.
+   type :: conductance_table_type
+      real(dp), allocatable :: abscissa(:)      !! (rows) ascending gamma or p, >= 0
+      real(dp), allocatable :: omega(:)         !! (rows) omega there, at the first temperature
+      real(dp), allocatable :: temperature(:)   !! (columns) ascending means; unallocated for one
+      real(dp), allocatable :: columns(:, :)    !! (rows, columns) omega at each of them
+   end type conductance_table_type
 
    !> The open and the closed law of one surface interaction. Tables are straight lines between
    !> their rows and hold their end values outside, unless open_ends. Where a law varies with the
@@ -43,15 +48,12 @@ module conductance_laws
       real(dp) :: power_c1 = 0.0_dp        !! C1 [C0/stress^n]
       real(dp) :: power_n = 1.0_dp         !! n [-]
       logical :: closed_adds = .false.     !! C0 + C1 p^n adds to the open value at gamma = 0
-      real(dp), allocatable :: table_gap(:)        !! (rows) ascending gamma >= 0 [length]
-      real(dp), allocatable :: open_omega(:)       !! (rows) omega there
+      type(conductance_table_type) :: open_table   !! over gamma [length]
       logical :: open_ends = .false.               !! omega is 0 beyond the last of these gaps
       !> (rows) ascending gamma >= 0, and view factors there; unallocated where it is 1
       real(dp), allocatable :: view_gap(:), view_factor(:)
-      real(dp), allocatable :: table_pressure(:)   !! (rows) ascending p >= 0 [stress]
-      real(dp), allocatable :: closed_omega(:)     !! (rows) omega there
-      !> what varies with the temperatures of the faces; unallocated where nothing does
-      type(law_by_temperature_type), allocatable :: by_temperature
+      type(conductance_table_type) :: closed_table !! over p [stress]
+      type(law_by_temperature_type) :: by_temperature   !! beside the temperatures of the tables
    end type conductance_law_type
 
 contains
@@ -75,7 +77,8 @@ contains
          omega = law%power_c0 + law%power_c1*max(pressure, 0.0_dp)**law%power_n
          if (law%closed_adds) omega = omega + open_law(law, 0.0_dp)
       case (law_pressure)
-         omega = line_value(law%table_pressure, law%closed_omega, max(pressure, 0.0_dp))
+         omega = line_value(law%closed_table%abscissa, law%closed_table%omega, &
+            max(pressure, 0.0_dp))
       case default
          omega = open_law(law, 0.0_dp)
       end select
@@ -97,14 +100,14 @@ contains
             if (pressure > 0.0_dp .or. law%power_n >= 1.0_dp) derivative = &
                law%power_c1*law%power_n*pressure**(law%power_n - 1.0_dp)
          else if (law%closed_kind == law_pressure) then
-            derivative = line_slope(law%table_pressure, law%closed_omega, pressure)
+            derivative = line_slope(law%closed_table%abscissa, law%closed_table%omega, pressure)
          end if
       else if (.not. closed .and. gap >= 0.0_dp) then
          if (law%open_kind == law_gas) then
             derivative = law%gas_b + law%added_length + gap
             derivative = -(law%gas_a/derivative)/derivative
          else if (law%open_kind == law_clearance) then
-            derivative = line_slope(law%table_gap, law%open_omega, gap)
+            derivative = line_slope(law%open_table%abscissa, law%open_table%omega, gap)
          end if
          if (allocated(law%view_gap)) derivative = derivative + &
             law%radiation*line_slope(law%view_gap, law%view_factor, gap)
@@ -128,7 +131,7 @@ contains
             if (law%closed_adds) rise = rise - open_law(law, 0.0_dp)
             if (law%power_c1 > 0.0_dp) at = power_root(rise, law%power_c1, law%power_n)
          else if (law%closed_kind == law_pressure) then
-            at = line_abscissa(law%table_pressure, law%closed_omega, omega)
+            at = line_abscissa(law%closed_table%abscissa, law%closed_table%omega, omega)
          end if
       else if (allocated(law%view_gap)) then
          at = -1.0_dp
@@ -136,7 +139,7 @@ contains
          if (omega > law%radiation) at = law%gas_a/(omega - law%radiation) - &
             (law%gas_b + law%added_length)
       else if (law%open_kind == law_clearance) then
-         at = line_abscissa(law%table_gap, law%open_omega, omega - law%radiation)
+         at = line_abscissa(law%open_table%abscissa, law%open_table%omega, omega - law%radiation)
       end if
    end function conductance_inverse
 
@@ -170,19 +173,18 @@ contains
 
       jump = 0.0_dp
       if (.not. law%open_ends) return
-      jump = law%open_omega(size(law%open_omega))
-      if (.not. allocated(law%by_temperature)) return
-      associate (rows => law%by_temperature)
-         if (allocated(rows%open_columns)) jump = maxval(rows%open_columns( &
-            size(law%table_gap), :))
-      end associate
+      jump = law%open_table%omega(size(law%open_table%omega))
+      if (allocated(law%open_table%temperature)) jump = &
+         maxval(law%open_table%columns(size(law%open_table%abscissa), :))
    end function table_jump
 
    !> Whether omega depends on the temperatures of the faces.
    elemental logical function varies_with_temperature(law)
       type(conductance_law_type), intent(in) :: law
 
-      varies_with_temperature = allocated(law%by_temperature)
+      varies_with_temperature = law%by_temperature%radiance > 0.0_dp .or. &
+         allocated(law%by_temperature%gas_temperature) .or. &
+         allocated(law%open_table%temperature) .or. allocated(law%closed_table%temperature)
    end function varies_with_temperature
 
    !> Whether omega is the same at every gap, pressure and temperature.
@@ -193,14 +195,14 @@ contains
       if (varies_with_temperature(law)) return
       if (abs(law_jump(law)) > 0.0_dp .or. law%open_kind == law_gas) return
       if (law%open_kind == law_clearance) then
-         if (.not. is_level(law%open_omega)) return
+         if (.not. is_level(law%open_table%omega)) return
          if (table_jump(law) > 0.0_dp) return
       end if
       select case (law%closed_kind)
       case (law_power)
          is_constant = law%power_c1 <= 0.0_dp
       case (law_pressure)
-         is_constant = is_level(law%closed_omega)
+         is_constant = is_level(law%closed_table%omega)
       case default
          is_constant = .true.
       end select
@@ -221,8 +223,10 @@ contains
       if (law%open_kind == law_gas) then
          omega = law%gas_a/(law%gas_b + law%added_length + gap)
       else if (law%open_kind == law_clearance) then
-         omega = line_value(law%table_gap, law%open_omega, gap)
-         if (law%open_ends .and. gap > law%table_gap(size(law%table_gap))) omega = 0.0_dp
+         associate (gaps => law%open_table%abscissa)
+            omega = line_value(gaps, law%open_table%omega, gap)
+            if (law%open_ends .and. gap > gaps(size(gaps))) omega = 0.0_dp
+         end associate
       end if
       if (law%radiation > 0.0_dp) omega = omega + law%radiation*view_at(law, gap)
    end function open_law

@@ -7,9 +7,9 @@
 !>
 !> with the mean and the jump of the faces nothing of it is lost.
 module temperature_laws
-   use conductance_laws, only: conductance, conductance_law_type, law_by_temperature_type, &
-      law_jump, law_none, law_pressure, line_slope, line_value, varies_with_temperature, &
-      view_at
+   use conductance_laws, only: conductance, conductance_law_type, conductance_table_type, &
+      law_jump, law_none, law_pressure, line_slope, line_value, &
+      varies_with_temperature, view_at
    use kinds, only: dp
    implicit none
    private
@@ -32,16 +32,14 @@ contains
       type(conductance_law_type) :: there
 
       there = law
-      if (.not. allocated(law%by_temperature)) return
+      if (.not. varies_with_temperature(law)) return
       associate (rows => law%by_temperature, mean => faces%mean)
          if (allocated(rows%gas_temperature)) then
             there%gas_a = line_value(rows%gas_temperature, rows%gas_a, mean)
             there%gas_b = line_value(rows%gas_temperature, rows%gas_b, mean)
          end if
-         if (allocated(rows%open_temperature)) there%open_omega = &
-            column_value(rows%open_temperature, rows%open_columns, mean)
-         if (allocated(rows%closed_temperature)) there%closed_omega = &
-            column_value(rows%closed_temperature, rows%closed_columns, mean)
+         call set_to(there%open_table, mean)
+         call set_to(there%closed_table, mean)
          there%radiation = 4*rows%radiance*max(mean - rows%absolute_zero, 0.0_dp)* &
             ((mean - rows%absolute_zero)**2 + 0.25_dp*faces%jump**2)
       end associate
@@ -57,24 +55,21 @@ contains
       real(dp) :: derivatives(2)                         !! [omega/temperature]
 
       derivatives = 0.0_dp
-      if (.not. allocated(law%by_temperature)) return
+      if (.not. varies_with_temperature(law)) return
       if (closed .and. law%closed_kind == law_pressure) then
-         associate (rows => law%by_temperature)
-            if (allocated(rows%closed_temperature)) derivatives(1) = line_value( &
-               law%table_pressure, column_slope(rows%closed_temperature, rows%closed_columns, &
-               faces%mean), max(pressure, 0.0_dp))
-         end associate
+         if (allocated(law%closed_table%temperature)) derivatives(1) = line_value( &
+            law%closed_table%abscissa, slope_of(law%closed_table, faces%mean), &
+            max(pressure, 0.0_dp))
       else if (.not. closed) then
-         derivatives = open_derivatives(law, law%by_temperature, faces, max(gap, 0.0_dp))
+         derivatives = open_derivatives(law, faces, max(gap, 0.0_dp))
       else if (law%closed_kind == law_none .or. law%closed_adds) then
-         derivatives = open_derivatives(law, law%by_temperature, faces, 0.0_dp)
+         derivatives = open_derivatives(law, faces, 0.0_dp)
       end if
    end function temperature_derivatives
 
    !> Those of the open side.
-   pure function open_derivatives(law, rows, faces, gap) result(derivatives)
+   pure function open_derivatives(law, faces, gap) result(derivatives)
       type(conductance_law_type), intent(in) :: law
-      type(law_by_temperature_type), intent(in) :: rows
       type(face_temperatures_type), intent(in) :: faces
       real(dp), intent(in) :: gap
       real(dp) :: derivatives(2)
@@ -83,47 +78,47 @@ contains
 
       derivatives = 0.0_dp
       there = law_at(law, faces)
-      if (allocated(rows%gas_temperature)) then
-         length = there%gas_b + there%added_length + gap
-         derivatives(1) = line_slope(rows%gas_temperature, rows%gas_a, faces%mean)/length - &
-            there%gas_a/length*line_slope(rows%gas_temperature, rows%gas_b, faces%mean)/length
-      end if
-      if (allocated(rows%open_temperature)) then
-         radiation = there%radiation
-         there%radiation = 0.0_dp
-         there%open_omega = column_slope(rows%open_temperature, rows%open_columns, faces%mean)
-         derivatives(1) = conductance(there, .false., gap, 0.0_dp)
-         there%radiation = radiation
-      end if
-      if (there%radiation > 0.0_dp) then
-         seen = rows%radiance*view_at(law, gap)
-         derivatives(1) = derivatives(1) + seen* &
-            (12*(faces%mean - rows%absolute_zero)**2 + faces%jump**2)
-         derivatives(2) = 2*seen*(faces%mean - rows%absolute_zero)*faces%jump
-      end if
+      associate (rows => law%by_temperature)
+         if (allocated(rows%gas_temperature)) then
+            length = there%gas_b + there%added_length + gap
+            derivatives(1) = line_slope(rows%gas_temperature, rows%gas_a, faces%mean)/length - &
+               there%gas_a/length*line_slope(rows%gas_temperature, rows%gas_b, faces%mean)/length
+         end if
+         if (allocated(law%open_table%temperature)) then
+            radiation = there%radiation
+            there%radiation = 0.0_dp
+            there%open_table%omega = slope_of(law%open_table, faces%mean)
+            derivatives(1) = conductance(there, .false., gap, 0.0_dp)
+            there%radiation = radiation
+         end if
+         if (there%radiation > 0.0_dp) then
+            seen = rows%radiance*view_at(law, gap)
+            derivatives(1) = derivatives(1) + seen* &
+               (12*(faces%mean - rows%absolute_zero)**2 + faces%jump**2)
+            derivatives(2) = 2*seen*(faces%mean - rows%absolute_zero)*faces%jump
+         end if
+      end associate
    end function open_derivatives
 
-   !> A table at a mean temperature, from its columns.
-   pure function column_value(temperature, columns, mean) result(omega)
-      real(dp), intent(in) :: temperature(:)    ! (columns) ascending
-      real(dp), intent(in) :: columns(:, :)     ! (rows, columns)
+   !> Sets a table of several temperatures to a mean temperature.
+   pure subroutine set_to(table, mean)
+      type(conductance_table_type), intent(inout) :: table
       real(dp), intent(in) :: mean
-      real(dp) :: omega(size(columns, 1))
       integer :: i
 
-      omega = [(line_value(temperature, columns(i, :), mean), i=1, size(omega))]
-   end function column_value
+      if (allocated(table%temperature)) table%omega = [(line_value(table%temperature, &
+         table%columns(i, :), mean), i=1, size(table%omega))]
+   end subroutine set_to
 
-   !> How it changes with the mean temperature.
-   pure function column_slope(temperature, columns, mean) result(slope)
-      real(dp), intent(in) :: temperature(:)    ! (columns) ascending
-      real(dp), intent(in) :: columns(:, :)     ! (rows, columns)
+   !> How a table of several temperatures changes with the mean temperature.
+   pure function slope_of(table, mean) result(slope)
+      type(conductance_table_type), intent(in) :: table
       real(dp), intent(in) :: mean
-      real(dp) :: slope(size(columns, 1))
+      real(dp) :: slope(size(table%abscissa))
       integer :: i
 
-      slope = [(line_slope(temperature, columns(i, :), mean), i=1, size(slope))]
-   end function column_slope
+      slope = [(line_slope(table%temperature, table%columns(i, :), mean), i=1, size(slope))]
+   end function slope_of
 
    !> Whether the law jumps at gamma = p = 0 by more than rounding, at any temperature.
    elemental logical function law_jumps(law)
@@ -153,8 +148,7 @@ contains
    elemental logical function radiates(law)
       type(conductance_law_type), intent(in) :: law      !! as the deck has it
 
-      radiates = .false.
-      if (allocated(law%by_temperature)) radiates = law%by_temperature%radiance > 0.0_dp
+      radiates = law%by_temperature%radiance > 0.0_dp
    end function radiates
 
    !> Whether faces radiate until they meet, and no longer when they have.
@@ -175,15 +169,15 @@ contains
       real(dp) :: largest
       integer :: i
 
-      if (.not. allocated(law%by_temperature)) return
+      if (.not. varies_with_temperature(law)) return
       temperature = [real(dp) ::]
-      associate (rows => law%by_temperature)
-         faces%mean = rows%absolute_zero
-         if (allocated(rows%gas_temperature)) temperature = rows%gas_temperature
-         if (allocated(rows%open_temperature)) temperature = [temperature, rows%open_temperature]
-         if (allocated(rows%closed_temperature)) temperature = [temperature, &
-            rows%closed_temperature]
-      end associate
+      faces%mean = law%by_temperature%absolute_zero
+      if (allocated(law%by_temperature%gas_temperature)) temperature = &
+         law%by_temperature%gas_temperature
+      if (allocated(law%open_table%temperature)) temperature = [temperature, &
+         law%open_table%temperature]
+      if (allocated(law%closed_table%temperature)) temperature = [temperature, &
+         law%closed_table%temperature]
       largest = -1.0_dp
       do i = 1, size(temperature)
          there = law_at(law, face_temperatures_type(mean=temperature(i)))
@@ -199,8 +193,7 @@ contains
       type(conductance_law_type), intent(in) :: law      !! as the deck has it
       type(face_temperatures_type), intent(in) :: faces
 
-      is_below_zero = radiates(law)
-      if (is_below_zero) is_below_zero = faces%mean - 0.5_dp*abs(faces%jump) < &
+      is_below_zero = radiates(law) .and. faces%mean - 0.5_dp*abs(faces%jump) < &
          law%by_temperature%absolute_zero
    end function is_below_zero
 

@@ -10,7 +10,7 @@ module materials
    private
    public :: material_type, properties_type, section_type, property_type, orientation_type
    public :: material_axes, strain_rotation, heat_capacity, least_heat_capacity
-   public :: set_property, isotropic, engineering, orthotropic, anisotropic
+   public :: set_property, elasticity_of, isotropic, engineering, orthotropic, anisotropic
    public :: follows_temperature, has_law, varies
    public :: thermal_strain, heat_content, heat_capacity_at, expansion_heat
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
@@ -67,11 +67,7 @@ module materials
    !> A material; the properties that it inherits are those of the first rows.
    type, extends(properties_type) :: material_type
       real(dp) :: no_strain = 0.0_dp                  !! ZERO= of *EXPANSION [temperature]
-      logical :: has_elasticity = .false.             !! *ELASTIC was given
-      logical :: has_expansion = .false.              !! *EXPANSION was given
-      logical :: has_conductivity = .false.           !! *CONDUCTIVITY was given
-      logical :: has_density = .false.                !! *DENSITY was given
-      logical :: has_specific_heat = .false.          !! *SPECIFIC HEAT was given
+      logical :: has(5) = .false.                     !! by of_elasticity, ...: whether it was given
       !> All properties as the deck gives them; unallocated for none
       type(property_type), allocatable :: given(:)
       type(heat_table_type) :: heat                   !! of density and specific heat
@@ -158,10 +154,12 @@ contains
       integer, intent(in) :: kind, symmetry
       real(dp), intent(in) :: values(:)                 ! (constants)
       class(properties_type), intent(inout) :: there
+      real(dp) :: whole(6, 6)
 
       select case (kind)
       case (of_elasticity)
-         there%elasticity = elasticity_of(symmetry, values)
+         whole = elasticity_of(symmetry, values)
+         there%elasticity = whole(:4, :4)
       case (of_expansion)
          there%expansion = along_axes(values)
       case (of_conductivity)
@@ -182,25 +180,24 @@ contains
       if (size(values) == 3) along = values
    end function along_axes
 
-   !> Stiffness in the plane from the constants of *ELASTIC.
+   !> Stiffness from the constants of *ELASTIC.
    pure function elasticity_of(symmetry, constants) result(stiffness)
       integer, intent(in) :: symmetry                   !! isotropic, ...
       real(dp), intent(in) :: constants(:)              !! as the deck gives them
-      real(dp) :: stiffness(4, 4)                       !! order 11, 22, 33, 12 [stress]
-      real(dp) :: whole(6, 6)
+      !> Order 11, 22, 33, 12, 13, 23; of isotropic ones without the last two [stress]
+      real(dp) :: stiffness(6, 6)
 
       select case (symmetry)
       case (isotropic)
-         stiffness = isotropic_elasticity(constants(1), constants(2))
-         return
+         stiffness = 0.0_dp
+         stiffness(:4, :4) = isotropic_elasticity(constants(1), constants(2))
       case (engineering)
-         whole = engineering_elasticity(constants)
+         stiffness = engineering_elasticity(constants)
       case (orthotropic)
-         whole = orthotropic_elasticity(constants)
+         stiffness = orthotropic_elasticity(constants)
       case default
-         whole = anisotropic_elasticity(constants)
+         stiffness = anisotropic_elasticity(constants)
       end select
-      stiffness = whole(:4, :4)
    end function elasticity_of
 
    !> Elasticity and conductivity at a temperature. Those that do not vary stay as they are; heat

@@ -8,13 +8,9 @@ module mesh
    implicit none
    private
    public :: mesh_type, set_type, surface_type, extent_of, add_node
-   public :: nodes_per_element, face_nodes
+   public :: nodes_per_element
 
    integer, parameter :: nodes_per_element = 8 !! four corners, then four midside nodes
-
-   !> Local nodes of faces S1..S4, as first corner, midside node, second corner; the body lies on
-   !> their left.
-   integer, parameter :: face_nodes(3, 4) = reshape([1, 5, 2, 2, 6, 3, 3, 7, 4, 4, 8, 1], [3, 4])
 
    !> A named set of node or element indexes.
    type, extends(named_type) :: set_type

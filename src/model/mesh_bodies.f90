@@ -18,7 +18,7 @@ contains
       integer :: parent(size(mesh%node_number)), body(size(mesh%node_number))
       integer :: e, q, root
 
-      parent = separate_groups(size(parent))
+      parent = [(q, q=1, size(parent))]
       do e = 1, size(mesh%element_nodes, 2)
          do q = 2, element_node_count(mesh%element_kind(e))
             call join(parent, mesh%element_nodes(1, e), mesh%element_nodes(q, e))
@@ -53,7 +53,7 @@ contains
       integer :: e, parts, root, s
 
       if (allocated(mesh%element_part)) deallocate (mesh%element_part)
-      parent = separate_groups(size(parent))
+      parent = [(e, e=1, size(parent))]
       sides = find_sides(mesh)
       do s = 1, sides%count
          if (sides%elements(2, s) > 0) call join(parent, sides%elements(1, s), sides%elements(2, s))
@@ -99,15 +99,6 @@ contains
             mesh%node_body == body))//')'
       end associate
    end function body_name
-
-   !> Every thing a group of its own.
-   pure function separate_groups(things) result(parent)
-      integer, intent(in) :: things      !! number of things
-      integer :: parent(things)          !! (things) each its own parent
-      integer :: i
-
-      parent = [(i, i=1, things)]
-   end function separate_groups
 
    !> Joins the groups of two things.
    pure subroutine join(parent, a, b)

@@ -1,6 +1,7 @@
 !> Materials, surface interactions and pairings in words, as they were understood.
 module model_words
-   use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_power, law_pressure
+   use conductance_laws, only: conductance_law_type, conductance_table_type, law_clearance, &
+      law_gas, law_power, law_pressure
    use contact_definitions, only: pairing_by_faces, pairing_name, pairing_nodes
    use contact_points, only: contact_points_type
    use kinds, only: dp
@@ -238,9 +239,7 @@ contains
       case (law_gas)
          words = gas_words(law)
       case (law_clearance)
-         words = 'table over the gap: '//table_words(law%open_omega, law%table_gap)
-         if (allocated(law%by_temperature)) words = words//temperature_words( &
-            law%by_temperature%open_temperature, law%by_temperature%open_columns, law%table_gap)
+         words = 'table over the gap: '//conductance_words(law%open_table)
          if (law%open_ends) words = words//', 0 beyond'
          words = words//radiation_words(law)
       case default
@@ -260,10 +259,7 @@ contains
          if (law%closed_adds) words = 'C1 p^n, C1 = '//to_text(law%power_c1)//', n = '// &
             to_text(law%power_n)//', added to the open value at gap 0'
       case (law_pressure)
-         words = 'table over the pressure: '//table_words(law%closed_omega, law%table_pressure)
-         if (allocated(law%by_temperature)) words = words//temperature_words( &
-            law%by_temperature%closed_temperature, law%by_temperature%closed_columns, &
-            law%table_pressure)
+         words = 'table over the pressure: '//conductance_words(law%closed_table)
       case default
          words = 'not given'
       end select
@@ -279,10 +275,6 @@ contains
          words = 'A/(B + '//to_text(law%added_length)//' + gap)'
       else
          words = 'A/(B + gap)'
-      end if
-      if (.not. allocated(law%by_temperature)) then
-         words = words//constants(law%gas_a, law%gas_b)
-         return
       end if
       associate (rows => law%by_temperature)
          words = words//radiation_words(law)//constants(law%gas_a, law%gas_b)
@@ -308,7 +300,6 @@ contains
       character(:), allocatable :: words
 
       words = ''
-      if (.not. allocated(law%by_temperature)) return
       associate (rows => law%by_temperature)
          if (rows%radiance <= 0.0_dp) return
          words = ' + '//to_text(rows%radiance)//' (T1^2 + T2^2) (T1 + T2)'
@@ -318,21 +309,20 @@ contains
       end associate
    end function radiation_words
 
-   !> The columns of a table behind the first; empty for a table of one temperature.
-   pure function temperature_words(temperature, columns, abscissas) result(words)
-      real(dp), allocatable, intent(in) :: temperature(:), columns(:, :)
-      real(dp), intent(in) :: abscissas(:)
+   !> A table, at each of its temperatures where it has several.
+   pure function conductance_words(table) result(words)
+      type(conductance_table_type), intent(in) :: table
       character(:), allocatable :: words
       integer :: i
 
-      words = ''
-      if (.not. allocated(temperature)) return
-      words = ' at mean temperature '//to_text(temperature(1))
-      do i = 2, size(temperature)
-         words = words//'; '//table_words(columns(:, i), abscissas)//' at '// &
-            to_text(temperature(i))
+      words = table_words(table%omega, table%abscissa)
+      if (.not. allocated(table%temperature)) return
+      words = words//' at mean temperature '//to_text(table%temperature(1))
+      do i = 2, size(table%temperature)
+         words = words//'; '//table_words(table%columns(:, i), table%abscissa)//' at '// &
+            to_text(table%temperature(i))
       end do
-   end function temperature_words
+   end function conductance_words
 
    pure function table_words(omega, abscissas) result(words)
       real(dp), intent(in) :: omega(:), abscissas(:)

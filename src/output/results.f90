@@ -15,6 +15,7 @@ module results
    use field_quantities, only: maxima
    use file_calls, only: identity_of, remove_file, rename_file, try_file
    use growing_datasets, only: bytes_in, flush_sets
+   use materials, only: of_expansion
    use result_tables, only: bounded, result_table_type, write_geometry
    use equations, only: section_nodes
    use hdf5_writer, only: end_hdf5, hdf5_writer_type, start_hdf5
@@ -342,7 +343,7 @@ contains
       associate (analysis => model%steps%analysis)
          has(needs_nothing) = .true.
          has(needs_heat) = any(solves_heat(analysis))
-         has(needs_temperature) = has(needs_heat) .or. any(model%materials%has_expansion)
+         has(needs_temperature) = has(needs_heat) .or. any(model%materials%has(of_expansion))
          has(needs_mechanics) = any(solves_mechanics(analysis))
          has(needs_storage) = any(model%steps%is_transient)
          has(needs_dilatation) = any(model%steps%dilates)

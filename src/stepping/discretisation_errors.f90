@@ -4,7 +4,7 @@ module discretisation_errors
    use element_kinds, only: element_node_count, kind_count
    use field_recovery, only: average_samples, element_error_type, error_record_type, error_rules, &
       fit_of_points, heat_flux_samples, make_points, measure_heat_flux, measure_stress, &
-      point_map_type, prepare_samples, stress_samples
+      point_map_type, recovery_rules, stress_samples
    use kinds, only: dp
    use material_laws, only: law_points_type
    use materials, only: has_law, varies
@@ -56,8 +56,8 @@ contains
       integer :: e
 
       self%points = make_points(model%mesh)
-      call prepare_samples(model%mesh, model%sections, model%materials, model%orientations, &
-         self%samples)
+      call self%samples%prepare(model%mesh, model%sections, model%materials, &
+         model%orientations, recovery_rules())
       call self%quadrature%prepare(model%mesh, model%sections, model%materials, &
          model%orientations, error_rules())
       ! A point of these rules may be in the fold of an element: the integrand counts as elsewhere.

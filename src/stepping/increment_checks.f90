@@ -3,7 +3,7 @@
 !> temperatures that jump where a step that stores heat begins, on a mesh that is too coarse for its
 !> increments. Beside these temperatures overshoot until the heat has crossed an element.
 module increment_checks
-   use conductance_laws, only: law_by_temperature_type, law_clearance, law_none, law_pressure
+   use conductance_laws, only: law_clearance, law_none, law_pressure
    use connections, only: connections_type
    use contact_system, only: contact_open
    use contact_workspace, only: contact_workspace_type
@@ -252,14 +252,12 @@ contains
       integer, intent(in) :: i                                 ! index of the interface
       integer, intent(in) :: slave(:)                          ! (m) slave nodes
       type(increment_record_type), intent(inout) :: record     ! receives the warnings
-      type(law_by_temperature_type) :: by
       logical :: closed(size(slave)), opens(size(slave))
       real(dp) :: gap(size(slave)), mean(size(slave)), pressure(size(slave))
 
       associate (contact => record%contacts(i), &
          interaction => model%interactions(model%contacts(i)%interaction))
-         associate (law => interaction%law)
-            if (allocated(law%by_temperature)) by = law%by_temperature
+         associate (law => interaction%law, by => interaction%law%by_temperature)
             closed = contact%contact_state /= contact_open
             ! The open law at gap 0 is the closed one, or a part of it.
             opens = contact%conductance > 0.0_dp .and. &
@@ -268,20 +266,21 @@ contains
             gap = merge(0.0_dp, contact%gap, closed)
             pressure = contact%pressure
             mean = 0.5_dp*(contact%slave_temperature + contact%master_temperature)
-            if (law%closed_kind == law_pressure) call judge('pressure', law%table_pressure, &
-               columns_of(law%closed_omega, by%closed_columns), pressure, closed, .true.)
-            if (law%open_kind == law_clearance) call judge('gap', law%table_gap, &
-               columns_of(law%open_omega, by%open_columns), gap, opens, .not. law%open_ends)
+            if (law%closed_kind == law_pressure) call judge('pressure', law%closed_table%abscissa, &
+               law%closed_table%columns, pressure, closed, .true.)
+            if (law%open_kind == law_clearance) call judge('gap', law%open_table%abscissa, &
+               law%open_table%columns, gap, opens, .not. law%open_ends)
             if (allocated(law%view_gap)) call judge('gap', law%view_gap, &
                reshape(law%view_factor, [size(law%view_gap), 1]), gap, opens, .true.)
+            if (allocated(by%gas_temperature)) call judge('mean temperature', by%gas_temperature, &
+               reshape([by%gas_a, by%gas_b], [size(by%gas_a), 2]), mean, opens, .true.)
+            if (allocated(law%open_table%temperature)) call judge('mean temperature', &
+               law%open_table%temperature, transpose(law%open_table%columns), mean, opens, .true.)
+            if (allocated(law%closed_table%temperature)) call judge('mean temperature', &
+               law%closed_table%temperature, transpose(law%closed_table%columns), mean, closed, &
+               .true.)
          end associate
       end associate
-      if (allocated(by%gas_temperature)) call judge('mean temperature', by%gas_temperature, &
-         reshape([by%gas_a, by%gas_b], [size(by%gas_a), 2]), mean, opens, .true.)
-      if (allocated(by%open_temperature)) call judge('mean temperature', by%open_temperature, &
-         transpose(by%open_columns), mean, opens, .true.)
-      if (allocated(by%closed_temperature)) call judge('mean temperature', &
-         by%closed_temperature, transpose(by%closed_columns), mean, closed, .true.)
    contains
       !> Judges the contact points that are farthest out of the rows of a table.
       subroutine judge(noun, rows, values, at, counts, holds_last)
@@ -314,16 +313,5 @@ contains
          end do
       end subroutine judge
    end subroutine warn_of_law
-
-   !> A table in columns, one for each temperature.
-   pure function columns_of(values, by_temperature) result(columns)
-      real(dp), intent(in) :: values(:)                        ! (rows)
-      !> (rows, columns) those of several temperatures; unallocated for one
-      real(dp), allocatable, intent(in) :: by_temperature(:, :)
-      real(dp), allocatable :: columns(:, :)
-
-      columns = reshape(values, [size(values), 1])
-      if (allocated(by_temperature)) columns = by_temperature
-   end function columns_of
 
 end module increment_checks

@@ -1,6 +1,7 @@
 !> Cards -> model. The cards are read by theme, so their order matters only where the dialect
 !> says so.
 module deck_builder
+   use materials, only: of_expansion, of_specific_heat
    use mesh_bodies, only: find_bodies
    use cards, only: cards_type
    use step_checks, only: check_continuations, check_storage
@@ -187,12 +188,12 @@ contains
          any(solves_mechanics(deck%model%steps%analysis))) then
          call deck%note('initial stresses are ignored: no step solves equilibrium')
       end if
-      if (.not. any(deck%model%materials%has_expansion)) then
+      if (.not. any(deck%model%materials%has(of_expansion))) then
          call deck%note('no *EXPANSION: temperatures do not strain the bodies')
-      else if (.not. all(deck%model%materials%has_expansion)) then
+      else if (.not. all(deck%model%materials%has(of_expansion))) then
          call deck%note('a material without *EXPANSION: coefficient 0')
       end if
-      if (any(deck%model%materials%has_specific_heat) .and. .not. &
+      if (any(deck%model%materials%has(of_specific_heat)) .and. .not. &
          any(deck%model%steps%is_transient)) call deck%note('*SPECIFIC HEAT is ignored: no '// &
          'step stores heat')
       if (.not. any(solves_heat(deck%model%steps%analysis))) return

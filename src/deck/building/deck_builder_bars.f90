@@ -8,7 +8,7 @@ module deck_builder_bars
    use element_types, only: axial_spring, drawn_line, ground_spring, truss
    use equations, only: fill_equation
    use kinds, only: dp
-   use materials, only: follows_temperature, isotropic, material_type, of_expansion
+   use materials, only: follows_temperature, isotropic, material_type, of_elasticity, of_expansion
    use steps, only: dof_temperature
    use text, only: to_text
    use transforms, only: axis_in_plane
@@ -124,7 +124,7 @@ contains
                if (deck%has_errors()) return
                bar%stiffness = youngs_modulus(material%elasticity)*area/norm2( &
                   deck%mesh%coordinates(:, nodes(2)) - deck%mesh%coordinates(:, nodes(1)))
-               if (.not. material%has_expansion) cycle
+               if (.not. material%has(of_expansion)) cycle
                bar%warm_force = youngs_modulus(material%elasticity)*area*material%expansion(1)
                call fill_equation(nodes, [dof_temperature, dof_temperature], [0.5_dp, 0.5_dp], &
                   bar%mean)
@@ -169,7 +169,7 @@ contains
       type(material_type), intent(in) :: material
       integer :: i
 
-      is_plain = material%has_elasticity .and. .not. follows_temperature(material)
+      is_plain = material%has(of_elasticity) .and. .not. follows_temperature(material)
       if (.not. allocated(material%given)) return
       do i = 1, size(material%given)
          is_plain = is_plain .and. material%given(i)%symmetry == isotropic .and. &

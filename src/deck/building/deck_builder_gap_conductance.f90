@@ -3,24 +3,15 @@
 module deck_builder_gap_conductance
    use card_values, only: check_unneeded, decimal_comma, read_rows, report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
-   use conductance_laws, only: conductance_law_type, law_clearance, law_none, law_pressure, &
-      line_value
+   use conductance_laws, only: conductance_law_type, conductance_table_type, law_clearance, &
+      law_none, law_pressure, line_value
    use deck_context, only: deck_type
    use kinds, only: dp
    use text, only: read_real, to_text
    implicit none
    private
    public :: build_gap_conductance, is_of_clearance
-   public :: gap_table_type, read_table, note_ends
-
-   !> A table of conductance over the gap or the pressure. That of several temperatures has all
-   !> abscissas at each of them, on the straight lines between the rows of this temperature.
-   type :: gap_table_type
-      real(dp), allocatable :: abscissa(:)       !! (rows) gap or pressure, ascending
-      real(dp), allocatable :: omega(:)          !! (rows) conductance, at the first temperature
-      real(dp), allocatable :: temperature(:)    !! (columns) ascending; unallocated for one
-      real(dp), allocatable :: columns(:, :)     !! (rows, columns) conductance
-   end type gap_table_type
+   public :: read_table, note_ends
 
 contains
 
@@ -33,7 +24,7 @@ contains
       logical, intent(in) :: is_open                       !! whether it is over the clearance
       type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives the open or the closed side
-      type(gap_table_type) :: table
+      type(conductance_table_type) :: table
       character(:), allocatable :: title
       integer :: errors
 
@@ -60,25 +51,13 @@ contains
             return
          end if
       end if
-      if (allocated(table%temperature) .and. .not. allocated(law%by_temperature)) allocate ( &
-         law%by_temperature)
       if (is_open) then
          law%open_kind = law_clearance
          law%open_ends = .true.
-         if (allocated(table%temperature)) then
-            law%by_temperature%open_temperature = table%temperature
-            law%by_temperature%open_columns = table%columns
-         end if
-         call move_alloc(table%abscissa, law%table_gap)
-         call move_alloc(table%omega, law%open_omega)
+         law%open_table = table
       else
          law%closed_kind = law_pressure
-         if (allocated(table%temperature)) then
-            law%by_temperature%closed_temperature = table%temperature
-            law%by_temperature%closed_columns = table%columns
-         end if
-         call move_alloc(table%abscissa, law%table_pressure)
-         call move_alloc(table%omega, law%closed_omega)
+         law%closed_table = table
       end if
    end subroutine build_gap_conductance
 
@@ -115,7 +94,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
       logical, intent(in) :: is_open
-      type(gap_table_type), intent(in) :: table
+      type(conductance_table_type), intent(in) :: table
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: words
       integer :: n
@@ -149,7 +128,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
       type(deck_type), intent(inout) :: deck
-      type(gap_table_type), intent(out) :: table
+      type(conductance_table_type), intent(out) :: table
       character(:), allocatable :: layout
       real(dp), allocatable :: grid(:)
       real(dp) :: values(3, size(card%data))

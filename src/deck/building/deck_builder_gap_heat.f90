@@ -110,11 +110,8 @@ contains
          if (.not. deck%model%constants%has_radiation) call deck%error(card%place, '*GAP '// &
             'RADIATION needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN BOLTZMANN=')
          if (law%open_kind == law_none) law%open_kind = law_gas
-         if (allocated(law%by_temperature)) then
-            if (law%by_temperature%radiance > 0.0_dp) call deck%error(card%place, '*GAP '// &
-               'RADIATION beside EMISSIVITY= of *GAP LAW: leave one of them out')
-         end if
-         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
+         if (law%by_temperature%radiance > 0.0_dp) call deck%error(card%place, '*GAP RADIATION '// &
+            'beside EMISSIVITY= of *GAP LAW: leave one of them out')
          law%by_temperature%radiance = deck%model%constants%stefan_boltzmann*maxval(view_factor)/( &
             1.0_dp/emissivity(1) + 1.0_dp/emissivity(2) - 1.0_dp)
          law%by_temperature%absolute_zero = deck%model%constants%absolute_zero

@@ -4,7 +4,7 @@ module deck_builder_gap_laws
    use card_values, only: check_ascending, read_row
    use cards, only: data_card_type, keyword_card_type
    use conductance_laws, only: conductance_law_type, law_clearance, law_gas, law_none, law_power
-   use deck_builder_gap_conductance, only: gap_table_type, note_ends, read_table
+   use deck_builder_gap_conductance, only: note_ends, read_table
    use deck_context, only: deck_type
    use kinds, only: dp
    use text, only: largest_magnitude, to_text
@@ -30,7 +30,6 @@ contains
       character(*), intent(in) :: name                     !! name of the surface interaction
       type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives one side
-      type(gap_table_type) :: table
       character(:), allocatable :: kind
       real(dp) :: values(3)
       integer :: i
@@ -55,10 +54,8 @@ contains
       end do
       if (kind == 'CLEARANCE') then
          law%open_kind = law_clearance
-         call read_table(card, 'gap', deck, table)
-         call move_alloc(table%abscissa, law%table_gap)
-         call move_alloc(table%omega, law%open_omega)
-         call note_ends('*GAP LAW, TYPE=CLEARANCE', name, 'gaps', law%table_gap, deck)
+         call read_table(card, 'gap', deck, law%open_table)
+         call note_ends('*GAP LAW, TYPE=CLEARANCE', name, 'gaps', law%open_table%abscissa, deck)
          return
       end if
       if (size(card%data) > 1) call deck%error(card%data(2)%place(1), 'extra data card; *GAP '// &
@@ -144,7 +141,6 @@ contains
          if (.not. deck%model%constants%has_radiation) call deck%error(card%place_of( &
             'EMISSIVITY'), 'EMISSIVITY= needs *PHYSICAL CONSTANTS, ABSOLUTE ZERO=, STEFAN '// &
             'BOLTZMANN=')
-         if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
          law%by_temperature%radiance = emissivity*deck%model%constants%stefan_boltzmann
          law%by_temperature%absolute_zero = deck%model%constants%absolute_zero
       end if
@@ -170,7 +166,6 @@ contains
       law%gas_a = values(1, 1)
       law%gas_b = values(2, 1)
       if (size(card%data) == 1) return
-      if (.not. allocated(law%by_temperature)) allocate (law%by_temperature)
       law%by_temperature%gas_temperature = values(3, :)
       law%by_temperature%gas_a = values(1, :)
       law%by_temperature%gas_b = values(2, :)

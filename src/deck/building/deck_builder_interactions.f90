@@ -184,8 +184,8 @@ contains
       if (table_jump(interaction%law) > 0.0_dp) call deck%warning(card%place, 'the conductance '// &
          'of '//interaction%name//' falls from '//to_text(table_jump(interaction%law))//' to 0 '// &
          'where the gap exceeds that of the last row, '// &
-         to_text(maxval(interaction%law%table_gap))//'; an increment in which a gap would stay '// &
-         'there has no solution: end the table with a row of conductance 0')
+         to_text(maxval(interaction%law%open_table%abscissa))//'; an increment in which a gap '// &
+         'would stay there has no solution: end the table with a row of conductance 0')
       if (radiation_ends(interaction%law)) call deck%warning(law_place, 'faces of '// &
          interaction%name//' radiate where they are open and not where they are closed: the '// &
          'conductance jumps by that of radiation where the gap closes; TYPE=CMY and '// &

@@ -7,13 +7,12 @@ module deck_builder_materials
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, has_stand_in
-   use elasticity, only: anisotropic_elasticity, couples_out_of_plane, engineering_elasticity, &
-      is_positive_definite, orthotropic_elasticity
+   use elasticity, only: couples_out_of_plane, is_positive_definite
    use element_kinds, only: axisymmetric
    use element_types, only: truss
    use kinds, only: dp
-   use materials, only: anisotropic, engineering, isotropic, material_type, orthotropic, &
-      property_keywords, property_type, set_property
+   use materials, only: anisotropic, elasticity_of, engineering, isotropic, material_type, &
+      orthotropic, property_keywords, property_type, set_property
    use text, only: split_words, string_type, to_text
    implicit none
    private
@@ -75,12 +74,11 @@ contains
       logical :: valid
 
       property%kind = findloc(property_keywords == card%name, .true., dim=1)
+      material%has(property%kind) = .true.
       select case (card%name)
       case ('ELASTIC')
-         material%has_elasticity = .true.
          call build_elasticity(card, deck, property, valid)
       case ('EXPANSION')
-         material%has_expansion = .true.
          if (is_isotropic(card, deck)) then
             call read_property(['coefficient of expansion'], card, deck, property, valid)
          else
@@ -92,17 +90,14 @@ contains
                'with a single row: strains begin at the initial temperature')
          end if
       case ('CONDUCTIVITY')
-         material%has_conductivity = .true.
          if (is_isotropic(card, deck)) then
             call read_property(['conductivity >0'], card, deck, property, valid)
          else
             call build_conductivity(card, deck, property, valid)
          end if
       case ('SPECIFIC HEAT')
-         material%has_specific_heat = .true.
          call read_property(['specific heat >0'], card, deck, property, valid)
       case default
-         material%has_density = .true.
          call read_property(['density >0'], card, deck, property, valid)
       end select
       if (valid) call set_property(material, property)
@@ -161,31 +156,20 @@ contains
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid                     ! false where it does
       character(:), allocatable :: fault
-      real(dp) :: d(6, 6)
 
       associate (constants => property%values(:, row))
-         select case (property%symmetry)
-         case (isotropic)
+         if (property%symmetry == isotropic) then
             if (constants(2) > -1.0_dp .and. constants(2) < 0.5_dp) return
             fault = 'Poisson''s ratio must lie between -1 and 0.5'
-         case (engineering)
-            d = engineering_elasticity(constants)
-         case (orthotropic)
-            d = orthotropic_elasticity(constants)
-         case default
-            d = anisotropic_elasticity(constants)
-         end select
+         else if (couples_out_of_plane(elasticity_of(property%symmetry, constants))) then
+            fault = 'couplings of the shear 13 or 23 with strains in the plane are refused: '// &
+               'the plane would warp'
+         else if (.not. is_positive_definite(elasticity_of(property%symmetry, constants))) then
+            fault = 'these constants are not positive definite: some strain would release energy'
+         else
+            return
+         end if
       end associate
-      if (property%symmetry == isotropic) then
-         continue
-      else if (couples_out_of_plane(d)) then
-         fault = 'couplings of the shear 13 or 23 with strains in the plane are refused: the '// &
-            'plane would warp'
-      else if (.not. is_positive_definite(d)) then
-         fault = 'these constants are not positive definite: some strain would release energy'
-      else
-         return
-      end if
       call deck%error(place, fault)
       valid = .false.
    end subroutine check_elasticity

@@ -24,6 +24,10 @@ module deck_builder_mesh
 
    integer, parameter :: nodes_per_line = 3
 
+   !> Nodes of an element as messages name them.
+   character(6), parameter :: node_words(nodes_per_element) = &
+      ['node 1', 'node 2', 'node 3', 'node 4', 'node 5', 'node 6', 'node 7', 'node 8']
+
    real(dp), parameter :: height_rounding = 1.0e-9_dp   !! of z, by the extent of the model
 
 contains
@@ -326,7 +330,7 @@ contains
       end if
       do q = 1, min(size(nodes), fields)
          is_number = .true.
-         call read_field(data, q + 1, 'node '//to_text(q), deck, number, is_number)
+         call read_field(data, q + 1, node_words(q), deck, number, is_number)
          if (is_number) then
             nodes(q) = deck%node_index%find(number)
             if (nodes(q) == 0) call deck%missing(data%place(q + 1), 'there is no node '// &

@@ -10,6 +10,7 @@ module deck_checks
    use kinds, only: dp, long
    use load_checks, only: check_loads
    use load_requests, only: request_list_type
+   use materials, only: of_conductivity, of_elasticity
    use mesh_checks, only: check_jacobians, check_planes, check_sides, check_slenderness
    use model, only: model_type
    use refinement, only: numbering_fault
@@ -86,13 +87,13 @@ contains
       do m = 1, size(deck%model%materials)
          if (.not. any(deck%model%sections%material == m)) cycle
          associate (material => deck%model%materials(m))
-            if (mechanics .and. .not. material%has_elasticity) call deck%missing( &
+            if (mechanics .and. .not. material%has(of_elasticity)) call deck%missing( &
                deck%material_place(m), 'material '//material%name//' has no *ELASTIC, which a '// &
                'step with displacements needs', '*ELASTIC')
-            if (heat .and. .not. material%has_conductivity) call deck%missing( &
+            if (heat .and. .not. material%has(of_conductivity)) call deck%missing( &
                deck%material_place(m), 'material '//material%name//' has no *CONDUCTIVITY, '// &
                'which a step with heat needs', '*CONDUCTIVITY')
-            if (.not. (mechanics .and. material%has_elasticity)) cycle
+            if (.not. (mechanics .and. material%has(of_elasticity))) cycle
             if (maxval(abs(material%elasticity)) <= 0.0_dp) cycle
             if (equivalent_poisson(material%elasticity) <= most_compressible) cycle
             ! Elements with too many integration points lock; six-node triangles do not, but their

@@ -54,17 +54,13 @@ contains
          end if
          if (.not. any(abs(given%items(:given%count)%value) > 0.0_dp)) return
          if (.not. (any(solves_heat(deck%model%steps%analysis)) .or. &
-            any(deck%model%materials%has_expansion))) return
+            any(deck%model%materials%has(of_expansion)))) return
          starts_at_0 = .false.
          starts_at_0([mesh%element_nodes]) = .true.
          starts_at_0(0) = .false.
          where (deck%dropped) starts_at_0(1:) = .false.
          do i = 1, given%count
-            if (given%items(i)%set > 0) then
-               starts_at_0(mesh%node_sets(given%items(i)%set)%members) = .false.
-            else
-               starts_at_0(given%items(i)%item) = .false.
-            end if
+            starts_at_0(given%items(i)%members(mesh%node_sets)) = .false.
          end do
          do i = 1, size(deck%model%couplings)
             if (.not. deck%model%couplings(i)%is_section()) cycle

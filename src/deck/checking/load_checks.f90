@@ -6,6 +6,7 @@ module load_checks
    use element_kinds, only: axisymmetric
    use kinds, only: dp
    use load_requests, only: request_type
+   use materials, only: of_density
    use order_reduction, only: side_corners
    use steps, only: analysis_static, centrifugal_round, dof_temperature, load_body_heat, &
       load_centrifugal, load_face_heat, load_film_coefficient, load_force, load_gravity, &
@@ -140,7 +141,7 @@ contains
          if (section == 0) cycle
          m = deck%model%sections(section)%material
          if (m == 0) cycle
-         if (deck%model%materials(m)%has_density) cycle
+         if (deck%model%materials(m)%has(of_density)) cycle
          call deck%missing(request%place, 'material '//deck%model%materials(m)%name//' has no '// &
             '*DENSITY, which '//label//' needs', '*DENSITY')
          return

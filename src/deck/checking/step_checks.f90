@@ -145,8 +145,8 @@ contains
       is_used = [(any(deck%model%sections%material == m), m=1, size(is_used))]
       do m = 1, size(is_used)
          associate (material => deck%model%materials(m))
-            if (.not. is_used(m) .or. .not. material%has_specific_heat) cycle
-            if (material%has_density) cycle
+            if (.not. is_used(m) .or. .not. material%has(of_specific_heat)) cycle
+            if (material%has(of_density)) cycle
             call deck%missing(deck%analysis_place(first), 'material '//material%name//' has '// &
                '*SPECIFIC HEAT, but no *DENSITY: its heat capacity is the product of both', &
                '*DENSITY')

@@ -252,8 +252,6 @@ contains
                card%parameters(k)%text
             call members_of_instance(open, copy%parameters(k)%text)
          end do
-      end associate
-      associate (copy => all%keywords(first))
          do k = 1, copy%data_count
             do i = 1, size(copy%data(k)%fields)
                call members_of_instance(open, copy%data(k)%fields(i)%text)

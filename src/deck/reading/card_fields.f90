@@ -7,7 +7,7 @@ module card_fields
    implicit none
    private
    public :: split_fields, drop_empty_end, without_quotes
-   public :: is_comment, is_keyword, is_blank, first_text, last_text
+   public :: is_comment, is_keyword, first_text, last_text
 
    character(*), parameter :: blanks = ' '//achar(9)   !! what separates words
 
@@ -16,23 +16,20 @@ contains
    !> Whether a line is a comment card.
    pure logical function is_comment(line)
       character(*), intent(in) :: line   !! card image
+      integer :: first
 
-      is_comment = index(line(first_text(line):), '**') == 1
+      first = first_text(line)
+      is_comment = line(first:min(first + 1, len(line))) == '**'
    end function is_comment
 
    !> Whether a line begins a keyword card; comment cards are not asked for.
    pure logical function is_keyword(line)
       character(*), intent(in) :: line   !! card image
+      integer :: first
 
-      is_keyword = index(line(first_text(line):), '*') == 1
+      first = first_text(line)
+      is_keyword = line(first:min(first, len(line))) == '*'
    end function is_keyword
-
-   !> Whether a line holds nothing.
-   pure logical function is_blank(line)
-      character(*), intent(in) :: line   !! card image
-
-      is_blank = verify(line, blanks) == 0
-   end function is_blank
 
    !> Position of the first character that is not blank; behind the line where there is none.
    pure integer function first_text(line)

@@ -1,7 +1,7 @@
 !> One line after another -> cards: comments, continuations, parameters.
 module card_lines
-   use card_fields, only: drop_empty_end, first_text, is_blank, is_comment, &
-      is_keyword, last_text, split_fields, without_quotes
+   use card_fields, only: drop_empty_end, first_text, is_comment, is_keyword, last_text, &
+      split_fields, without_quotes
    use card_parameters, only: take_parameter
    use card_typos, only: check_commas, lacks_star
    use cards, only: add_data, add_keyword, add_note, cards_type, field_type, keyword_card_type
@@ -51,7 +51,7 @@ contains
       type(field_type), allocatable :: fields(:)
       logical :: is_text, is_variable, title
 
-      if (is_blank(line)) return
+      if (last_text(line) == 0) return
       if (is_comment(line)) return
       title = .false.
       is_text = .false.

@@ -73,7 +73,7 @@ contains
       range = ''
       if (present(limit)) range = limit
       call read_number(card%text(name), 'value of '//name//'=', is_whole, range, value, fault)
-      if (len(fault) > 0) call report%error(card%place_of(name), fault)
+      if (allocated(fault)) call report%error(card%place_of(name), fault)
    end subroutine take_number
 
    !> Reads a number within a limit; after an error it stays as it is.
@@ -83,7 +83,7 @@ contains
       logical, intent(in) :: is_whole              !! whether it must be a whole number
       character(*), intent(in) :: limit            !! >0, >=0, >=n, >0 <=1, >=0 <=1 or empty
       real(dp), intent(inout) :: value
-      character(:), allocatable, intent(out) :: fault   !! what is wrong with it, or empty
+      character(:), allocatable, intent(out) :: fault   !! what is wrong with it; else unallocated
       real(dp) :: number
       integer :: least, whole
       logical :: valid
@@ -100,7 +100,6 @@ contains
          fault = ''''//string//''' '//fault//'; expected: '//what
          return
       end if
-      fault = ''
       select case (limit)
       case ('>0')
          if (number <= 0.0_dp) fault = ' must be positive'
@@ -116,8 +115,11 @@ contains
       case default
          continue
       end select
-      if (len(fault) == 0) value = number
-      if (len(fault) > 0) fault = what//fault
+      if (allocated(fault)) then
+         fault = what//fault
+      else
+         value = number
+      end if
    end subroutine read_number
 
    !> The one of several words that the value of a parameter is, or begins as in Abaqus; empty where

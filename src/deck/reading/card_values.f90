@@ -21,9 +21,9 @@ module card_values
 
    !> A field of a layout.
    type :: field_rule_type
-      character(:), allocatable :: name    !! what it holds
-      character(:), allocatable :: limit   !! as read_number has it
-      real(dp) :: default                  !! where it is not given, or wrong
+      integer :: name(2)       !! first and last character of what it holds
+      integer :: limit(2)      !! those of its limit, as read_number has it
+      real(dp) :: default      !! where it is not given, or wrong
       logical :: is_needed, is_whole, is_text
    end type field_rule_type
 
@@ -73,10 +73,13 @@ contains
       class(deck_report_type), intent(inout) :: report
       integer, intent(inout) :: value
       logical, intent(inout) :: valid
+      type(field_rule_type) :: whole
       real(dp) :: number
 
+      whole = rule_of(rule)
+      whole%is_whole = .true.
       number = value
-      call read_by_rule(data, i, rule_of('#'//rule), report, number, valid)
+      call read_by_rule(data, i, rule, whole, report, number, valid)
       value = nint(number)
    end subroutine read_integer_field
 
@@ -88,13 +91,14 @@ contains
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid
 
-      call read_by_rule(data, i, rule_of(rule), report, value, valid)
+      call read_by_rule(data, i, rule, rule_of(rule), report, value, valid)
    end subroutine read_real_field
 
-   subroutine read_by_rule(data, i, rule, report, value, valid)
+   subroutine read_by_rule(data, i, field, rule, report, value, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i
-      type(field_rule_type), intent(in) :: rule
+      character(*), intent(in) :: field
+      type(field_rule_type), intent(in) :: rule           ! of this field
       class(deck_report_type), intent(inout) :: report
       real(dp), intent(inout) :: value
       logical, intent(inout) :: valid                     ! becomes false after an error
@@ -103,12 +107,13 @@ contains
       if (data%is_undefined(i)) then
          valid = .false.
       else if (data%has(i)) then
-         call read_number(data%fields(i)%text, rule%name, rule%is_whole, rule%limit, value, fault)
-         if (len(fault) == 0) return
+         call read_number(data%fields(i)%text, field(rule%name(1):rule%name(2)), rule%is_whole, &
+            field(rule%limit(1):rule%limit(2)), value, fault)
+         if (.not. allocated(fault)) return
          call report%error(data%place(i), fault)
          valid = .false.
       else if (rule%is_needed) then
-         call report_missing(data, i, rule%name, report, valid)
+         call report_missing(data, i, field(rule%name(1):rule%name(2)), report, valid)
       end if
    end subroutine read_by_rule
 
@@ -147,15 +152,16 @@ contains
       fields = split_words(layout)
       do i = 1, size(fields)
          rule = rule_of(fields(i)%value)
-         names = names//', '//rule%name
+         if (size(data%fields) > size(fields)) names = names//', '// &
+            fields(i)%value(rule%name(1):rule%name(2))
          if (rule%is_text) cycle
          values(i) = rule%default
          is_missing = rule%is_needed .and. .not. (data%has(i) .or. data%is_undefined(i))
-         if (.not. (is_missing .and. lacks)) call read_by_rule(data, i, rule, report, values(i), &
-            valid)
+         if (.not. (is_missing .and. lacks)) call read_by_rule(data, i, fields(i)%value, rule, &
+            report, values(i), valid)
          lacks = lacks .or. is_missing
       end do
-      call check_extra(data, size(fields), names(3:), report)
+      if (len(names) > 0) call check_extra(data, size(fields), names(3:), report)
    end subroutine read_row
 
    !> Reads data cards of one layout.
@@ -201,12 +207,12 @@ contains
       if (behind == 0) behind = len(field) + 1
       last = index(field(:behind - 1), ' >') - 1
       if (last < 0) last = behind - 1
-      rule%limit = adjustl(field(last + 1:behind - 1))
+      rule%limit = [last + 2, behind - 1]
       rule%is_needed = field(last:last) /= '?'
       if (.not. rule%is_needed) last = last - 1
       rule%is_whole = field(1:1) == '#'
       rule%is_text = field(1:1) == '@'
-      rule%name = field(merge(2, 1, rule%is_whole .or. rule%is_text):last)
+      rule%name = [merge(2, 1, rule%is_whole .or. rule%is_text), last]
    end function rule_of
 
    !> A vector of the plane by its magnitude and the components of its direction.

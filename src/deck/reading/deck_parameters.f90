@@ -19,7 +19,7 @@ module deck_parameters
    type :: deck_parameters_type
       private
       type(name_index_type) :: names
-      type(string_type), allocatable :: values(:)           !! (capacity) their values
+      type(string_type), allocatable :: values(:)           !! their values
       type(name_index_type) :: settings                     !! names that --set gives
       type(string_type), allocatable :: setting_names(:)    !! the same as given
       type(string_type), allocatable :: setting_values(:)   !! their values
@@ -40,7 +40,7 @@ contains
       character(:), allocatable :: name, value
       integer :: i, equals
 
-      allocate (self%values(64), self%setting_names(0), self%setting_values(0))
+      allocate (self%values(0), self%setting_names(0), self%setting_values(0))
       do i = 1, size(settings)
          equals = index(settings(i)%value, '=')
          name = without_blanks_around(settings(i)%value(:equals - 1))
@@ -66,8 +66,7 @@ contains
       type(string_type), allocatable, intent(inout) :: notes(:)   !! lines for the listing
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, value
-      type(string_type), allocatable :: longer(:)
-      integer :: equals, i, n, setting
+      integer :: equals, setting
 
       equals = index(field%text, '=')
       if (equals < 2 .or. equals == len(field%text)) then
@@ -88,15 +87,7 @@ contains
          value = self%setting_values(setting)%value
       end if
       call self%names%add(name)
-      n = self%names%find(name)
-      if (n > size(self%values)) then
-         allocate (longer(2*n))
-         do i = 1, n - 1
-            call move_alloc(self%values(i)%value, longer(i)%value)
-         end do
-         call move_alloc(longer, self%values)
-      end if
-      self%values(n)%value = value
+      call append(self%values, value)
    end subroutine define
 
    !> Replaces each <name> in a field by its value; one that is not known leaves no text.

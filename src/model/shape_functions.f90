@@ -1,8 +1,8 @@
 !> Shape functions of the elements and of their sides. The square runs over xi, eta = -1..1; the
 !> triangle has its corners at (0, 0), (1, 0), (0, 1).
 module shape_functions
-   use element_kinds, only: element_node_count, quad4, quad4_enhanced, quad8, quad8_reduced, &
-      triangle3, triangle6
+   use element_kinds, only: element_corner_count, element_node_count, quad4, quad4_enhanced, &
+      quad8, quad8_reduced, triangle3, triangle6
    use kinds, only: dp
    implicit none
    private
@@ -25,19 +25,12 @@ module shape_functions
 
 contains
 
-   !> Whether a kind of element is a triangle.
-   elemental logical function is_triangle(kind)
-      integer, intent(in) :: kind   !! kind of the element
-
-      is_triangle = kind == triangle6 .or. kind == triangle3
-   end function is_triangle
-
    !> Local coordinates of the nodes of an element.
    pure function node_position(kind) result(position)
       integer, intent(in) :: kind                             !! kind of the element
       real(dp) :: position(2, element_node_count(kind))       !! xi, eta
 
-      if (is_triangle(kind)) then
+      if (element_corner_count(kind) == 3) then
          position = triangle_position(:, :element_node_count(kind))
       else
          position = square_position(:, :element_node_count(kind))
