@@ -142,8 +142,8 @@ contains
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: state      !! [length]
 
-      gap_rounding = 1.0e-13_dp*max(maxval(abs(state%gap)), maxval(abs(self%initial_gap)), &
-         maxval(abs(state%tangential))) + system%least_length + tiny(1.0_dp)
+      gap_rounding = 1.0e-13_dp*maxval([0.0_dp, abs(state%gap), abs(self%initial_gap), &
+         abs(state%tangential)]) + system%least_length + tiny(1.0_dp)
    end function gap_rounding
 
    !> Solution for one active set. Where the load drives a body that the set leaves unconstrained,
