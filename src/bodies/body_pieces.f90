@@ -50,13 +50,13 @@ contains
       class(body_division_type), intent(inout) :: self   !! its graph in
       logical, intent(in) :: is_bound(:)                !! (nodes) kept, since constraints bind them
       integer, intent(in) :: components                  !! degrees of freedom of a node
+      integer, allocatable :: piece(:)
       integer :: i
 
       if (allocated(self%piece)) deallocate (self%piece)
       if (.not. allocated(self%graph%value)) return
-      associate (piece => divided_bodies(self%graph, is_bound))
-         self%piece = [(spread(piece(i), 1, components), i=1, size(piece))]
-      end associate
+      piece = divided_bodies(self%graph, is_bound)
+      self%piece = [(spread(piece(i), 1, components), i=1, size(piece))]
    end subroutine divide
 
    !> The piece inside of which each node is, 0 for kept ones.

@@ -46,6 +46,7 @@ contains
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
+      type(contact_system_type) :: fresh
       character(:), allocatable :: words
 
       call self%release()
@@ -57,7 +58,7 @@ contains
             error%message//'; '//words
          return
       end if
-      self%contact = contact_system_type()
+      self%contact = fresh
       associate (contact => self%contact, map => mechanical%map)
          contact%interface_start = points%interface_start
          contact%normal = map%tail_index(map%introduced(1::2))

@@ -54,6 +54,7 @@ module closing_instant
    integer, parameter :: few_halves = 8    !! halves of changes after which it shows if they end
    real(dp), parameter :: lasting = 0.1_dp !! part of the changes that is left then if they do not
    real(dp), parameter :: nothing = 1.0e-12_dp !! part of a compliance or of a motion that is none
+   real(dp), parameter :: cancelled = 1.0e-13_dp !! part of a stiffness that is rounding
    real(dp), parameter :: undriven = 1.0e-10_dp !! part of the forces that drives no motion
    real(dp), parameter :: together = 1.0e-12_dp !! part of the largest gap that is none at an event
 
@@ -307,6 +308,10 @@ contains
       end do
       response = sticking%factors%solve_part(near, forces)
       path%stiffness = columns(held, :) + matmul(transpose(columns), response(:, :size(held)))
+      ! What is left where stiffnesses cancel is none.
+      where (abs(path%stiffness) <= cancelled*maxval([0.0_dp, abs(columns)]))
+         path%stiffness = 0.0_dp
+      end where
       path%lever = response(free, :size(held))
       path%flexibility = response(free, size(held) + 1:)
       free = near(free)
@@ -413,6 +418,10 @@ contains
       allocate (motions(n, 0))
       if (is_loose .and. n > 0) motions = null_space(stiffness)
       l = size(motions, 2)
+      if (l == n) then
+         allocate (inverse(n, n), source=0.0_dp)
+         return
+      end if
       allocate (rows(n + l, n + l), unit(n + l, n), source=0.0_dp)
       rows(:n, :n) = stiffness
       rows(:n, n + 1:) = motions*maxval([tiny(1.0_dp), abs(stiffness)])
@@ -458,6 +467,8 @@ contains
          if (first > 0 .and. i /= first .and. path%last_gap(i) - path%y(i) > path%least_gap) cycle
          associate (law => laws(path%point(i)), place => path%point - path%first + 1)
             law%fraction = 1.0_dp - path%left
+            ! Where nothing but the contact point holds a body, and nothing drives it, it stays.
+            if (.not. any(abs(path%law(n + i, :)) > 0.0_dp)) law%fraction = 0.0_dp
             law%compliance(1, place) = path%law(n + i, :n)
             law%compliance(2, place) = path%law(n + i, n + 1:)
             law%rate(1, place) = -path%rate(n + i, :n)

@@ -255,15 +255,22 @@ contains
    !> divisions begin with.
    pure subroutine make_explicit(model)
       type(model_type), intent(inout) :: model       !! requests applied
+      type(request_type) :: request
       integer :: i, s
 
       model%requests%loads%count = 0
       do s = 1, size(model%steps)
+         request%step = s
          do i = 1, size(model%steps(s)%loads)
             associate (load => model%steps(s)%loads(i))
-               if (load%kind /= load_temperature) call model%requests%loads%add(request_type( &
-                  item=load%item, step=s, kind=load%kind, component=load%component, &
-                  value=load%value, amplitude=load%amplitude, card=load%card))
+               if (load%kind == load_temperature) cycle
+               request%kind = load%kind
+               request%item = load%item
+               request%component = load%component
+               request%value = load%value
+               request%amplitude = load%amplitude
+               request%card = load%card
+               call model%requests%loads%add(request)
             end associate
          end do
       end do

@@ -14,7 +14,8 @@ module tail_matrix
    type :: tail_matrix_type
       integer :: order = 0                      !! tail unknowns
       real(dp), allocatable :: full(:, :)       !! (order, order)
-      type(sparse_matrix_type) :: sparse        !! (order, order) both triangles by rows
+      !> (order, order) both triangles by rows
+      type(sparse_matrix_type) :: sparse = sparse_matrix_type()
       integer, allocatable :: rank(:)           !! (order) an order that keeps columns short
    contains
       procedure :: set_order

@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from blocks import write
+from changes import note_changes
 from deck_runs import COUPLED, copy_deck, run, solve
 from physics import material, mesh
 
@@ -60,6 +61,7 @@ def contact_of(result):
                 for name in ("pressure", "shear", "heat_flux", "gap", "slip", "status")}
 
 
+@pytest.mark.changes("SOLVER, TAIL")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("pellets", [3, 8])
 def test_the_sparse_tail_gives_what_the_full_matrix_gives(tmp_path, pellets, kind):
@@ -67,6 +69,7 @@ def test_the_sparse_tail_gives_what_the_full_matrix_gives(tmp_path, pellets, kin
     for tail in ("FULL", "SPARSE"):
         deck = write(tmp_path / f"{tail}.inp", rod(pellets, tail, kind))
         found[tail] = contact_of(solve(deck))
+    note_changes(rod(pellets, "FULL", kind), rod(pellets, "SPARSE", kind))
     full, sparse = found["FULL"], found["SPARSE"]
     assert np.array_equal(full["status"], sparse["status"])
     assert 0 < np.sum(full["status"] > 0) < len(full["status"])
