@@ -27,7 +27,7 @@ usage: ./setup.sh COMMAND
    verify      run the verification manual again, write docs/verification.md
    bench       run thercon and CalculiX at equal error again, against the figures on record;
                bench performance [PART...]: measure docs/performance.md again, all of it or the
-               parts skyline, tail, levels, paper, stability
+               parts skyline, tail, levels, rods, paper, stability
 
 What is installed: Debian packages with apt-get, as root or with sudo; without either, the command
 that is needed is printed. Python packages live in build/venv, those of Snakemake

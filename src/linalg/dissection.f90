@@ -29,7 +29,7 @@ contains
       integer, dimension(graph%row_count) :: level
       integer, allocatable :: before(:), cut(:), first(:), rest(:), separator(:), top(:)
       logical :: separates(graph%row_count)
-      integer :: i, k, n
+      integer :: i, n
 
       call find_levels(graph, level, first)
       allocate (rest(maxval([0, level])), separator(maxval([0, level])), source=0)

@@ -8,49 +8,9 @@ import pytest
 from blocks import write
 from changes import note_changes
 from deck_runs import COUPLED, copy_deck, run, solve
-from physics import material, mesh
+from pellets import PRESS, rod
 
-HEIGHT, POWER, PRESS = 10.0, 0.4, 2.0
 KINDS = ["CAX4", "CAX8", "mortar", "tables", "transient"]
-
-
-def rod(pellets, tail=None, kind="CAX4", expansion=1e-5, friction=0.1):
-    """Return the cards of a rod."""
-    element = kind if kind.startswith("CAX") else "CAX4"
-    rows = kind == "tables"
-    stores = {"density": 1e-5, "specific_heat": 300.0} if kind == "transient" else {}
-
-    def over(hot, *values):
-        return [(*values, 0.0), (hot * values[0], *values[1:], 1000.0)] if rows else list(values)
-
-    pair = ", PAIRING=SURFACES" if kind == "mortar" else ", PAIRING=NODES"
-    names = [f"P{k}" for k in range(pellets)]
-    cards = [*mesh("TUBE", [4.12, 4.7], np.linspace(0, HEIGHT * pellets, 4 * pellets + 1), element,
-                   first=100001),
-             *material("TUBE", over(0.8, 7e4, 0.35), over(1.2, 6e-6), over(0.7, 0.017), **stores)]
-    for k, name in enumerate(names):
-        cards += [*mesh(name, np.linspace(0, 4.1, 5), np.linspace(HEIGHT * k, HEIGHT * (k + 1), 5),
-                        element, first=100 * k + 1),
-                  *material(name, over(0.8, 1.8e5, 0.316), over(1.2, expansion), over(0.7, 3e-3),
-                           **stores)]
-    cards += ["*SURFACE INTERACTION, NAME=G", "*FRICTION", f"{friction}", "*GAP LAW, TYPE=GAS",
-              *(["3.E-4, 0.005, 0.", "9.E-4, 0.005, 1000."] if rows else ["3.E-4, 0.005"])]
-    for k, name in enumerate(names):
-        cards += [f"*SURFACE, NAME=TUBE{k}", *[f"{100001 + 4 * k + e}, S4" for e in range(4)],
-                  f"*CONTACT PAIR, INTERACTION=G, NAME=W{k}{pair}", f"{name}.RIGHT, TUBE{k}"]
-        if k:
-            cards += [f"*CONTACT PAIR, INTERACTION=G, NAME=E{k}{pair}",
-                      f"{name}.BOTTOM, {names[k - 1]}.TOP"]
-    cards += [f"*SOLVER, TAIL={tail}"] if tail else []
-    step = ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "0.25, 1."]
-    if kind == "transient":
-        step = ["*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "25., 100."]
-    return ["*OPTIONS, ERRORS=NO", *cards, "*FIXED POINT, TOL=1E-12",
-            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", *[f"{n}, 0." for n in (*names, "TUBE")],
-            "*BOUNDARY", "TUBE.BOTTOM, 2", "P0.BOTTOM, 2", *[f"{n}.LEFT, 1" for n in names],
-            "*STEP", *step, "*DFLUX", *[f"{n}, BF, {POWER}" for n in names],
-            "*SFILM", "TUBE.RIGHT, F, 300., 0.03", "*DSLOAD", f"{names[-1]}.TOP, P, {PRESS}",
-            "*END STEP"]
 
 
 def contact_of(result):
