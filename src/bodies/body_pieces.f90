@@ -12,6 +12,7 @@ module body_pieces
    use kinds, only: dp
    use ordering, only: profile_order
    use skyline_solver, only: skyline_solver_type
+   use sorting, only: invert_lists
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
@@ -175,24 +176,12 @@ contains
       type(body_pieces_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: matrix
       integer, intent(in) :: piece(:)
-      integer :: filled(maxval([0, piece])), i, j, k, last(size(piece)), n, start(maxval([0, &
-         piece]) + 1), inside(count(piece > 0)), around(size(piece))
+      integer, allocatable :: inside(:), start(:)
+      integer :: around(size(piece)), i, j, k, last(size(piece)), n
 
-      allocate (self%piece(size(filled)))
-      start = 0
-      do i = 1, size(piece)
-         if (piece(i) > 0) start(piece(i) + 1) = start(piece(i) + 1) + 1
-      end do
-      start(1) = 1
-      do i = 2, size(start)
-         start(i) = start(i) + start(i - 1)
-      end do
-      filled = start(:size(filled))
-      do i = 1, size(piece)
-         if (piece(i) == 0) cycle
-         inside(filled(piece(i))) = i
-         filled(piece(i)) = filled(piece(i)) + 1
-      end do
+      call invert_lists(reshape(piece, [1, size(piece)]), merge(1, 0, piece > 0), &
+         maxval([0, piece]), start, inside)
+      allocate (self%piece(size(start) - 1))
       last = 0
       do i = 1, size(self%piece)
          self%piece(i)%inside = inside(start(i):start(i + 1) - 1)

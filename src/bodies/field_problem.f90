@@ -257,19 +257,16 @@ contains
       load%given = given
       supported = problem%map%supported(given)
       acting = forces
-      if (any(abs(supported) > 0.0_dp)) acting = forces - problem%matrix%multiply(supported)
-      if (allocated(problem%division%piece)) then
+      if (any(abs(supported) > 0.0_dp)) then
+         acting = acting - problem%matrix%multiply(supported)
          if (allocated(self%added%value)) acting = acting - self%added%multiply(supported)
+      end if
+      if (allocated(problem%division%piece)) then
          call self%pieces%condense(acting)
          load%forces = forces
-         load%rhs = reshape(problem%map%load(acting, given, &
-            problem%map%link_stiffness(problem%matrix)), [problem%map%equations, 1])
-         return
       end if
       load%rhs = reshape(problem%map%load(acting, given, &
          problem%map%link_stiffness(problem%matrix)), [problem%map%equations, 1])
-      if (allocated(self%added%value)) load%rhs(:, 1) = load%rhs(:, 1) - &
-         problem%map%restrict(self%added%multiply(supported))
    end function load_of
 
    !> Condenses a load on the tail. What earlier loads say of it is taken from them: steps that ramp

@@ -183,26 +183,27 @@ contains
       type(contact_workspace_type), intent(inout) :: sticking
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
-      logical :: closes(size(state%contact_state)), is_of(size(state%contact_state))
-      integer :: i
+      logical :: closes(size(state%contact_state))
+      integer :: i, k
 
       closes = previous%contact_state == contact_open .and. holds
       call sticking%keep_holding(holds, size(system%interface_start) - 1)
       do i = 1, size(system%interface_start) - 1
-         is_of = .false.
-         is_of(system%interface_start(i):system%interface_start(i + 1) - 1) = .true.
-         if (.not. any(closes .and. is_of .and. system%tangent > 0)) cycle
-         call find_path(system, previous, state, closes .and. is_of, i, sticking, laws, error)
+         associate (first => system%interface_start(i), last => system%interface_start(i + 1) - 1)
+            if (.not. any(closes(first:last) .and. system%tangent(first:last) > 0)) cycle
+            call find_path(system, previous, state, pack([(k, k=first, last)], &
+               closes(first:last)), i, sticking, laws, error)
+         end associate
          if (allocated(error)) return
       end do
    end subroutine find_laws
 
    !> Closing laws of one interface.
    !> Error: a singular system.
-   subroutine find_path(system, previous, state, closes, number, sticking, laws, error)
+   subroutine find_path(system, previous, state, points, number, sticking, laws, error)
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: previous, state
-      logical, intent(in) :: closes(:)
+      integer, intent(in) :: points(:)         ! that close
       integer, intent(in) :: number            ! of the interface
       type(contact_workspace_type), intent(inout) :: sticking
       type(closing_law_type), intent(inout) :: laws(:)
@@ -211,7 +212,7 @@ contains
       integer :: k
 
       path%first = system%interface_start(number)
-      path%point = pack([(k, k=1, size(closes))], closes)
+      path%point = points
       allocate (path%is_open(size(path%point)), source=.true.)
       path%last_gap = merge(max(state%gap(path%point), 0.0_dp), 0.0_dp, &
          state%contact_state(path%point) == contact_open)
@@ -273,8 +274,7 @@ contains
       type(closing_path_type), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: holding
-      integer, allocatable :: free(:), held(:)
-      integer, allocatable :: near(:)
+      integer, allocatable :: free(:), held(:), near(:)
       real(dp), allocatable :: columns(:, :), forces(:, :), response(:, :)
       logical :: is_held(0:system%schur%order)
       integer :: i, place(system%schur%order)
@@ -298,24 +298,21 @@ contains
       near = system%schur%neighbours([held, free])
       place = 0
       place(near) = [(i, i=1, size(near))]
-      held = place(held)
-      free = place(free)
-      columns = system%schur%block(near, near(held))
+      columns = system%schur%block(near, held)
       allocate (forces(size(near), size(held) + size(free)), source=0.0_dp)
       forces(:, :size(held)) = -columns
       do i = 1, size(free)
-         forces(free(i), size(held) + i) = 1.0_dp
+         forces(place(free(i)), size(held) + i) = 1.0_dp
       end do
       response = sticking%factors%solve_part(near, forces)
-      path%stiffness = columns(held, :) + matmul(transpose(columns), response(:, :size(held)))
+      path%stiffness = columns(place(held), :) + matmul(transpose(columns), &
+         response(:, :size(held)))
       ! What is left where stiffnesses cancel is none.
       where (abs(path%stiffness) <= cancelled*maxval([0.0_dp, abs(columns)]))
          path%stiffness = 0.0_dp
       end where
-      path%lever = response(free, :size(held))
-      path%flexibility = response(free, size(held) + 1:)
-      free = near(free)
-      held = near(held)
+      path%lever = response(place(free), :size(held))
+      path%flexibility = response(place(free), size(held) + 1:)
       path%spring = sticking%rows%spring(free)
       path%is_loose = .false.
       if (size(held) > 0) path%is_loose = any(abs(system%motion(held, :)) > 0.0_dp)

@@ -9,6 +9,7 @@ module front_factors
    use blas_lapack, only: dgemm, dgemv, dtrsm
    use dissection, only: front_tree_type
    use kinds, only: dp
+   use sorting, only: invert_lists
    use sparse_matrix, only: triplet_list_type
    implicit none
    private
@@ -101,16 +102,16 @@ contains
       real(dp), intent(in) :: column_size(:)          !! (unknowns) beside which entries may be lost
       logical, intent(in) :: changed(:)               !! (fronts) as from above_changed
       logical, intent(out) :: singular
-      integer :: below(size(changed)), f, i, next(size(changed)), start(size(changed) + 1), &
-         order(entries%length), own(count(is_sought)), own_start(size(changed) + 1)
+      integer :: below(size(changed)), f, i, next(size(changed))
+      integer, allocatable :: order(:), own(:), own_start(:), start(:)
       type(room_type) :: room
 
-      call sort(self%home_of(entries%row(:entries%length), entries%column(:entries%length)), &
-         order, start)
-      associate (sought => pack([(i, i=1, size(is_sought))], is_sought))
-         call sort(self%home(sought), own, own_start)
-         own = sought(own)
+      associate (n => entries%length)
+         call invert_lists(reshape(self%home_of(entries%row(:n), entries%column(:n)), [1, n]), &
+            [(1, i=1, n)], size(changed), start, order)
       end associate
+      call invert_lists(reshape(self%home, [1, size(self%home)]), merge(1, 0, is_sought), &
+         size(changed), own_start, own)
       below = 0
       do f = size(changed) - 1, 1, -1
          next(f) = below(self%above(f))
@@ -135,27 +136,6 @@ contains
       end associate
       if (singular) deallocate (self%front)
    end subroutine factor
-
-   !> Numbers of things by their kinds.
-   pure subroutine sort(kind, order, start)
-      integer, intent(in) :: kind(:)
-      integer, intent(out) :: order(:), start(:)      ! of kind k: order(start(k):start(k + 1) - 1)
-      integer :: filled(size(start) - 1), i
-
-      start = 0
-      do i = 1, size(kind)
-         start(kind(i) + 1) = start(kind(i) + 1) + 1
-      end do
-      start(1) = 1
-      do i = 2, size(start)
-         start(i) = start(i) + start(i - 1)
-      end do
-      filled = start(:size(filled))
-      do i = 1, size(kind)
-         order(filled(kind(i))) = i
-         filled(kind(i)) = filled(kind(i)) + 1
-      end do
-   end subroutine sort
 
    !> Rows and columns of a front: its own ones and those that the fronts below could not eliminate,
    !> which it shares, then those that it leaves to others.
@@ -227,17 +207,19 @@ contains
       room%column_place(front(f)%column) = 0
    end subroutine assemble
 
-   !> Lists unknowns that have no place yet.
-   pure subroutine list_all(unknowns, place, list, n)
+   !> Gives places to unknowns that have none yet, and lists them in the order of these.
+   pure subroutine list_all(unknowns, place, list, last)
       integer, intent(in) :: unknowns(:)
-      integer, intent(inout) :: place(:), list(:), n
+      integer, intent(inout) :: place(:)             ! (all unknowns) 0 for none
+      integer, intent(inout), optional :: list(:)
+      integer, intent(inout) :: last                 ! place that was given
       integer :: i
 
       do i = 1, size(unknowns)
          if (place(unknowns(i)) > 0) cycle
-         n = n + 1
-         place(unknowns(i)) = n
-         list(n) = unknowns(i)
+         last = last + 1
+         place(unknowns(i)) = last
+         if (present(list)) list(last) = unknowns(i)
       end do
    end subroutine list_all
 
@@ -364,11 +346,11 @@ contains
       visited = self%above_changed(visited)
       place = 0
       places = 0
-      call number_all(rows, place, places)
+      call list_all(rows, place, last=places)
       do f = 1, size(visited)
          if (.not. visited(f)) cycle
-         call number_all(self%front(f)%row, place, places)
-         call number_all(self%front(f)%column, place, places)
+         call list_all(self%front(f)%row, place, last=places)
+         call list_all(self%front(f)%column, place, last=places)
       end do
       allocate (x(places, size(rhs, 2)), solution(places, size(rhs, 2)), source=0.0_dp)
       x(place(rows), :) = rhs
@@ -380,19 +362,6 @@ contains
       end do
       part = solution(place(rows), :)
    end function solve_part
-
-   !> Numbers unknowns that have no number.
-   pure subroutine number_all(unknowns, number, last)
-      integer, intent(in) :: unknowns(:)
-      integer, intent(inout) :: number(:), last
-      integer :: i
-
-      do i = 1, size(unknowns)
-         if (number(unknowns(i)) > 0) cycle
-         last = last + 1
-         number(unknowns(i)) = last
-      end do
-   end subroutine number_all
 
    !> L^-1 of a front.
    pure subroutine eliminate_forward(front, place, x, solution)
