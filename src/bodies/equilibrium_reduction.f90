@@ -4,7 +4,6 @@ module equilibrium_reduction
    use connections, only: connections_type
    use field_constraints, only: cycle_compliance, in_cycle, stiffness_alone
    use contact_system, only: contact_system_type
-   use dense, only: column_space, transposed_product
    use errors, only: error_type, status_deck
    use field_problem, only: field_problem_type, field_reduction_type
    use kinds, only: dp
@@ -13,6 +12,7 @@ module equilibrium_reduction
    use mesh_bodies, only: body_name
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
+   use sum_lists, only: sum_list_type
    use text, only: to_text
    implicit none
    private
@@ -42,7 +42,7 @@ contains
       type(model_type), intent(in) :: model
       type(field_problem_type), intent(in) :: mechanical  !! equilibrium, numbered
       type(connections_type), intent(in) :: points !! all contact points
-      real(dp), intent(in) :: rigid(:, :) !! (2 nodes, motions) that the supports leave free
+      type(sum_list_type), intent(in) :: rigid !! (motions, 2 nodes) that the supports leave free
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
@@ -69,41 +69,49 @@ contains
          contact%own = contact%schur%diagonal()
          call set_motions(points, map, rigid, contact)
          call set_cycles(mechanical, points, contact)
-         if (contact%schur%is_sparse()) call contact%set_fronts()
+         if (contact%schur%is_sparse()) call contact%set_fronts(error)
       end associate
       self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
    end subroutine reduce
 
    !> The rigid motions that the supports leave free, on the tail. In exact arithmetic they need no
-   !> force; what S makes of them is rounding, and is taken from it.
+   !> force; what a full S makes of them is rounding, and is taken from it.
    pure subroutine set_motions(points, map, rigid, contact)
       type(connections_type), intent(in) :: points
       type(linear_constraints_type), intent(in) :: map
-      real(dp), intent(in) :: rigid(:, :)
+      type(sum_list_type), intent(in) :: rigid
       type(contact_system_type), intent(inout) :: contact
+      type(sum_list_type) :: on_tail
       real(dp), allocatable :: forces(:, :)
-      real(dp) :: relative(2, size(points%slave))
-      integer :: i, k
+      real(dp) :: field(size(map%by_unknowns%start) - 1), motion(contact%schur%order), &
+         relative(2, size(points%slave))
+      integer :: dof(contact%schur%order), i, k
 
-      allocate (contact%rigid(contact%schur%order, size(rigid, 2)), source=0.0_dp)
-      do i = 1, size(rigid, 2)
-         relative = points%relative(rigid(:, i))
+      dof = 0
+      if (contact%schur%is_sparse()) dof = face_freedoms(map, contact%schur%order)
+      call on_tail%reserve(rigid%count, 2*size(rigid%value))
+      do i = 1, rigid%count
+         field = 0.0_dp
+         field(rigid%values_of(i)) = rigid%coefficients_of(i)
+         motion = 0.0_dp
+         relative = points%relative(field)
          do k = 1, size(points%slave)
-            contact%rigid(contact%normal(k), i) = dot_product(points%normal(:, k), relative(:, k))
+            motion(contact%normal(k)) = dot_product(points%normal(:, k), relative(:, k))
             ! One without friction is an unknown of a sparse tail, too.
             associate (row => map%tail_index(map%introduced(2*k)))
-               if (row > 0) contact%rigid(row, i) = dot_product(points%tangent(:, k), &
-                  relative(:, k))
+               if (row > 0) motion(row) = dot_product(points%tangent(:, k), relative(:, k))
             end associate
          end do
+         associate (by => map%by_unknowns)
+            do k = 1, size(dof)
+               if (dof(k) > 0) motion(k) = field(dof(k))/by%coefficient(by%start(dof(k)))
+            end do
+         end associate
+         call on_tail%add([(k, k=1, size(motion))], motion)
       end do
-      if (contact%schur%is_sparse()) then
-         call move_faces(map, rigid, contact)
-         return
-      end if
-      contact%motion = column_space(contact%rigid)
-      if (size(contact%motion, 2) == 0) return
-      associate (z => contact%motion)
+      call contact%motions%set(on_tail, contact%schur%order, .not. contact%schur%is_sparse())
+      if (contact%schur%is_sparse() .or. contact%motions%basis%count == 0) return
+      associate (z => contact%motions%basis%as_columns(contact%schur%order))
          forces = matmul(contact%schur%full, z)
          contact%schur%full = contact%schur%full - matmul(forces, transpose(z)) - &
             matmul(z, transpose(forces)) + &
@@ -112,40 +120,27 @@ contains
       contact%own = contact%schur%diagonal()
    end subroutine set_motions
 
-   !> The motions of a sparse tail, whose face nodes move along, each of length 1.
-   pure subroutine move_faces(map, rigid, contact)
+   !> Degree of freedom that a row of the tail is, where it is that of a face node; else 0.
+   pure function face_freedoms(map, tail) result(freedom)
       type(linear_constraints_type), intent(in) :: map
-      real(dp), intent(in) :: rigid(:, :)
-      type(contact_system_type), intent(inout) :: contact
-      logical :: is_face(contact%schur%order), singular
-      integer :: dof, i
+      integer, intent(in) :: tail
+      integer :: freedom(tail)
+      logical :: is_face(tail)
+      integer :: dof
 
       is_face = .true.
       is_face(pack(map%tail_index(map%introduced), map%tail_index(map%introduced) > 0)) = .false.
+      freedom = 0
       associate (by => map%by_unknowns)
          do dof = 1, by%count
             if (by%start(dof + 1) - by%start(dof) /= 1) cycle
             associate (k => map%tail_index(by%value(by%start(dof))))
                if (k == 0) cycle
-               if (is_face(k)) contact%rigid(k, :) = rigid(dof, :)/by%coefficient(by%start(dof))
+               if (is_face(k)) freedom(k) = dof
             end associate
          end do
       end associate
-      contact%motion = contact%rigid
-      contact%length = norm2(contact%rigid, dim=1)
-      do i = 1, size(contact%motion, 2)
-         if (contact%length(i) > 0.0_dp) contact%motion(:, i) = &
-            contact%rigid(:, i)/contact%length(i)
-      end do
-      call contact%along%reserve(size(contact%length), count(abs(contact%motion) > 0.0_dp))
-      do i = 1, size(contact%length)
-         associate (moved => pack([(dof, dof=1, size(is_face))], &
-            abs(contact%motion(:, i)) > 0.0_dp))
-            call contact%along%add(moved, contact%motion(moved, i))
-         end associate
-      end do
-      call contact%products%factor(transposed_product(contact%motion, contact%motion), singular)
-   end subroutine move_faces
+   end function face_freedoms
 
    !> The links of the cycles, the compliance of their stuck contact points, and what each contact
    !> point has for stiffness alone.

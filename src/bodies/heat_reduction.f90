@@ -137,7 +137,7 @@ contains
       self%equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
       if (self%is_balanced) return
       do k = 1, size(self%jump_load, 2)
-         self%jump_load(:, k) = bodies%equilibrium%contact%balanced(self%jump_load(:, k))
+         self%jump_load(:, k) = bodies%equilibrium%contact%motions%balanced(self%jump_load(:, k))
       end do
       self%is_balanced = .true.
    end subroutine reduce
@@ -253,7 +253,7 @@ contains
       call bodies%thermal_load%multiply_columns(temperature, forces)
       call bodies%equilibrium%condense_forces(bodies%mechanical, forces, load)
       do k = 1, size(load, 2)
-         load(:, k) = bodies%equilibrium%contact%balanced(load(:, k))
+         load(:, k) = bodies%equilibrium%contact%motions%balanced(load(:, k))
       end do
    end function loads_of_temperatures
 
@@ -267,7 +267,7 @@ contains
       integer :: k
 
       do k = 1, size(factors, 2)
-         balanced(:, k) = bodies%equilibrium%contact%balanced(factors(:, k))
+         balanced(:, k) = bodies%equilibrium%contact%motions%balanced(factors(:, k))
       end do
       motions = bodies%equilibrium%extended(bodies%mechanical, balanced)
       do k = 1, size(factors, 2)

@@ -24,6 +24,7 @@ module reduced_bodies
    use mesh, only: nodes_per_element
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
+   use sum_lists, only: sum_list_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
    use tail_choice, only: has_sparse_tail
    use thermal_matrix, only: assemble_capacity, assemble_conduction
@@ -56,7 +57,7 @@ module reduced_bodies
       real(dp), allocatable :: operators_at(:)
       !> (16*materials of the points) of stress by strain, likewise; unallocated for elasticity
       real(dp), allocatable :: tangent(:)
-      real(dp), allocatable :: rigid(:, :)  !! (2 nodes, motions) that the supports leave free
+      type(sum_list_type) :: rigid !! (motions, 2 nodes) that the supports leave free
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
       ! Key of the numbering: supports, contact points with friction, prescribed temperatures.

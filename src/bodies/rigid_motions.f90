@@ -4,15 +4,16 @@
 !> one it shifts along the axis y. Every support and every direction in which a contact point holds
 !> is one linear condition on these few unknowns, and so is each component at a hinge; the motions
 !> that are free span the null space of all conditions. Nodes of no body that joints take move by
-!> themselves. That space comes from a singular value decomposition and is brought to echelon form,
-!> so that a motion names as few bodies as possible.
+!> themselves. That space comes from elimination and is brought to echelon form, so that a motion
+!> names as few bodies as possible.
 module rigid_motions
    use mesh_bodies, only: bodies_on_axis
-   use dense, only: null_space
    use equations, only: equation_type
    use kinds, only: dp
    use mesh, only: mesh_type
    use rigid_parts, only: find_rigid_parts, rigid_parts_type
+   use sparse_null_space, only: null_space_of
+   use sum_lists, only: sum_list_type
    use text, only: to_text
    use connections, only: tie_points_type
    implicit none
@@ -69,25 +70,41 @@ contains
    !> Displacements of the nodes in the motions that supports, ties and equations leave free, each
    !> motion of one body, of those that are tied to it, and of the nodes of no body that equations
    !> relate to them: forces act on these, too.
-   pure subroutine unsupported_motions(mesh, prescribed, joints, references, fields)
+   pure subroutine unsupported_motions(mesh, prescribed, joints, references, motions)
       type(mesh_type), intent(in) :: mesh
       logical, intent(in) :: prescribed(:) !! (2 nodes) prescribed displacements
       type(joint_type), intent(in) :: joints(:)            !! what ties and equations hold
       integer, intent(in) :: references(:)  !! nodes of no body that contact points take, each once
-      real(dp), allocatable, intent(out) :: fields(:, :)   !! (2 nodes, motions)
+      type(sum_list_type), intent(out) :: motions          !! (motions, 2 nodes)
       type(rigid_parts_type) :: bodies
       real(dp), allocatable :: basis(:, :)
-      integer :: c, k, node
+      integer :: i
 
       bodies = measure(mesh, joints, references)
       basis = free_basis(mesh, bodies, prescribed, joints)
-      allocate (fields(size(prescribed), size(basis, 2)), source=0.0_dp)
+      call motions%reserve(size(basis, 2), size(prescribed))
+      do i = 1, size(basis, 2)
+         call add_motion(mesh, bodies, basis(:, i), motions)
+      end do
+   end subroutine unsupported_motions
+
+   !> Adds the displacements of a motion.
+   pure subroutine add_motion(mesh, bodies, unknown, motions)
+      type(mesh_type), intent(in) :: mesh
+      type(rigid_parts_type), intent(in) :: bodies
+      real(dp), intent(in) :: unknown(:)                ! (unknowns)
+      type(sum_list_type), intent(inout) :: motions
+      real(dp) :: field(2*size(mesh%node_body))
+      integer :: c, i, k, node
+
+      field = 0.0_dp
       do node = 1, size(mesh%node_body)
          if (bodies%part(node) == 0) cycle
-         associate (p => bodies%part(node))
+         associate (own => unknown(3*bodies%part(node) - 2:3*bodies%part(node)))
+            if (all(abs(own) <= 0.0_dp)) cycle
             do c = 1, 2
-               fields(2*(node - 1) + c, :) = matmul(bodies%at_point(p, &
-                  mesh%coordinates(:, node), unit(:, c)), basis(3*p - 2:3*p, :))
+               field(2*(node - 1) + c) = dot_product(bodies%at_point(bodies%part(node), &
+                  mesh%coordinates(:, node), unit(:, c)), own)
             end do
          end associate
       end do
@@ -95,15 +112,15 @@ contains
          do node = 1, size(bodies%corner, 1)
             if (bodies%part(bodies%corner(node, k)) /= bodies%soft(k)) cycle
             do c = 1, 2
-               associate (dof => 2*(bodies%corner(node, k) - 1) + c)
-                  fields(dof, :) = fields(dof, :) + bodies%mode(c, node, k)* &
-                     basis(3*size(bodies%body) + k, :)
+               associate (of_node => field(2*(bodies%corner(node, k) - 1) + c))
+                  of_node = of_node + bodies%mode(c, node, k)*unknown(3*size(bodies%body) + k)
                end associate
             end do
          end do
       end do
-      fields(bodies%lone, :) = basis(bodies%unknowns() - size(bodies%lone) + 1:, :)
-   end subroutine unsupported_motions
+      field(bodies%lone) = unknown(bodies%unknowns() - size(bodies%lone) + 1:)
+      call motions%add([(i, i=1, size(field))], field)
+   end subroutine add_motion
 
    !> Basis of the free motions in reduced echelon form: each has a leading component of its own, 1,
    !> that the others do not have.
@@ -116,7 +133,7 @@ contains
       real(dp), allocatable :: basis(:, :)
       integer :: column, i, k, pivot
 
-      basis = null_space(conditions(mesh, bodies, prescribed, joints))
+      basis = null_space_of(conditions(mesh, bodies, prescribed, joints), bodies%unknowns())
       column = 1
       do i = 1, size(basis, 1)
          if (column > size(basis, 2)) exit
@@ -125,7 +142,8 @@ contains
          basis(:, [column, pivot]) = basis(:, [pivot, column])
          basis(:, column) = basis(:, column)/basis(i, column)
          do k = 1, size(basis, 2)
-            if (k /= column) basis(:, k) = basis(:, k) - basis(i, k)*basis(:, column)
+            if (k /= column .and. abs(basis(i, k)) > 0.0_dp) basis(:, k) = basis(:, k) - &
+               basis(i, k)*basis(:, column)
          end do
          column = column + 1
       end do
@@ -137,40 +155,41 @@ contains
       type(rigid_parts_type), intent(in) :: bodies
       logical, intent(in) :: prescribed(:)
       type(joint_type), intent(in) :: joints(:)
-      real(dp), allocatable :: rows(:, :)
+      type(sum_list_type) :: rows
+      real(dp) :: row(bodies%unknowns())
       logical :: on_axis(mesh%body_count)
-      integer :: c, i, k, n, node, p
+      integer :: all_unknowns(size(row)), c, i, k, node, p
 
+      all_unknowns = [(i, i=1, size(row))]
       on_axis = bodies_on_axis(mesh)
-      allocate (rows(count(prescribed) + size(joints) + 2*count(on_axis(bodies%body)) + &
-         2*size(bodies%hinge, 2), bodies%unknowns()), source=0.0_dp)
-      n = 0
+      associate (n => count(prescribed) + size(joints) + 2*size(bodies%body) + &
+         2*size(bodies%hinge, 2))
+         call rows%reserve(n, 6*n)
+      end associate
       do p = 1, size(bodies%body)
          if (.not. on_axis(bodies%body(p))) cycle
-         rows(n + 1, 3*p - 2) = 1.0_dp
-         rows(n + 2, 3*p) = 1.0_dp
-         n = n + 2
+         call rows%add([3*p - 2], [1.0_dp])
+         call rows%add([3*p], [1.0_dp])
       end do
       do i = 1, size(bodies%hinge, 2)
          do c = 1, 2
-            n = n + 1
-            rows(n, :) = displacement_row(mesh, bodies, bodies%hinge(1, i), unit(:, c)) - &
-               row_in_part(mesh, bodies, bodies%hinge(2, i), bodies%hinge(1, i), unit(:, c))
+            call rows%add(all_unknowns, displacement_row(mesh, bodies, bodies%hinge(1, i), &
+               unit(:, c)) - row_in_part(mesh, bodies, bodies%hinge(2, i), bodies%hinge(1, i), &
+               unit(:, c)))
          end do
       end do
       do node = 1, size(mesh%node_body)
          do c = 1, 2
-            if (.not. prescribed(2*(node - 1) + c)) cycle
-            n = n + 1
-            rows(n, :) = displacement_row(mesh, bodies, node, unit(:, c))
+            if (prescribed(2*(node - 1) + c)) call rows%add(all_unknowns, &
+               displacement_row(mesh, bodies, node, unit(:, c)))
          end do
       end do
       do i = 1, size(joints)
-         n = n + 1
+         row = 0.0_dp
          do k = 1, size(joints(i)%nodes)
-            rows(n, :) = rows(n, :) + displacement_row(mesh, bodies, joints(i)%nodes(k), &
-               joints(i)%share(:, k))
+            row = row + displacement_row(mesh, bodies, joints(i)%nodes(k), joints(i)%share(:, k))
          end do
+         call rows%add(all_unknowns, row)
       end do
    end function conditions
 

@@ -137,7 +137,7 @@ contains
          end if
          state = guess
       end if
-      if (size(system%motion, 2) > 0) then
+      if (system%motions%basis%count > 0) then
          call hold_softly(system, load, work, state, error)
       else
          call follow_lemke_path(system, load, work, state, error)
@@ -204,10 +204,11 @@ contains
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: soft
-      real(dp) :: hold, position(size(system%motion, 2)), softest, way(size(system%motion, 2))
+      real(dp) :: hold, softest
+      real(dp), dimension(system%motions%basis%count) :: position, way
       integer :: step
 
-      position = matmul(positions(system, work, state), system%motion)
+      position = system%motions%along(positions(system, work, state))
       ! Contact points that close a cycle, and those that move a rigid body, have no stiffness.
       associate (own => [system%own, system%alone])
          softest = minval(own, mask=own > nothing*maxval(own))
@@ -216,12 +217,12 @@ contains
          hold = max(first_hold*0.1_dp**(step - 1), least_hold)*softest
          soft = work%another()
          soft%hold = hold
-         associate (soft_load => load + hold*matmul(system%motion, position))
+         associate (soft_load => load + hold*system%motions%combined(position))
             call search(system, soft_load, soft, state, error)
             if (allocated(error)) call follow_lemke_path(system, soft_load, soft, state, error)
          end associate
          if (allocated(error)) return
-         way = matmul(positions(system, work, state), system%motion) - position
+         way = system%motions%along(positions(system, work, state)) - position
          position = position + way
          if (holds_exactly(system, load, work, state)) return
          ! A light load comes no farther than load/hold: the body goes on across the open gaps.
@@ -321,6 +322,8 @@ contains
       type(contact_workspace_type) :: opened
       type(contact_state_type) :: trial
       type(error_type), allocatable :: error
+      real(dp) :: motion(size(load))
+      integer :: k
 
       opened = work%another()
       do while (any(idle))
@@ -331,28 +334,35 @@ contains
          end where
          call opened%solve_set(system, load, trial, error)
          if (opened%driven) then
-            idle = idle .and. .not. moved(system, opened%rows%free, &
-               abs(matmul(opened%unconstrained, opened%drive)))
-         else if (allocated(error) .or. size(opened%unconstrained, 2) == &
-            size(work%unconstrained, 2)) then
+            motion = 0.0_dp
+            call opened%unconstrained%add_shares(opened%drive, motion)
+            idle = idle .and. .not. moved(system, motion)
+         else if (allocated(error) .or. opened%unconstrained%count == work%unconstrained%count) then
             idle = .false.
          else
-            idle = idle .and. moved(system, opened%rows%free, norm2(opened%unconstrained, dim=2))
+            motion = 0.0_dp
+            associate (motions => opened%unconstrained)
+               do k = 1, motions%start(motions%count + 1) - 1
+                  associate (of_row => motion(motions%value(k)))
+                     of_row = hypot(of_row, motions%coefficient(k))
+                  end associate
+               end do
+            end associate
+            idle = idle .and. moved(system, motion)
             exit
          end if
       end do
    end subroutine keep_unloaded
 
-   !> Contact points that a motion of the free rows moves.
-   pure function moved(system, free, motion)
+   !> Contact points that a motion moves.
+   pure function moved(system, motion)
       type(contact_system_type), intent(in) :: system
-      integer, intent(in) :: free(:)                ! rows that are sought
-      real(dp), intent(in) :: motion(:)             ! (free) lengths of the motion
+      real(dp), intent(in) :: motion(:)             ! (tail)
       logical :: moved(size(system%normal))         ! (m)
       logical :: moves(0:system%schur%order)
 
-      moves = .false.
-      moves(free) = motion > no_motion*maxval(motion)
+      moves(0) = .false.
+      moves(1:) = abs(motion) > no_motion*maxval(abs(motion))
       moved = moves(system%normal) .or. moves(system%tangent)
    end function moved
 

@@ -315,7 +315,7 @@ contains
       path%flexibility = response(place(free), size(held) + 1:)
       path%spring = sticking%rows%spring(free)
       path%is_loose = .false.
-      if (size(held) > 0) path%is_loose = any(abs(system%motion(held, :)) > 0.0_dp)
+      if (size(held) > 0) path%is_loose = any(system%motions%moves(held))
    end subroutine find_stiffness
 
    !> Bodies that nothing else holds go where their forces drive them, until they touch, in no time.

@@ -13,6 +13,7 @@ module contact_factors
    use contact_system, only: contact_rows_type, contact_system_type, differ
    use dense, only: lu_type, product_of, transposed_product
    use kinds, only: dp
+   use sum_lists, only: sum_list_type
    implicit none
    private
    public :: contact_factors_type
@@ -31,7 +32,7 @@ module contact_factors
       type(contact_fronts_type), allocatable, private :: fronts
       type(contact_rows_type), private :: rows     !! that were factored
       real(dp), allocatable, private :: scale(:)   !! (free) factor of the rows, 1 beside a border
-      real(dp), allocatable, private :: unconstrained(:, :)   !! (free, l) motions that border them
+      integer, private :: borders = 0              !! motions that border them
       integer, allocatable, private :: free(:)     !! of the present set
       integer, allocatable, private :: entering(:) !! rows that are free now and were not
       real(dp), allocatable, private :: sigma(:)   !! (entering) [force/length]
@@ -54,7 +55,7 @@ contains
       type(contact_system_type), intent(in) :: system      !! the reduced system
       type(contact_rows_type), intent(in) :: rows
       real(dp), intent(in) :: hold                         !! soft one of the motions [force/length]
-      real(dp), intent(in) :: unconstrained(:, :)          !! (free, l)
+      type(sum_list_type), intent(in) :: unconstrained     !! (l, tail)
       logical, intent(out) :: singular                     !! the rows depend on each other
       logical :: is_plain
 
@@ -65,7 +66,7 @@ contains
          return
       end if
       ! Rows in cycles are 1e8 times as large as others, and links have no stiffness.
-      is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0 .and. size(system%link) == 0 &
+      is_plain = hold <= 0.0_dp .and. unconstrained%count == 0 .and. size(system%link) == 0 &
          .and. .not. any(system%compliance > 0.0_dp)
       if (self%may_change .and. is_plain) then
          call change_rows(self, system, rows, singular)
@@ -81,23 +82,26 @@ contains
       type(contact_system_type), intent(in) :: system
       type(contact_rows_type), intent(in) :: rows
       real(dp), intent(in) :: hold
-      real(dp), intent(in) :: unconstrained(:, :)
+      type(sum_list_type), intent(in) :: unconstrained
       logical, intent(out) :: singular
-      real(dp) :: matrix(size(rows%free) + size(unconstrained, 2), size(rows%free) + &
-         size(unconstrained, 2))
+      real(dp) :: matrix(size(rows%free) + unconstrained%count, size(rows%free) + &
+         unconstrained%count)
       real(dp), allocatable :: columns(:, :)
       integer :: i, j
 
       self%full = self%full + 1
       self%rows = rows
       self%free = rows%free
-      self%unconstrained = unconstrained
+      self%borders = unconstrained%count
       self%entering = [integer ::]
       if (allocated(self%difference)) deallocate (self%difference)
       associate (f => size(rows%free), free => rows%free)
          columns = system%schur%columns(free)
-         if (hold > 0.0_dp) columns = columns + &
-            hold*matmul(system%motion, transpose(system%motion(free, :)))
+         if (hold > 0.0_dp) then
+            associate (basis => system%motions%basis%as_columns(size(columns, 1)))
+               columns = columns + hold*matmul(basis, transpose(basis(free, :)))
+            end associate
+         end if
          columns = rows%combine(columns)
          do j = 1, f
             matrix(:f, j) = columns(free, j)
@@ -108,7 +112,7 @@ contains
          ! Rows of slipping contact points are mu times as large, those of stuck ones in cycles 1e8
          ! times.
          self%scale = [(1.0_dp, i=1, f)]
-         if (size(unconstrained, 2) == 0) self%scale = 1.0_dp/max(maxval(abs(matrix(:f, :f)), &
+         if (unconstrained%count == 0) self%scale = 1.0_dp/max(maxval(abs(matrix(:f, :f)), &
             dim=2), tiny(1.0_dp))
          do j = 1, f
             matrix(:f, j) = self%scale*matrix(:f, j)
@@ -116,8 +120,9 @@ contains
          ! A body that nothing holds has no stiffness to compare with.
          self%border = maxval(abs(matrix))
          if (self%border < tiny(1.0_dp)) self%border = 1.0_dp
-         matrix(:f, f + 1:) = self%border*unconstrained
-         matrix(f + 1:, :f) = self%border*transpose(unconstrained)
+         columns = self%border*unconstrained%as_columns(size(columns, 1))
+         matrix(:f, f + 1:) = columns(free, :)
+         matrix(f + 1:, :f) = transpose(columns(free, :))
       end associate
       call self%lu%factor(matrix, singular)
    end subroutine factor_in_full
@@ -198,7 +203,7 @@ contains
       type(contact_factors_type), intent(in) :: self
       real(dp), intent(inout) :: x(:, :)
       real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
-      real(dp) :: rows(size(self%scale) + size(self%unconstrained, 2), size(x, 2))
+      real(dp) :: rows(size(self%scale) + self%borders, size(x, 2))
       integer :: j
 
       associate (f => size(self%scale), base => self%rows%free, entering => self%entering)

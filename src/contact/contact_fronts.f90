@@ -41,12 +41,12 @@ contains
       type(contact_system_type), intent(in) :: system     !! the reduced system
       type(contact_rows_type), intent(in) :: rows
       real(dp), intent(in) :: hold                        !! soft one of all motions [force/length]
-      real(dp), intent(in) :: unconstrained(:, :)         !! (free, l) motions that border the rows
+      type(sum_list_type), intent(in) :: unconstrained    !! (l, tail) motions that border the rows
       logical, intent(out) :: singular                    !! the rows depend on each other
       logical :: is_plain, changed(size(system%tree%parent))
       integer :: i
 
-      is_plain = hold <= 0.0_dp .and. size(unconstrained, 2) == 0
+      is_plain = hold <= 0.0_dp .and. unconstrained%count == 0
       if (self%may_change .and. is_plain) then
          changed = .false.
          associate (differing => differ(rows, self%rows), tree => system%tree)
@@ -56,7 +56,7 @@ contains
          end associate
          changed = self%fronts%above_changed(changed)
       else
-         self%borders = merge(size(system%motion, 2), size(unconstrained, 2), hold > 0.0_dp)
+         self%borders = merge(system%motions%basis%count, unconstrained%count, hold > 0.0_dp)
          call self%fronts%begin(system%tree, self%borders)
          self%border = max(maxval(abs(system%own)), tiny(1.0_dp))
          changed = .true.
@@ -65,7 +65,7 @@ contains
       call set_scale(self, system)
       self%full = self%full + 1
       if (hold > 0.0_dp) then
-         call factor_fronts(self, system, hold, system%motion(rows%free, :), changed, singular)
+         call factor_fronts(self, system, hold, system%motions%basis, changed, singular)
       else
          call factor_fronts(self, system, hold, unconstrained, changed, singular)
       end if
@@ -101,13 +101,14 @@ contains
    pure subroutine factor_fronts(self, system, hold, motions, changed, singular)
       type(contact_fronts_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system
-      real(dp), intent(in) :: hold, motions(:, :)  ! (free, borders)
+      real(dp), intent(in) :: hold
+      type(sum_list_type), intent(in) :: motions   ! (borders, tail)
       logical, intent(in) :: changed(:)
       logical, intent(out) :: singular
       type(triplet_list_type) :: entries
       logical :: is_sought(system%schur%order + self%borders)
       real(dp) :: column_size(system%schur%order + self%borders)
-      integer :: i, q
+      integer :: k, q
 
       associate (tail => system%schur%order, free => self%rows%free)
          is_sought = .false.
@@ -115,12 +116,14 @@ contains
          is_sought(tail + 1:) = .true.
          column_size(:tail) = system%column_size
          column_size(tail + 1:) = 1.0_dp
-         call form_entries(self, system, changed, count(abs(motions) > 0.0_dp), entries)
+         call form_entries(self, system, changed, size(motions%value), entries)
          do q = 1, self%borders
-            do i = 1, size(free)
-               if (abs(motions(i, q)) <= 0.0_dp) cycle
-               call entries%add(free(i), tail + q, self%scale(free(i))*self%border*motions(i, q))
-               call entries%add(tail + q, free(i), motions(i, q))
+            do k = motions%start(q), motions%start(q + 1) - 1
+               associate (row => motions%value(k), part => motions%coefficient(k))
+                  if (.not. is_sought(row)) cycle
+                  call entries%add(row, tail + q, self%scale(row)*self%border*part)
+                  call entries%add(tail + q, row, part)
+               end associate
             end do
             if (hold > 0.0_dp) call entries%add(tail + q, tail + q, -self%border/hold)
          end do

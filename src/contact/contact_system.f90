@@ -44,27 +44,24 @@
 !> The answer of a single contact point is here too: contact states, Coulomb's law, eq. (1.6), with
 !> a largest friction, in increments, and the law of one that closes within an increment.
 module contact_system
-   use dissection, only: dissected, front_tree_type
-   use dense, only: least_squares, lu_type, null_space, null_space_by_rows
+   use errors, only: error_type
    use friction_laws, only: friction_bound, friction_law_type
+   use front_tree, only: front_tree_type, set_front_tree
    use kinds, only: dp
    use pressure_overclosure, only: pressure_overclosure_type
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use sum_lists, only: sum_list_type
+   use tail_motions, only: tail_motions_type
    use tail_matrix, only: tail_matrix_type
    implicit none
    private
-   public :: contact_system_type, contact_rows_type, rows_of, differ, least_drive, &
+   public :: contact_system_type, contact_rows_type, rows_of, differ, &
       contact_state_type, closing_law_type, is_capped, slip_force, &
       state_code, with_cap, contact_open, contact_slip, contact_stick, next_contact_state, &
       response_type, rounding_type
 
    !> Spring of a row, as part of the contact point's stiffness, that does not hold a body.
    real(dp), parameter :: slack = 1.0e-9_dp
-   !> Force along a motion that is rounding, as part of the terms that it is the sum of.
-   real(dp), parameter :: rounding = 1.0e-13_dp
-   !> Part of the applied forces that cancel which coordinates and loads of a deck leave over.
-   real(dp), parameter :: cancelled = 1.0e-10_dp
 
    !> The reduced system, which no increment changes.
    type :: contact_system_type
@@ -85,12 +82,7 @@ module contact_system
       !> Rows of unknowns that no contact point acts on: forces of links, and face nodes
       integer, allocatable :: link(:)
       integer :: links = 0                        !! how many of them are forces of links
-      real(dp), allocatable :: rigid(:, :)  !! (tail, q) unsupported rigid motions
-      !> (tail, q) the same, orthonormal; on a sparse tail each of one body and of length 1
-      real(dp), allocatable :: motion(:, :)
-      real(dp), allocatable :: length(:)    !! (q) of these, on a sparse tail; likewise:
-      type(sum_list_type) :: along          !! (q, tail) entries of motion^T that are not 0
-      type(lu_type) :: products             !! of motion^T motion
+      type(tail_motions_type) :: motions          !! that supports leave free
       real(dp) :: least_length = 0.0_dp           !! rounding of the coordinates [length]
    contains
       procedure :: set_fronts
@@ -98,8 +90,6 @@ module contact_system
       procedure :: add_arm
       procedure :: least_force
       procedure :: free_motions
-      procedure :: is_driven
-      procedure :: balanced
    end type contact_system_type
 
    !> Rows of an active set.
@@ -220,8 +210,10 @@ contains
    end function rows_of
 
    !> Sets the fronts of a sparse tail.
-   pure subroutine set_fronts(self)
+   !> Error: METIS fails.
+   subroutine set_fronts(self, error)
       class(contact_system_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
       integer :: i, k
 
       allocate (self%row_size(self%schur%order), self%column_size(self%schur%order), source=0.0_dp)
@@ -236,7 +228,7 @@ contains
             end do
          end do
       end associate
-      self%tree = dissected(joined_unknowns(self))
+      call set_front_tree(joined_unknowns(self), self%tree, error)
    end subroutine set_fronts
 
    !> Which unknowns of a sparse tail may be joined: by S, and in the row of a contact point that
@@ -261,6 +253,7 @@ contains
                   if (pass == 1) cycle
                   do k = 1, size(tangents)
                      do j = 1, size(around)
+                        if (around(j) == tangents(k)) cycle
                         call list%add(tangents(k), around(j), 1.0_dp)
                         call list%add(around(j), tangents(k), 1.0_dp)
                      end do
@@ -271,7 +264,7 @@ contains
          end do
          do i = 1, s%row_count
             do k = s%row_start(i), s%row_start(i + 1) - 1
-               call list%add(i, s%column(k), 1.0_dp)
+               if (s%column(k) /= i) call list%add(i, s%column(k), 1.0_dp)
             end do
          end do
          graph = list%compress(s%row_count, s%row_count)
@@ -397,120 +390,18 @@ contains
       differ = (is_free_a .neqv. is_free_b) .or. (is_free_a .and. differ)
    end function differ
 
-   !> The unsupported motions that no row of the active set holds, each of length 1 on the free
-   !> rows; those of a full tail are orthonormal.
+   !> The unsupported motions that no row of the active set holds.
    pure function free_motions(self, rows) result(unheld)
       class(contact_system_type), intent(in) :: self
       type(contact_rows_type), intent(in) :: rows
-      real(dp), allocatable :: unheld(:, :) !! (free, l)
-      logical :: supported(self%schur%order)
-      integer :: i
+      type(sum_list_type) :: unheld              !! (l, tail) as from tail_motions
+      logical, dimension(self%schur%order) :: is_free, is_held
 
-      associate (free => rows%free)
-         if (size(self%motion, 2) == 0) then
-            allocate (unheld(size(free), 0))
-            return
-         end if
-         supported = .true.
-         do i = 1, size(free)
-            supported(free(i)) = rows%spring(free(i)) > slack*abs(self%own(free(i)))
-         end do
-         associate (tail_rows => pack([(i, i=1, size(supported))], supported))
-            if (self%schur%is_sparse()) then
-               unheld = combined_motions(self%motion, free, null_space_by_rows( &
-                  self%motion(tail_rows, :)))
-            else
-               unheld = matmul(self%motion(free, :), null_space(self%motion(tail_rows, :)))
-            end if
-         end associate
-      end associate
+      is_free = .false.
+      is_free(rows%free) = .true.
+      is_held = .not. is_free .or. rows%spring > slack*abs(self%own)
+      unheld = self%motions%unheld(is_free, is_held)
    end function free_motions
-
-   !> Sums of motions in the free rows, each of length 1; those that move none are left out.
-   pure function combined_motions(motion, free, factors) result(sums)
-      real(dp), intent(in) :: motion(:, :)   ! (tail, q)
-      integer, intent(in) :: free(:)
-      real(dp), intent(in) :: factors(:, :)  ! (q, l), most of them 0
-      real(dp), allocatable :: sums(:, :)
-      real(dp) :: length
-      integer :: j, n, q
-
-      allocate (sums(size(free), size(factors, 2)))
-      n = 0
-      do j = 1, size(factors, 2)
-         n = n + 1
-         sums(:, n) = 0.0_dp
-         do q = 1, size(factors, 1)
-            if (abs(factors(q, j)) > 0.0_dp) sums(:, n) = sums(:, n) + &
-               factors(q, j)*motion(free, q)
-         end do
-         length = norm2(sums(:, n))
-         if (length <= 0.0_dp) then
-            n = n - 1
-         else
-            sums(:, n) = sums(:, n)/length
-         end if
-      end do
-      sums = sums(:, :n)
-   end function combined_motions
-
-   !> Whether forces drive the motions, by more than rounding. Each row is judged by the terms
-   !> that its own motion collects: those of another body may be far larger.
-   pure logical function is_driven(self, unheld, unbalanced, terms, least)
-      class(contact_system_type), intent(in) :: self
-      real(dp), intent(in) :: unheld(:, :)   !! (n, l) motions of the free rows, each of length 1
-      real(dp), intent(in) :: unbalanced(:)  !! (l) forces along the motions [force]
-      real(dp), intent(in) :: terms(:) !! (n) sums without signs of the forces' terms [force]
-      real(dp), intent(in) :: least(:)       !! (n) drive that counts as none [force]
-      real(dp) :: collected(size(terms))
-
-      if (self%schur%is_sparse()) then
-         collected = matmul(abs(unheld), matmul(terms, abs(unheld)))
-      else
-         collected = matmul(abs(matmul(unheld, transpose(unheld))), terms)
-      end if
-      is_driven = any(abs(matmul(unheld, unbalanced)) > least + rounding*collected)
-   end function is_driven
-
-   !> A condensed load with the exact resultants along the unsupported motions. Temperatures and
-   !> prescribed displacements have none; what the elimination makes of theirs is rounding.
-   function balanced(self, load, resultant)
-      class(contact_system_type), intent(in) :: self
-      real(dp), intent(in) :: load(:)        !! (tail) c [force]
-      !> (q) of the applied forces along the rigid motions; absent for none [force]
-      real(dp), intent(in), optional :: resultant(:)
-      real(dp) :: balanced(size(load))       !! (tail) [force]
-      real(dp) :: driven(size(self%motion, 2)), lacking(size(self%motion, 2), 1), &
-         wanted(size(self%rigid, 2))
-
-      balanced = load
-      if (size(self%motion, 2) == 0) return
-      wanted = 0.0_dp
-      if (present(resultant)) wanted = resultant
-      if (.not. self%schur%is_sparse()) then
-         balanced = load - matmul(self%motion, matmul(load, self%motion)) + &
-            least_squares(transpose(self%rigid), wanted)
-      else
-         driven = 0.0_dp
-         call self%along%add_totals(load, driven)
-         lacking(:, 1) = wanted/max(self%length, tiny(1.0_dp)) - driven
-         call self%products%solve(lacking)
-         call self%along%add_shares(lacking(:, 1), balanced)
-      end if
-   end function balanced
-
-   !> Forces along the unsupported motions that count as none.
-   pure function least_drive(rigid, sums) result(least)
-      real(dp), intent(in) :: rigid(:, :) !! (tail, q) unsupported motions, each of one body
-      real(dp), intent(in) :: sums(:)     !! (q) resultants of the forces without signs [force]
-      real(dp) :: least(size(rigid, 1))   !! (tail) [force]
-      integer :: q
-
-      least = 0.0_dp
-      do q = 1, size(sums)
-         least = least + cancelled*sums(q)*abs(rigid(:, q))/max(sum(rigid(:, q)**2), tiny(1.0_dp))
-      end do
-   end function least_drive
 
    !> Whether friction is the largest whatever the pressure.
    elemental logical function is_capped(direction)

@@ -6,12 +6,12 @@ module contact_workspace
    use contact_system, only: closing_law_type, contact_open, contact_rows_type, contact_slip, &
       contact_state_type, contact_stick, contact_system_type, is_capped, rows_of, slip_force, &
       state_code
-   use dense, only: least_squares
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use friction_laws, only: friction_law_type
    use kinds, only: dp
    use overlap_laws, only: overlap_law_type
    use pressure_overclosure, only: pressure_overclosure_type
+   use sum_lists, only: sum_list_type
    implicit none
    private
    public :: contact_workspace_type
@@ -52,7 +52,7 @@ module contact_workspace
       !> (tail, 2) displacements of the last solution on a sparse tail, and S times these
       real(dp), allocatable :: known(:, :)
       type(contact_rows_type) :: rows             !! rows of the active set
-      real(dp), allocatable :: unconstrained(:, :) !! (free, l) motions that the set leaves free
+      type(sum_list_type) :: unconstrained        !! (l, tail) motions that the set leaves free
       real(dp), allocatable :: drive(:)           !! (l) forces along them that nothing takes up
       logical :: driven = .false.                 !! whether these are more than rounding
       logical, allocatable :: idle(:)  !! (m) closed contact points that carry nothing (idle_points)
@@ -181,7 +181,7 @@ contains
       residual(:, 1) = load + residual(:, 1) - lambda
       call self%solve_free(residual, unbalanced)
       d(self%rows%free) = d(self%rows%free) + residual(self%rows%free, 1)
-      if (size(self%unconstrained, 2) > 0) then
+      if (self%unconstrained%count > 0) then
          self%drive = unbalanced(:, 1)
          call check_balance(self, system, load, d, error)
          if (allocated(error)) return
@@ -257,7 +257,7 @@ contains
          lambda = self%known(:, 2) + rest
       end if
       if (self%hold > 0.0_dp) lambda = lambda + &
-         self%hold*matmul(system%motion, matmul(d, system%motion))
+         self%hold*system%motions%combined(system%motions%along(d))
    end subroutine find_forces
 
    !> Whether the load drives the unconstrained motions, by more than rounding.
@@ -272,8 +272,7 @@ contains
       terms = abs(load)
       call system%schur%add_product(d, forces, terms)
       least = self%least_drive + unresolved*system%least_length*abs(system%own)
-      self%driven = system%is_driven(self%unconstrained, self%drive, terms(self%rows%free), &
-         least(self%rows%free))
+      self%driven = system%motions%is_driven(self%unconstrained, self%drive, terms, least)
       if (self%driven) call set_error(error, status_no_convergence, &
          'the supports and the closed contact points do not hold what the loads drive')
    end subroutine check_balance
@@ -300,18 +299,10 @@ contains
             way(tangent) = d(tangent) - start_of_slip(self, state, k)
          end associate
       end do
-      associate (free => self%rows%free)
-         if (system%schur%is_sparse()) then
-            ! Face nodes follow; their way is no length.
-            counts = .true.
-            counts(system%link) = .false.
-            d(free) = d(free) - matmul(self%unconstrained, least_squares( &
-               spread(merge(1.0_dp, 0.0_dp, counts(free)), 2, size(self%unconstrained, 2))* &
-               self%unconstrained, way(free)))
-         else
-            d(free) = d(free) - matmul(self%unconstrained, matmul(way(free), self%unconstrained))
-         end if
-      end associate
+      ! Face nodes follow; their way is no length.
+      counts = .true.
+      counts(system%link) = .not. system%schur%is_sparse()
+      call system%motions%approach(self%unconstrained, counts, way, d)
    end subroutine move_least
 
    !> Factors the system of an active set, unless that is the set factored last.
@@ -326,7 +317,7 @@ contains
       if (is_factored(self, state)) return
       self%rows = rows_of(system, self%friction%coefficient, state, self%closing, self%soft)
       if (self%hold > 0.0_dp) then
-         self%unconstrained = reshape([real(dp) ::], [size(self%rows%free), 0])
+         call self%unconstrained%reserve(0, 0)
       else
          self%unconstrained = system%free_motions(self%rows)
       end if
@@ -432,7 +423,7 @@ contains
       if (any(self%closing%acts)) return
       ! Every link and every unconstrained motion borders a positive matrix, which turns its sign.
       turns_back = self%factors%is_negative() .neqv. &
-         (mod(system%links + size(self%unconstrained, 2), 2) == 1)
+         (mod(system%links + self%unconstrained%count, 2) == 1)
    end function turns_back
 
 end module contact_workspace

@@ -7,7 +7,7 @@ module increment_solution
    use contact_operator, only: contact_operator_pass, law_conductance, law_pressure, touches, &
       unstrained_forces
    use contact_system, only: contact_open, contact_slip, contact_state_type, &
-      contact_system_type, least_drive
+      contact_system_type
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
    use edge_heat, only: joined_conductance
@@ -24,6 +24,7 @@ module increment_solution
    use solution_report, only: iteration_record_type, solution_report_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics, step_type
+   use sum_lists, only: sum_list_type
    use temperature_laws, only: is_below_zero, law_jumps
    use text, only: to_text
    implicit none
@@ -344,6 +345,8 @@ contains
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: thermal(2*size(trial%next%temperature))
+      real(dp), dimension(bodies%rigid%count) :: along, sums   ! resultants, and without signs
+      type(sum_list_type) :: sizes
 
       trial%next%contact%reference = trial%data%previous%tangential
       thermal = unstrained_forces(bodies, trial%next%temperature - loads%temperature%rest, &
@@ -359,9 +362,13 @@ contains
             loads%present_gaps(bodies%points), bodies%laws%nodal_friction, bodies%laws%removed, &
             bodies%laws%overlap, bodies%points%weight)
          work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)))
-         work%least_drive = least_drive(contact%rigid, matmul(abs(applied), abs(bodies%rigid)))
-         trial%data%no_jump_load = contact%balanced(force%condensed, &
-            matmul(applied, bodies%rigid))
+         along = 0.0_dp
+         call bodies%rigid%add_totals(applied, along)
+         sums = 0.0_dp
+         sizes = bodies%rigid%without_signs()
+         call sizes%add_totals(abs(applied), sums)
+         work%least_drive = contact%motions%least_drive(sums)
+         trial%data%no_jump_load = contact%motions%balanced(force%condensed, along)
          call check_finite([force%rhs(:, 1), trial%data%no_jump_load], 'forces', &
             status_no_convergence, error)
       end associate

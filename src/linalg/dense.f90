@@ -7,7 +7,7 @@ module dense
    use kinds, only: dp
    implicit none
    private
-   public :: lu_type, null_space, null_space_by_rows, column_space, eigenvalues, energy_basis, &
+   public :: lu_type, null_space, column_space, eigenvalues, energy_basis, &
       least_squares, product_of, transposed_product
 
    !> Pivot, relative to its column, below which it is rounding.
@@ -77,44 +77,6 @@ contains
          basis = transpose(right(rank + 1:, :))
       end associate
    end function null_space
-
-   !> Basis of the vectors that all rows map to zero, where rows have few entries: by elimination.
-   pure function null_space_by_rows(rows) result(basis)
-      real(dp), intent(in) :: rows(:, :)        !! (m, n)
-      real(dp), allocatable :: basis(:, :)      !! (n, n - rank)
-      real(dp) :: kept(size(rows, 2), size(rows, 2)), row(size(rows, 2))
-      integer :: pivot(size(rows, 2)), free(size(rows, 2)), i, j, rank
-      real(dp) :: least
-      logical :: is_pivot(size(rows, 2))
-
-      rank = 0
-      is_pivot = .false.
-      least = rank_tolerance*maxval(abs(rows))
-      do i = 1, size(rows, 1)
-         if (rank == size(rows, 2)) exit
-         row = rows(i, :)
-         do j = 1, rank
-            if (abs(row(pivot(j))) > 0.0_dp) row = row - row(pivot(j))*kept(:, j)
-         end do
-         if (maxval(abs(row)) <= least) cycle
-         rank = rank + 1
-         pivot(rank) = maxloc(abs(row), dim=1)
-         is_pivot(pivot(rank)) = .true.
-         kept(:, rank) = row/row(pivot(rank))
-         do j = 1, rank - 1
-            if (abs(kept(pivot(rank), j)) > 0.0_dp) kept(:, j) = kept(:, j) - &
-               kept(pivot(rank), j)*kept(:, rank)
-         end do
-      end do
-      allocate (basis(size(rows, 2), size(rows, 2) - rank), source=0.0_dp)
-      free(:size(basis, 2)) = pack([(j, j=1, size(is_pivot))], .not. is_pivot)
-      do i = 1, size(basis, 2)
-         basis(free(i), i) = 1.0_dp
-         do j = 1, rank
-            basis(pivot(j), i) = -kept(free(i), j)
-         end do
-      end do
-   end function null_space_by_rows
 
    !> Orthonormal basis of what some columns span, by Gram and Schmidt, each twice.
    pure function column_space(columns) result(basis)

@@ -7,7 +7,7 @@
 !> own fronts and those above: what partial refactorisation is for a skyline, below eq. (3.4).
 module front_factors
    use blas_lapack, only: dgemm, dgemv, dtrsm
-   use dissection, only: front_tree_type
+   use front_tree, only: front_tree_type
    use kinds, only: dp
    use sorting, only: invert_lists
    use sparse_matrix, only: triplet_list_type

@@ -17,6 +17,8 @@ module sum_lists
       procedure :: add_sums
       procedure :: renumbered
       procedure :: transposed
+      procedure :: as_columns
+      procedure :: without_signs
       procedure :: add_totals
       procedure :: add_shares
       procedure :: is_sum_of
@@ -146,6 +148,28 @@ contains
          end do
       end do
    end function transposed
+
+   !> The same sums with the moduli of the coefficients.
+   pure function without_signs(self) result(sums)
+      class(sum_list_type), intent(in) :: self
+      type(sum_list_type) :: sums
+
+      sums = self
+      sums%coefficient = abs(sums%coefficient)
+   end function without_signs
+
+   !> The coefficients of each sum in a column.
+   pure function as_columns(self, values) result(columns)
+      class(sum_list_type), intent(in) :: self
+      integer, intent(in) :: values                      !! number of values
+      real(dp) :: columns(values, self%count)
+      integer :: i
+
+      columns = 0.0_dp
+      do i = 1, self%count
+         columns(self%values_of(i), i) = self%coefficients_of(i)
+      end do
+   end function as_columns
 
    !> Adds the sums, term by term.
    pure subroutine add_totals(self, x, totals)

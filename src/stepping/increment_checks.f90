@@ -128,7 +128,7 @@ contains
       words = ''
       if (contact%several) words = &
          'with so much friction other contact states satisfy all conditions, too'
-      if (size(contact%unconstrained, 2) > 0 .or. any(next%idle)) then
+      if (contact%unconstrained%count > 0 .or. any(next%idle)) then
          free = unconstrained_now(model, run%bodies%points, &
             run%bodies%laws%friction%coefficient > 0.0_dp, run%loads%displacement%active, &
             merge(contact_open, next%contact%contact_state, next%idle .or. next%resting))
