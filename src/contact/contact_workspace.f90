@@ -20,6 +20,10 @@ module contact_workspace
    !> remainder of loads that were taken off.
    real(dp), parameter :: unresolved = 1.0e-3_dp
 
+   !> Change of displacements, as part of the largest, that does not spoil the forces of the last
+   !> solution with its own rounding.
+   real(dp), parameter :: small_change = 1.0e-3_dp
+
    !> Compliance of the contact points of an interface that close in the increment.
    type :: compliance_type
       real(dp), allocatable :: matrix(:, :)   !! (2n, 2n), unallocated until it is sought
@@ -241,20 +245,23 @@ contains
    end function start_of_slip
 
    !> S d, with the soft hold. On a sparse tail face nodes have the displacements of their bodies,
-   !> beside which strains are small: forces go by the change from the last solution, so that they
-   !> have the same rounding from pass to pass.
+   !> beside which strains are small: forces go by a small change from the last solution, so that
+   !> they have the same rounding from pass to pass.
    pure subroutine find_forces(self, system, d, lambda, terms)
       type(contact_workspace_type), intent(in) :: self
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: d(:)
       real(dp), intent(out) :: lambda(:)
       real(dp), intent(inout), optional :: terms(:)   !! receives the moduli of the terms of S d
-      real(dp) :: rest(size(d))
+      real(dp), dimension(size(d)) :: change, rest
 
       call system%schur%add_product(d, lambda, terms)
       if (allocated(self%known)) then
-         call system%schur%add_product(d - self%known(:, 1), rest)
-         lambda = self%known(:, 2) + rest
+         change = d - self%known(:, 1)
+         if (maxval(abs(change)) <= small_change*maxval(abs(d))) then
+            call system%schur%add_product(change, rest)
+            lambda = self%known(:, 2) + rest
+         end if
       end if
       if (self%hold > 0.0_dp) lambda = lambda + &
          self%hold*system%motions%combined(system%motions%along(d))
