@@ -232,8 +232,8 @@ contains
       else
          call self%page%title('ZONE DIAGRAMS')
          call self%page%wrapped('   ', '*CONTACT PRINT prints those of '// &
-            to_text(size(interfaces))//' interfaces. /contact of the result file has all contact '// &
-            'points at all increments; post/plot zones draws them.')
+            to_text(size(interfaces))//' interfaces. /contact of the result file has all '// &
+            'contact points at all increments; post/plot zones draws them.')
       end if
       call self%page%list('REQUESTED ACCURACY', run%accuracy%targets)
       if (size(run%accuracy%rounds) > 0) call self%page%line('')

@@ -19,7 +19,7 @@ module model_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
    public :: has_many, first_alike, alike_words
 
-   integer, parameter :: most_told = 20   !! interfaces, or bodies, that are told one by one
+   integer, parameter :: most_told = 20   !! interfaces, bodies or sections that are told one by one
 
 contains
 
@@ -139,16 +139,16 @@ contains
          ' slave corners have no master opposite and stay open'
    end function open_words
 
-   !> Whether interfaces or bodies are too many to be told one by one.
+   !> Whether interfaces, bodies or sections are too many to be told one by one.
    pure logical function has_many(parts)
       integer, intent(in) :: parts      !! number of them
 
       has_many = parts > most_told
    end function has_many
 
-   !> The first interface that a description is of; of a few interfaces each has its own.
+   !> The first interface, or section, with each description; of a few each has its own.
    pure function first_alike(texts) result(first)
-      type(string_type), intent(in) :: texts(:)    !! descriptions of all interfaces
+      type(string_type), intent(in) :: texts(:)    !! descriptions of all
       integer :: first(size(texts))
       integer :: i, k
 
@@ -162,11 +162,11 @@ contains
       end do
    end function first_alike
 
-   !> How many further interfaces an interface is described with.
+   !> How many further ones have the description of one.
    pure function alike_words(first, i) result(words)
       integer, intent(in) :: first(:)              !! of first_alike
-      integer, intent(in) :: i                     !! interface
-      character(:), allocatable :: words           !! such as ' and 19 more alike', or nothing
+      integer, intent(in) :: i                     !! which one
+      character(:), allocatable :: words           !! such as ' and 19 more like it', or nothing
 
       words = ''
       if (count(first == i) > 1) words = ' and '//to_text(count(first == i) - 1)//' more like it'
