@@ -75,8 +75,9 @@ contains
 
       if (.not. allocated(self%steps)) allocate (self%steps(0))
       do i = 1, merge(size(interfaces), 0, record%last_of_step .and. size(model%steps) > 1)
-         if (has_many(size(interfaces)) .and. i /= largest_at('peak_pressure', record%contacts)) &
-            cycle
+         if (has_many(size(interfaces))) then
+            if (i /= largest_at('peak_pressure', record%contacts)) cycle
+         end if
          call append(self%steps, step_line(interfaces(i), record%contacts(i), record))
       end do
       self%increment = record%increment

@@ -368,7 +368,7 @@ contains
          continue
       case ('NSET', 'ELSET')
          if (card%has('GENERATE')) last = 2
-      case ('NGEN', 'TIE', 'CONTACT PAIR')
+      case ('NGEN', 'NFILL', 'TIE', 'CONTACT PAIR')
          last = 2
       case ('ELGEN', 'SURFACE')
          last = 1
