@@ -116,8 +116,9 @@ def add_contact(picture):
     add_name(picture)
     picture.add_argument(
         "--along",
-        choices=("x", "s"),
-        help="x or arc length s (default: x where it grows along the face)",
+        choices=("x", "y", "s"),
+        help="x, y or arc length s (default: x where it grows along the face; of several interfaces in "
+        "one picture also y)",
     )
     picture.add_argument(
         "--with",
@@ -132,7 +133,8 @@ def add_contact(picture):
 def add_name(picture):
     """Add the choice of contact."""
     picture.add_argument(
-        "--contact", metavar="NAME", help="interface (default: all, a picture each)"
+        "--contact", metavar="NAME", help="interface (default: all, a picture each); those that a pattern "
+        "such as 'GAP-*' means are drawn in one picture, along x or y"
     )
 
 

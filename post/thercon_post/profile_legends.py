@@ -86,7 +86,7 @@ def edge_handles(picture):
     return [
         Line2D([], [], color=colour, lw=width, ls=line, label=name)
         for key, (name, line) in EDGES.items()
-        if any(picture.edges(key, row).size for row in picture.rows)
+        if any(len(picture.marked_edges(key, row)) for row in picture.rows)
     ]
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from . import profile_legends, style
 from .overlay import axis_words, file_parts, read_overlays
 from .profile_legends import EDGES, QUANTITY_LINES
-from .result import UNJUDGED
+from .result import PATTERN, UNJUDGED
 from .style import plt
 from .tables import stack_tables
 
@@ -136,6 +136,10 @@ class Picture:
         """Whether friction has both signs along the contact at these loads."""
         return two_signed(self.contact["shear"][self.rows])
 
+    def marked_edges(self, key, row):
+        """Return the edges of a kind that are marked: of many interfaces they would hide the rest."""
+        return [] if PATTERN in self.contact.name else self.edges(key, row)
+
     def edges(self, key, row):
         """Return the sharpened edges of a kind at one load, on the axis of the picture."""
         edges = np.atleast_1d(self.contact[key][row])
@@ -146,7 +150,7 @@ class Picture:
         single = len(self.rows) == 1
         usual, width = profile_legends.edge_looks(self)
         for key, (_, line) in EDGES.items():
-            for edge in self.edges(key, row):
+            for edge in self.marked_edges(key, row):
                 axes.axvline(
                     edge,
                     ymax=1.0 if single else 0.09,

@@ -12,6 +12,7 @@ from . import stresses
 from .cells import Cells
 from .checked_file import need, numbers, open_checked
 from .errors import UserError, nearest_name
+from .joined_contacts import common, join
 from .units import UNIT_NAMES, Units
 from .words import place_words, printable
 
@@ -46,6 +47,7 @@ GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "piece", "weight")
 # Those that every contact has of its points at the increments, and of its edges.
 STATES = ("pressure", "status")
 EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
+PATTERN = "*"  # in names of contacts: any characters
 NOISE = 1e-9  # of what it is beside: smaller values are rounding
 LOADS_TO = 1e-12  # of the largest load: loads are sums of at most some thousand increments
 LEFT_OUT = 0.01  # of the heat that crosses: as much may be outside of pictures that show heat
@@ -102,16 +104,23 @@ class Contact:
         return unit.replace("^2", "\N{SUPERSCRIPT TWO}") if is_named else ""
 
     def axis(self, along):
-        """Return (name, coordinate of the pairs): x where it grows along the face, else s.
+        """Return (name, coordinate of the pairs): x where it grows along the face, of several
+        interfaces y where that does, else s.
 
-        `along` is "x", "s" or None for the choice made here.
+        `along` is "x", "y", "s" or None for the choice made here.
         """
-        x = self.data["x"]
-        usable = bool(np.all(np.diff(x) > 0.0))
-        if along == "x" and not usable:
-            raise UserError(f"x does not grow along contact '{self.name}': use --along s")
-        name = along or ("x" if usable else "s")
+        if along in ("x", "y") and not self.grows(along):
+            raise UserError(f"{along} does not grow along contact '{self.name}': use --along s")
+        choices = ("x", "y") if PATTERN in self.name else ("x",)
+        name = along or next(filter(self.grows, choices), "s")
         return name, self.data[name]
+
+    def grows(self, name):
+        """Whether a coordinate grows along each piece of the face, and never falls."""
+        places = self.data[name]
+        return bool(np.all(np.diff(places) >= 0.0)) and all(
+            np.all(np.diff(places[piece]) > 0.0) for piece in self.pieces
+        )
 
     def edge_on_axis(self, edge, coordinate):
         """Return zone edges, given as arc length s, on the coordinate of the pairs."""
@@ -321,7 +330,14 @@ class Result:
         return list(self.file["contact"]) if "contact" in self.file else []
 
     def contact(self, name):
-        """Return one contact pair by name."""
+        """Return one contact pair by name, or those that a pattern means as one."""
+        if PATTERN in name:
+            words = ".*".join(map(re.escape, name.split(PATTERN)))
+            found = [self.contact(each) for each in self.contact_names
+                     if re.fullmatch(words, each, re.IGNORECASE)]
+            if found:
+                return Contact(name, join(found), common([each.friction for each in found]),
+                               common([each.pairing for each in found]) or "NODES", found[0].units)
         if name not in self.contact_names:
             known = ", ".join(self.contact_names) or "none"
             hint = nearest_name(name, self.contact_names)

@@ -6,12 +6,13 @@ from string import ascii_lowercase
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from . import style
 from .edge_curves import edge_curves
 from .errors import UserError
 from .overlay import axis_words, file_parts, read_overlays
-from .result import MARKED, OPEN, SLIP, STICK
+from .result import MARKED, OPEN, PATTERN, SLIP, STICK
 from .style import plt
 from .tables import stack_tables, write_table
 from .zone_names import CURVES, name_regions
@@ -22,6 +23,7 @@ CURVE_NAMES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
 LINES = {"edge_contact": "solid", "edge_stick": (0, (3.5, 1.5))}
 WIDTHS = {"edge_contact": 1.0, "edge_stick": 1.8}  # dashes are seen where they lie on the other
 TINTS = ("#FFFFFF", "#DCE8F2", "#FBE9C8")  # of open, slip, stick
+FILLS = ("#FFFFFF", "#7FB2D9", style.ORANGE)
 
 
 def draw(results, options):
@@ -82,7 +84,8 @@ def draw_beside(pictures, overlays):
     figure.legend(handles=list(handles.values()), **style.BELOW, ncols=3,
                   columnspacing=1.4)
     for picture, axes in zip(pictures, panels[0]):
-        name_regions(picture, axes)
+        if not picture.is_joined:
+            name_regions(picture, axes)
     return figure
 
 
@@ -94,6 +97,7 @@ class Picture:
             raise UserError(f"{result.path}: holds no accepted increment")
         self.result, self.contact = result, contact
         self.along, self.coordinate, self.log = along, coordinate, log
+        self.is_joined = PATTERN in contact.name  # its many edges would hide its zones
         load = result.history["load"]
         rising = bool(np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0))
         self.rising = rising
@@ -131,7 +135,8 @@ class Picture:
             ncols=3,
             columnspacing=1.4,
         )
-        name_regions(self, axes)
+        if not self.is_joined:
+            name_regions(self, axes)
         return figure
 
     def draw_panel(self, axes, overlays):
@@ -142,6 +147,8 @@ class Picture:
             )
         self.draw_zones(axes)
         style.mark_judged(axes, self.abscissa, self.result.judged)
+        if self.is_joined:
+            return np.array([])
         self.draw_states(axes)
         for key in CURVES:
             self.draw_edges(axes, key)
@@ -182,12 +189,18 @@ class Picture:
 
     def draw_zones(self, axes):
         """Tint the increments at which all points of a piece are closed alike: no edge inside shows
-        these."""
+        these; of several interfaces every contact point, as wide as half-way to the next ones."""
         load = between(self.abscissa)
         if self.log:
             load = 10.0 ** between(np.log10(self.abscissa))
+        looks = {"norm": BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3), "linewidth": 0.15, "zorder": 0,
+                 "edgecolors": "face"}  # no light seams
         for piece in self.contact.pieces:
             status = self.status[:, piece]
+            if self.is_joined:
+                places = np.clip(between(self.coordinate[piece]), *self.coordinate[piece][[0, -1]])
+                axes.pcolormesh(load, places, status.T, cmap=ListedColormap(FILLS), **looks)
+                continue
             alike = (status == status[:, :1]).all(axis=1) & (status[:, 0] != OPEN)
             if not alike.any():
                 continue
@@ -196,10 +209,7 @@ class Picture:
                 between(self.coordinate[piece])[[0, -1]],
                 np.where(alike, status[:, 0], OPEN)[None, :],
                 cmap=ListedColormap(TINTS),
-                norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
-                edgecolors="face",  # no light seams
-                linewidth=0.15,
-                zorder=0,
+                **looks,
             )
 
     def draw_states(self, axes):
@@ -219,7 +229,12 @@ class Picture:
             axes.plot(self.abscissa[rows], places, color="black", zorder=3, **looks)
 
     def legend_handles(self, overlays):
-        """Return the legend's entries: curves, pair states, digitised figures."""
+        """Return the legend's entries: curves, pair states, digitised figures; of several interfaces
+        their zones."""
+        if self.is_joined:
+            return [Patch(facecolor=FILLS[state], edgecolor="black", lw=0.4,
+                          label=" ".join(self.names[state]))
+                    for state in self.names if np.any(self.status == state)]
         handles = [
             Line2D([], [], color="black", ls=LINES[key], lw=WIDTHS[key], label=CURVE_NAMES[key])
             for key in CURVES

@@ -4,7 +4,7 @@ module name_index
    use text, only: string_type, to_upper
    implicit none
    private
-   public :: name_index_type
+   public :: name_index_type, is_pattern, matches
 
    integer, parameter :: first_capacity = 64
 
@@ -19,6 +19,7 @@ module name_index
       procedure :: add
       procedure :: find
       procedure :: known
+      procedure :: matching
    end type name_index_type
 
 contains
@@ -53,6 +54,44 @@ contains
          position = self%before(position)
       end do
    end function find
+
+   !> Whether a name is a pattern of names.
+   pure logical function is_pattern(name)
+      character(*), intent(in) :: name         !! as written
+
+      is_pattern = index(name, '*') > 0
+   end function is_pattern
+
+   !> Whether a name is what a pattern says, in which * is any characters, or the pattern itself.
+   pure recursive function matches(pattern, name) result(fits)
+      character(*), intent(in) :: pattern      !! in upper case, as the name
+      character(*), intent(in) :: name
+      logical :: fits
+      integer :: k, star
+
+      star = index(pattern, '*')
+      if (star == 0) then
+         fits = pattern == name
+         return
+      end if
+      fits = index(name, pattern(:star - 1)) == 1
+      if (.not. fits) return
+      do k = star, len(name) + 1
+         fits = matches(pattern(star + 1:), name(k:))
+         if (fits) return
+      end do
+   end function matches
+
+   !> Positions of the names that a pattern means, in their order.
+   pure function matching(self, pattern) result(positions)
+      class(name_index_type), intent(in) :: self
+      character(*), intent(in) :: pattern      !! in any case
+      integer, allocatable :: positions(:)
+      integer :: i
+
+      positions = pack([(i, i=1, self%count)], [(matches(to_upper(pattern), self%names(i)%value), &
+         i=1, self%count)])
+   end function matching
 
    !> All names, in upper case.
    pure function known(self) result(names)

@@ -10,12 +10,13 @@ module listing
    use file_calls, only: check_in_place
    use listing_head, only: checks, ending, print_model, summary_block
    use listing_increments, only: print_attempts, print_balances, print_body_errors, &
-      print_increment, print_interface, print_interface_errors, print_maxima
+      print_increment, print_interface, print_interface_errors, print_interfaces, print_maxima
    use listing_tables, only: print_contact_table, print_iterations, print_requested, print_verdicts
    use listing_text, only: page_type, page_width, to_right
    use materials, only: follows_temperature
    use mesh_bodies, only: body_name
    use model, only: follows_temperatures, model_type
+   use model_words, only: has_many
    use open_files, only: empty_file, lock_file, unlock_file, write_to_file
    use records, only: increment_record_type
    use run_sizes, only: run_size_type
@@ -82,7 +83,7 @@ contains
       self%is_draft = is_draft
       if (.not. is_draft) call empty_file(self%descriptor, self%path, error)
       if (allocated(error)) return
-      allocate(self%diagrams(size(interfaces)))
+      allocate(self%diagrams(merge(size(interfaces), 0, lists_points(model))))
       call print_heading(self%page, model, run)
       call self%page%title('SUMMARY')
       self%summary_start = self%page%length
@@ -94,6 +95,17 @@ contains
       call self%page%title('INCREMENTS')
       call write_text(self, error)
    end subroutine open_listing
+
+   !> Whether zone diagrams and contact points that never approach are listed: of a few interfaces,
+   !> or where the deck asks for contact points.
+   pure logical function lists_points(model)
+      type(model_type), intent(in) :: model
+      integer :: i
+
+      lists_points = .not. has_many(size(model%contacts)) .or. &
+         any(model%steps%contact_print_frequency > 0) .or. &
+         any([(allocated(model%steps(i)%contact_print_points%times), i=1, size(model%steps))])
+   end function lists_points
 
    !> Whether the file holds anything of this run.
    pure logical function is_begun(self)
@@ -123,11 +135,20 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
+      logical :: has_tables
 
+      has_tables = table_is_due(model%steps(record%step)%contact_print_frequency, &
+         model%steps(record%step)%contact_print_points, record, model)
       call self%summary%take(model, interfaces, record)
       call print_increment(self%page, record)
-      do i = 1, size(interfaces)
-         call print_interface(self%page, interfaces(i), record%contacts(i))
+      if (has_many(size(interfaces)) .and. .not. (has_tables .or. record%last_of_step)) then
+         call print_interfaces(self%page, interfaces, record%contacts)
+      else
+         do i = 1, size(interfaces)
+            call print_interface(self%page, interfaces(i), record%contacts(i))
+         end do
+      end if
+      do i = 1, size(self%diagrams)
          call self%diagrams(i)%add(record, record%contacts(i)%contact_state)
       end do
       call print_balances(self%page, record, model%steps(record%step)%analysis)
@@ -142,8 +163,7 @@ contains
          end do
       end if
       call print_requested(self%page, record, model)
-      if (table_is_due(model%steps(record%step)%contact_print_frequency, &
-         model%steps(record%step)%contact_print_points, record, model)) then
+      if (has_tables) then
          do i = 1, size(interfaces)
             call print_contact_table(self%page, interfaces(i), record%contacts(i), &
                model%mesh%node_number)
@@ -204,15 +224,22 @@ contains
 
       if (size(verifier%outcomes) > 0) call print_verdicts(self%page, model%verifications, &
          verifier%outcomes)
-      do i = 1, size(interfaces)
-         call self%diagrams(i)%print(self%page, interfaces(i))
-      end do
+      if (lists_points(model)) then
+         do i = 1, size(interfaces)
+            call self%diagrams(i)%print(self%page, interfaces(i))
+         end do
+         call print_unapproached(self%page, model%mesh%node_number, interfaces, self%summary)
+      else
+         call self%page%title('ZONE DIAGRAMS')
+         call self%page%wrapped('   ', '*CONTACT PRINT prints those of '// &
+            to_text(size(interfaces))//' interfaces. /contact of the result file has all '// &
+            'contact points at all increments; post/plot zones draws them.')
+      end if
       call self%page%list('REQUESTED ACCURACY', run%accuracy%targets)
       if (size(run%accuracy%rounds) > 0) call self%page%line('')
       do i = 1, size(run%accuracy%rounds)
          call self%page%line('  '//run%accuracy%rounds(i)%value)
       end do
-      call print_unapproached(self%page, model%mesh%node_number, interfaces, self%summary)
       warnings = [model%warnings, run%warnings]
       call self%page%list('WARNINGS', warnings)
       if (size(warnings) == 0) then

@@ -6,7 +6,8 @@ module listing_head
    use interface_warnings, only: gap_range
    use listing_text, only: page_type, page_width
    use model, only: model_type
-   use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
+   use model_words, only: alike_words, closed_law_words, first_alike, friction_heat_words, &
+      friction_words, from_to, has_many, &
       open_law_words, open_words, overlap_words, pairing_words, points_words
    use run_summaries, only: in_listing, run_entries, run_entry_type, run_summary_type
    use steps, only: solves_heat
@@ -78,7 +79,8 @@ contains
          call append(wrapped, rest)
       end do
       block = ''
-      do i = 1, run_lines + summary%most_lines(model) + more_lines*max(size(model%contacts), 1)
+      do i = 1, run_lines + summary%most_lines(model) + more_lines* &
+         max(merge(1, size(model%contacts), has_many(size(model%contacts))), 1)
          line = ''
          if (i <= size(wrapped)) line = wrapped(i)%value
          block = block//line//new_line('a')
@@ -110,37 +112,49 @@ contains
       type(page_type), intent(inout) :: page
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
-      character(:), allocatable :: pieces
-      logical :: has_heat
-      integer :: i
+      type(page_type) :: blocks(size(interfaces))
+      type(string_type) :: texts(size(interfaces))
+      integer :: first(size(interfaces)), i
 
-      has_heat = any(solves_heat(model%steps%analysis))
       do i = 1, size(interfaces)
+         call print_interface(blocks(i), model, interfaces(i), i)
+         call blocks(i)%take(texts(i)%value)
+      end do
+      first = first_alike(texts)
+      do i = 1, size(interfaces)
+         if (first(i) /= i) cycle
          call page%line('')
-         call page%line('   INTERFACE '//interfaces(i)%name)
-         call print_entry(page, 'pairing', pairing_words(model%contacts(i)%pairing, interfaces(i)))
-         pieces = ''
-         if (allocated(interfaces(i)%cuts)) pieces = ', in '// &
-            to_text(size(interfaces(i)%cuts) + 1)//' pieces of the faces'
-         call print_entry(page, points_words(interfaces(i)), &
-            to_text(size(interfaces(i)%slave))//pieces)
-         if (len(open_words(interfaces(i))) > 0) call print_entry(page, 'note', &
-            open_words(interfaces(i)))
-         call print_entry(page, 'length', to_text(interfaces(i)%length()))
-         call print_entry(page, 'initial gaps', &
-            from_to(gap_range(model%mesh, interfaces(i))))
-         associate (interaction => model%interactions(model%contacts(i)%interaction))
-            call print_entry(page, 'coefficient of friction', friction_words(interaction%friction))
-            if (interaction%overlap%is_soft()) call print_entry(page, 'pressure', &
-               overlap_words(interaction%overlap))
-            if (.not. has_heat) cycle
-            if (makes_friction_heat(model%interactions, model%contacts(i:i))) call print_entry( &
-               page, 'heat of friction', friction_heat_words(interaction%heat))
-            call print_entry(page, 'conductance, open', open_law_words(interaction%law))
-            call print_entry(page, 'conductance, closed', closed_law_words(interaction%law))
-         end associate
+         call page%line('   INTERFACE '//interfaces(i)%name//alike_words(first, i))
+         call page%append(texts(i)%value)
       end do
    end subroutine print_interfaces
+
+   subroutine print_interface(page, model, points, i)
+      type(page_type), intent(inout) :: page
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: i                       ! number of the interface
+      character(:), allocatable :: pieces
+
+      call print_entry(page, 'pairing', pairing_words(model%contacts(i)%pairing, points))
+      pieces = ''
+      if (allocated(points%cuts)) pieces = ', in '//to_text(size(points%cuts) + 1)// &
+         ' pieces of the faces'
+      call print_entry(page, points_words(points), to_text(size(points%slave))//pieces)
+      if (len(open_words(points)) > 0) call print_entry(page, 'note', open_words(points))
+      call print_entry(page, 'length', to_text(points%length()))
+      call print_entry(page, 'initial gaps', from_to(gap_range(model%mesh, points)))
+      associate (interaction => model%interactions(model%contacts(i)%interaction))
+         call print_entry(page, 'coefficient of friction', friction_words(interaction%friction))
+         if (interaction%overlap%is_soft()) call print_entry(page, 'pressure', &
+            overlap_words(interaction%overlap))
+         if (.not. any(solves_heat(model%steps%analysis))) return
+         if (makes_friction_heat(model%interactions, model%contacts(i:i))) call print_entry( &
+            page, 'heat of friction', friction_heat_words(interaction%heat))
+         call print_entry(page, 'conductance, open', open_law_words(interaction%law))
+         call print_entry(page, 'conductance, closed', closed_law_words(interaction%law))
+      end associate
+   end subroutine print_interface
 
    subroutine print_entry(page, name, value)
       type(page_type), intent(inout) :: page

@@ -19,11 +19,11 @@ module listing_increments
       increment_record_type, interface_errors_type
    use reported_quantities, only: quantities
    use steps, only: solves_heat, solves_mechanics
-   use summary, only: corner_words, place_words, words_of
+   use summary, only: corner_words, largest_at, place_words, words_of
    use text, only: append, string_type, to_text, with_decimals
    implicit none
    private
-   public :: print_increment, print_attempts, print_interface, print_balances
+   public :: print_increment, print_attempts, print_interface, print_interfaces, print_balances
    public :: print_body_errors, print_interface_errors, print_maxima
 
    character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'increments', &
@@ -97,6 +97,36 @@ contains
          to_text(zones(2))//'   III '//to_text(zones(3))//edges)
       call page%line('   '//sums)
    end subroutine print_interface
+
+   !> Prints the zones of many interfaces, and the largest sums with the interfaces that have them.
+   subroutine print_interfaces(page, interfaces, contacts)
+      type(page_type), intent(inout) :: page                  !! of the listing
+      type(contact_points_type), intent(in) :: interfaces(:)  !! all interfaces
+      type(contact_record_type), intent(in) :: contacts(:)    !! their states
+      type(quantity_type) :: quantity
+      character(:), allocatable :: line
+      real(dp) :: value(1)
+      integer :: i, q, zones(3)
+
+      zones = 0
+      do i = 1, size(contacts)
+         zones = zones + zone_counts(contacts(i)%contact_state)
+      end do
+      call page%line('   '//to_text(size(interfaces))//' interfaces   I '//to_text(zones(1))// &
+         '   II '//to_text(zones(2))//'   III '//to_text(zones(3)))
+      line = 'largest'
+      do q = 1, size(estimated)
+         if (estimated(q)%resolution > 0.0_dp) cycle
+         quantity = estimated(q)
+         i = largest_at(quantity%name, contacts)
+         if (i == 0) cycle
+         if (quantity%needs == needs_heat .and. .not. allocated(contacts(i)%heat_flux)) cycle
+         value = contact_values(quantity%name, contacts(i))
+         line = line//'   '//words_of(quantity%name)//' '//to_text(value(1))//' ('// &
+            interfaces(i)%name//')'
+      end do
+      call page%wrapped('   ', line)
+   end subroutine print_interfaces
 
    !> The quantities of an increment that need the same, with their labels.
    pure function history_line(needs, record) result(line)

@@ -17,6 +17,9 @@ module model_words
    public :: expansion_words, material_words, friction_words, friction_heat_words, overlap_words
    public :: open_law_words, closed_law_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
+   public :: has_many, first_alike, alike_words
+
+   integer, parameter :: most_told = 20   !! interfaces, bodies or sections that are told one by one
 
 contains
 
@@ -135,6 +138,39 @@ contains
          points%is_open_corner))// &
          ' slave corners have no master opposite and stay open'
    end function open_words
+
+   !> Whether interfaces, bodies or sections are too many to be told one by one.
+   pure logical function has_many(parts)
+      integer, intent(in) :: parts      !! number of them
+
+      has_many = parts > most_told
+   end function has_many
+
+   !> The first interface, or section, with each description; of a few each has its own.
+   pure function first_alike(texts) result(first)
+      type(string_type), intent(in) :: texts(:)    !! descriptions of all
+      integer :: first(size(texts))
+      integer :: i, k
+
+      do i = 1, size(texts)
+         first(i) = i
+         if (.not. has_many(size(texts))) cycle
+         do k = 1, i - 1
+            if (first(k) == k .and. texts(k)%value == texts(i)%value) exit
+         end do
+         first(i) = k
+      end do
+   end function first_alike
+
+   !> How many further ones have the description of one.
+   pure function alike_words(first, i) result(words)
+      integer, intent(in) :: first(:)              !! of first_alike
+      integer, intent(in) :: i                     !! which one
+      character(:), allocatable :: words           !! such as ' and 19 more like it', or nothing
+
+      words = ''
+      if (count(first == i) > 1) words = ' and '//to_text(count(first == i) - 1)//' more like it'
+   end function alike_words
 
    !> The constants of a material.
    pure function material_words(material) result(words)

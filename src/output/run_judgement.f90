@@ -11,13 +11,14 @@ module run_judgement
    use state_tables, only: integers, logicals, reals, state_table_type
    use steps, only: solves_heat, solves_mechanics
    use element_elasticity, only: largest_deformation, of_strain
-   use text, only: append, percent, string_type, to_text
+   use text, only: append, counted, percent, string_type, to_text
    implicit none
    private
    public :: run_judgement_type, warning_summary_type
 
    !> Largest strain and rotation for which the linear theory holds, and where NLGEOM is asked for
    real(dp), parameter :: small = 0.1_dp, small_with_nlgeom = 0.05_dp
+   integer, parameter :: most_named = 5   !! contact pairs that never close
    real(dp), parameter :: unmoved = 1.0e-12_dp     !! part of the extent that is no displacement
    real(dp), parameter :: unheated = 1.0e-12_dp    !! part of a temperature that is no change
 
@@ -145,11 +146,16 @@ contains
          if (.not. self%moves) call append(lines, 'no load acts: all displacements are 0 in '// &
             'all increments')
          do i = 1, size(interfaces)
-            if (self%closes(i)) cycle
+            if (self%closes(i) .or. count(.not. self%closes(:i)) > most_named) cycle
             call append(lines, &
                'contact pair '//interfaces(i)%name//' never closes: its smallest '// &
                'gap is '//to_text(self%smallest_gap(i)))
          end do
+         associate (others => count(.not. self%closes) - most_named)
+            if (others > 0) call append(lines, counted(others, 'further contact pair')// &
+               ' never '//trim(merge('closes', 'close ', others == 1))//'; their gaps are in '// &
+               '/contact of the result file')
+         end associate
       end if
       if (any(solves_heat(model%steps%analysis)) .and. .not. self%warms) call append(lines, &
          'no heat load acts: all temperatures keep their initial values in all increments')

@@ -5,7 +5,8 @@ module run_summaries
    use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp, long
    use model, only: model_type
-   use model_words, only: expansion_words, from_to, material_words, section_words, step_words
+   use model_words, only: alike_words, expansion_words, first_alike, from_to, material_words, &
+      section_words, step_words
    use run_sizes, only: run_seconds_type, run_size_type
    use text, only: or_blank, string_type, to_text
    implicit none
@@ -86,6 +87,7 @@ contains
       type(model_type), intent(in) :: model
       type(run_entry_type), allocatable :: entries(:)
       type(string_type), allocatable :: lines(:)
+      integer, allocatable :: first(:)
       integer :: i
 
       allocate (entries(0))
@@ -120,8 +122,10 @@ contains
       if (run%has_biot) call add(entries, in_listing, 'contact Biot number', &
          from_to(run%contact_biot))
       lines = section_words(model)
+      first = first_alike(lines)
       do i = 1, size(lines)
-         call add(entries, in_both, 'section '//to_text(i), lines(i)%value)
+         if (first(i) == i) call add(entries, in_both, 'section '//to_text(i)// &
+            alike_words(first, i), lines(i)%value)
       end do
       do i = 1, size(model%materials)
          call add(entries, in_both, 'material '//model%materials(i)%name, &

@@ -11,6 +11,7 @@ module summary
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
+   use model_words, only: has_many
    use no_estimates, only: mark_of, no_reason, reason_inside_step
    use quantity_types, only: needs_heat, quantity_type
    use records, only: body_errors_type, contact_record_type, increment_record_type, &
@@ -19,7 +20,7 @@ module summary
    use unit_labels, only: unit_label
    implicit none
    private
-   public :: summary_type, words_of, place_words, corner_words
+   public :: summary_type, words_of, place_words, corner_words, largest_at
 
    integer, parameter :: most_folds = 8     !! that are listed
    integer, parameter :: most_corners = 3   !! that are named
@@ -74,6 +75,9 @@ contains
 
       if (.not. allocated(self%steps)) allocate (self%steps(0))
       do i = 1, merge(size(interfaces), 0, record%last_of_step .and. size(model%steps) > 1)
+         if (has_many(size(interfaces))) then
+            if (i /= largest_at('peak_pressure', record%contacts)) cycle
+         end if
          call append(self%steps, step_line(interfaces(i), record%contacts(i), record))
       end do
       self%increment = record%increment
@@ -99,6 +103,20 @@ contains
          if (allocated(fields%stress)) self%displacement = maxval(norm2(fields%displacement, dim=1))
       end associate
    end subroutine take
+
+   !> The interface with the largest magnitude of a quantity; 0 where none has a value.
+   pure integer function largest_at(name, contacts)
+      character(*), intent(in) :: name                        !! of a quantity of interfaces
+      type(contact_record_type), intent(in) :: contacts(:)    !! all interfaces
+      real(dp) :: values(size(contacts)), value(1)
+      integer :: i
+
+      do i = 1, size(contacts)
+         value = contact_values(name, contacts(i))
+         values(i) = abs(value(1))
+      end do
+      largest_at = maxloc(values, dim=1, mask=.not. ieee_is_nan(values))
+   end function largest_at
 
    !> An interface at the end of a step.
    function step_line(points, contact, record) result(line)
@@ -128,14 +146,18 @@ contains
    pure integer function most_lines(model)
       type(model_type), intent(in) :: model
 
-      associate (interfaces => size(model%contacts), steps => size(model%steps))
-         most_lines = 2 + interfaces*(1 + size(estimated))
+      integer :: interfaces, told
+
+      interfaces = size(model%contacts)
+      told = merge(1, interfaces, has_many(interfaces))
+      associate (steps => size(model%steps), bodies => model%mesh%body_count)
+         most_lines = 3 + told*(1 + size(estimated))
          if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
-         if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + interfaces*steps
+         if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
+         ! Some of a body's lines are wrapped.
+         if (model%estimates_errors) most_lines = most_lines + &
+            merge(1, bodies, has_many(bodies))*2*(1 + size(maxima))
       end associate
-      ! Some of a body's lines are wrapped.
-      if (model%estimates_errors) most_lines = most_lines + &
-         model%mesh%body_count*2*(1 + size(maxima))
    end function most_lines
 
    !> Adds when that increment was and where a branch turned, then each interface with a line for
@@ -156,15 +178,23 @@ contains
       call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
       if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'// &
          trim(merge('s', ' ', size(self%folds) > 1))//' '//listed(self%folds))
-      do i = 1, size(interfaces)
-         call append(lines, interfaces(i)%name)
-         call add_quantities(self, model, interfaces(i), i, lines)
-      end do
+      if (has_many(size(interfaces))) then
+         call add_largest(self, model, interfaces, lines)
+      else
+         do i = 1, size(interfaces)
+            call append(lines, interfaces(i)%name)
+            call add_quantities(self, model, interfaces(i), i, lines)
+         end do
+      end if
       if (size(interfaces) == 0) call add_fields(self, model, lines)
       if (allocated(self%body_errors)) then
-         do i = 1, size(self%body_errors)
-            call add_maxima(model, self%body_errors(i), i, lines)
-         end do
+         if (has_many(size(self%body_errors))) then
+            call add_largest_maxima(model, self%body_errors, lines)
+         else
+            do i = 1, size(self%body_errors)
+               call add_maxima(model, self%body_errors(i), i, lines)
+            end do
+         end if
       end if
       if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines
@@ -186,6 +216,28 @@ contains
       end do
       if (size(errors%corners) > 0) call append(lines, '  '//corner_words(model%mesh, errors))
    end subroutine add_maxima
+
+   !> The largest maxima of many bodies, and how many have singular corners.
+   subroutine add_largest_maxima(model, errors, lines)
+      type(model_type), intent(in) :: model
+      type(body_errors_type), intent(in) :: errors(:)      ! of all bodies
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      real(dp) :: values(size(errors))
+      integer :: b, q
+
+      call append(lines, 'largest in '//to_text(size(errors))//' bodies')
+      do q = 1, size(maxima)
+         values = [(errors(b)%value(q), b=1, size(errors))]
+         b = maxloc(values, dim=1, mask=.not. ieee_is_nan(values))
+         if (b > 0) call append(lines, summary_line(trim(maxima(q)%label), values(b), &
+            bound_words(errors(b), q), unit_label(maxima(q)%unit, model%units), 'body '// &
+            to_text(b)//', '//place_words(model%mesh, errors(b)%node(q))))
+      end do
+      associate (cornered => count([(size(errors(b)%corners) > 0, b=1, size(errors))]))
+         if (cornered > 0) call append(lines, '  '//to_text(cornered)//' bodies have singular '// &
+            'corners, where stress has no bound; the listing names them')
+      end associate
+   end subroutine add_largest_maxima
 
    !> Where the maxima are.
    pure function place_words(mesh, node) result(words)
@@ -272,6 +324,31 @@ contains
          to_text(self%load)
       if (allocated(self%load_factor)) words = words//', load factor '//to_text(self%load_factor)
    end function when
+
+   !> The largest quantities of many interfaces, each with its interface.
+   subroutine add_largest(self, model, interfaces, lines)
+      class(summary_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:)
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      character(:), allocatable :: bound
+      real(dp) :: values(1)
+      integer :: i, q
+
+      call append(lines, 'largest in '//to_text(size(interfaces))//' interfaces; /contact of '// &
+         'the result file has every one, the listing those at the end of each step')
+      do q = 1, size(estimated)
+         if (estimated(q)%resolution > 0.0_dp) cycle   ! an edge, which is at its own face
+         i = largest_at(estimated(q)%name, self%contacts)
+         if (i == 0) cycle
+         if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
+         values = contact_values(estimated(q)%name, self%contacts(i))
+         bound = mark_of(reason_inside_step(model))
+         if (allocated(self%errors)) bound = bound_words(self%errors(i), q)
+         call append(lines, summary_line(words_of(estimated(q)%name), values(1), bound, &
+            unit_label(estimated(q)%unit, model%units), interfaces(i)%name))
+      end do
+   end subroutine add_largest
 
    subroutine add_quantities(self, model, points, i, lines)
       class(summary_type), intent(in) :: self

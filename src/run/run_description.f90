@@ -13,12 +13,13 @@ module run_description
    use kinds, only: dp
    use messages, only: print_line
    use model, only: model_type
-   use model_words, only: closed_law_words, friction_heat_words, friction_words, from_to, &
+   use model_words, only: alike_words, closed_law_words, first_alike, friction_heat_words, &
+      friction_words, from_to, &
       open_law_words, open_words, overlap_words, pairing_words, points_words
    use run_summaries, only: in_check, run_entries, run_entry_type, run_summary_type
    use simulation, only: simulation_type
    use steps, only: analysis_coupled, solves_heat, solves_mechanics
-   use text, only: counted, to_text
+   use text, only: counted, string_type, to_text
    use utf8, only: character_count
    use version, only: program_version
    implicit none
@@ -179,9 +180,10 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(run_summary_type), intent(in) :: run
       type(run_entry_type), allocatable :: entries(:)
-      type(contact_points_type) :: points
+      type(contact_points_type) :: points(size(simulation%bodies%interfaces))
+      type(string_type), dimension(size(points)) :: gaps, pairings
       character(:), allocatable :: words
-      integer :: i
+      integer :: first(size(points)), i
 
       call print_line(output_unit, run%deck_path//': no errors, '// &
          counted(size(model%warnings), 'warning'))
@@ -200,12 +202,20 @@ contains
                open_law_words(interaction%law)//'; closed: '//closed_law_words(interaction%law))
          end associate
       end do
-      do i = 1, size(simulation%bodies%interfaces)
-         call simulation%bodies%view(i, points)
-         call line('contact pair '//points%name, to_text(size(points%slave))// &
-            ' '//points_words(points)//', initial gaps '//from_to(gap_range(model%mesh, points)))
-         call line('pairing of '//points%name, pairing_words(model%contacts(i)%pairing, points))
-         if (len(open_words(points)) > 0) call line('note on '//points%name, open_words(points))
+      do i = 1, size(points)
+         call simulation%bodies%view(i, points(i))
+         gaps(i)%value = to_text(size(points(i)%slave))//' '//points_words(points(i))// &
+            ', initial gaps '//from_to(gap_range(model%mesh, points(i)))
+         pairings(i)%value = pairing_words(model%contacts(i)%pairing, points(i))
+      end do
+      first = first_alike([(string_type(gaps(i)%value//pairings(i)%value//open_words(points(i))// &
+         model%interactions(model%contacts(i)%interaction)%name), i=1, size(points))])
+      do i = 1, size(points)
+         if (first(i) /= i) cycle
+         call line('contact pair '//points(i)%name//alike_words(first, i), gaps(i)%value)
+         call line('pairing of '//points(i)%name, pairings(i)%value)
+         if (len(open_words(points(i))) > 0) call line('note on '//points(i)%name, &
+            open_words(points(i)))
       end do
       if (run%has_biot) call line('contact Biot number', from_to(run%contact_biot)// &
          ' at the initial gaps')

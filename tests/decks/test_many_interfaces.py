@@ -66,6 +66,51 @@ def test_a_rod_of_many_pellets_has_a_sparse_tail(tmp_path):
         assert file["run"].attrs["solver"] == "SKYLINE, sparse tail"
 
 
+def test_the_listing_of_many_interfaces_tells_the_largest_and_where_the_rest_is(tmp_path):
+    """Every interface only at the end of the step; contact points where *CONTACT PRINT asks."""
+    pellets, interfaces = 15, 29
+    cards = rod(pellets)
+    process = run("run", deck := write(tmp_path / "short.inp", cards), "--out", tmp_path)
+    assert len(process.stdout.splitlines()) < 20
+    listing = deck.with_suffix(".lst").read_text()
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        contact = file["contact"]
+        for name in ("normal_force", "shear_force", "heat_rate"):
+            values = {pair: contact[pair][name][:] for pair in contact}
+            for increment, head in ((0, "INCREMENT 1 "), (-1, "SUMMARY")):
+                block = listing.split(head)[1].split("INCREMENT ")[0]
+                line = next(line for line in block.splitlines() if name.replace("_", " ") in line)
+                told = line.split(name.replace("_", " "))[1].replace("(", " ").replace(")", "").split()
+                found = values[told[1 if increment == 0 else -1]][increment]
+                assert abs(found) == max(abs(each[increment]) for each in values.values())
+                assert float(told[0]) == pytest.approx(found, rel=1e-5)
+        states = np.concatenate([contact[pair]["status"][0] for pair in contact])
+    counts = "   ".join(f"{zone} {np.sum(states == k)}" for k, zone in enumerate(("I", "II", "III")))
+    assert f"{interfaces} interfaces   {counts}" in listing
+    blocks = listing.split("INCREMENT ")
+    assert len(blocks[1].splitlines()) < 12
+    assert blocks[-1].count("edge of contact") == interfaces
+    assert listing.count("   INTERFACE ") == 2
+    assert "ZONE DIAGRAM OF" not in listing
+    assert "*CONTACT PRINT" in listing.split("ZONE DIAGRAMS")[1].split("WARNINGS")[0]
+    place = cards.index("*END STEP")
+    deck = write(tmp_path / "long.inp", [*cards[:place], "*CONTACT PRINT, FREQUENCY=2", *cards[place:]])
+    solve(deck)
+    listing = deck.with_suffix(".lst").read_text()
+    assert listing.count("ZONE DIAGRAM OF") == interfaces
+    assert listing.count("CONTACT POINTS OF") == 2 * interfaces
+
+
+def test_listing_and_result_grow_with_the_rod(tmp_path):
+    sizes = {}
+    for pellets in (20, 40):
+        deck = write(tmp_path / f"{pellets}.inp", rod(pellets))
+        solve(deck)
+        sizes[pellets] = [deck.with_suffix(kind).stat().st_size for kind in (".lst", ".vtkhdf")]
+    # The trees of HDF5 that find the groups of interfaces grow a little faster than the file.
+    assert all(large < 2.05 * small for small, large in zip(sizes[20], sizes[40], strict=True)), sizes
+
+
 def test_many_pairs_that_slide_too_far_are_warned_of_in_six_lines(tmp_path):
     deck = write(tmp_path / "rod.inp", rod(12, expansion=2e-4, friction=0.0))
     process = run("run", "--quiet", deck, "--out", tmp_path)
@@ -75,6 +120,13 @@ def test_many_pairs_that_slide_too_far_are_warned_of_in_six_lines(tmp_path):
     assert named
     assert len(named) <= 4 * 5
     assert further
+
+
+def test_many_pairs_that_never_close_are_warned_of_in_six_lines(tmp_path):
+    deck = write(tmp_path / "rod.inp", rod(12, expansion=1e-9))
+    told = [line for line in run("run", "--quiet", deck, "--out", tmp_path).stderr.splitlines() if " never " in line]
+    assert len(told) == 6
+    assert "7 further contact pairs never close" in told[-1]
 
 
 def test_newtons_method_follows_where_mixing_fails(tmp_path):

@@ -13,7 +13,7 @@ from physics import DECKS  # noqa: F401  puts tests/reference on the path
 import conduction
 import crack
 import friction_strip
-import fuel_rod
+import fuel_rod as rings
 import hot_tubes
 import lame
 import tables
@@ -77,7 +77,7 @@ def roller():
 
 def fuel_pellet():
     """Free expansion, balances; the rod over its radius, without the ends of the pellets."""
-    rod = fuel_rod.example()
+    rod = rings.example()
     heat = 0.6 * pi * 4.1**2 * 30
     strain = tables.thermal_strain(rod.pellet.expansion, 20.0, 20.0, 300.0)
     young = tables.value(rod.pellet.young, 300.0)
@@ -92,8 +92,19 @@ def fuel_pellet():
         ("NT", "TUBE.RIGHT", "LAST"): state["outside"]}
 
 
+def fuel_rod():
+    """Free expansion and the spring, balances."""
+    power = [float(row[2]) for row in data_cards(EXAMPLES / "fuel_rod.inp", "*DFLUX")]
+    assert len(power) == 20
+    gap = 0.015 + 280 * (6e-6 * 4.115 - 1.03e-5 * 4.1) - 4.1 * 0.316 * 2 / 1.8e5
+    heat = sum(power) * pi * 4.1**2 * 10
+    return {("gap", "GAP-PELLET-1.SIDE", "1."): gap, ("gap", "GAP-PELLET-20.SIDE", "1."): gap,
+            ("normal_force", "END-PELLET-2.BOTTOM", "1."): 2 * pi * 4.1**2,
+            ("heat_in", "", "LAST"): heat, ("heat_out", "", "LAST"): heat}
+
+
 def test_tables_of_the_fuel_pellet_are_those_of_the_formulas():
-    rod = fuel_rod.example()
+    rod = rings.example()
     elastic = [[(young, ring.poisson, t) for young, t in ring.young]
                for ring in (rod.pellet, rod.tube)]
     expected = {"*ELASTIC": elastic[0] + elastic[1], "*CONDUCTIVITY": rod.oxide + rod.wall,

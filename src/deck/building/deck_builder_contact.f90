@@ -8,14 +8,17 @@ module deck_builder_contact
       friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces
    use deck_builder_interactions, only: build_friction
    use deck_builder_rigid, only: need_faces
-   use deck_context, only: deck_type
+   use deck_context, only: deck_type, place_list_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count, is_keyword
+   use facing_faces, only: find_facing
    use kinds, only: dp
-   use text, only: read_real, to_text, to_upper
+   use mesh, only: surface_type
+   use name_index, only: is_pattern, matches
+   use text, only: counted, read_real, to_text, to_upper
    implicit none
    private
-   public :: build_contacts, build_ties, find_contact, build_contact_change
+   public :: build_contacts, build_ties, build_contact_change
 
 contains
 
@@ -23,60 +26,142 @@ contains
    subroutine build_contacts(deck)
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
-      type(contact_definition_type) :: common
-      character(:), allocatable :: text
+      type(contact_definition_type) :: contact
+      character(:), allocatable :: master, slave, text
+      integer, allocatable :: contacts(:)
       real(dp) :: value
-      integer :: i, k, master, n, slave
+      integer :: i, k, n
 
       places = cards_of(deck%cards, 'CONTACT PAIR')
-      allocate (deck%model%contacts(data_count(deck%cards, places)))
-      n = 0
+      allocate (deck%model%contacts(0))
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
-            call read_parameters(card, deck, common)
+            call read_parameters(card, deck, contact)
             do i = 1, size(card%data)
-               n = n + 1
-               deck%model%contacts(n) = common
-               call read_faces(card, card%data(i), deck, deck%model%contacts(n))
-               call check_name(card, deck, deck%model%contacts(:n))
+               if (is_pattern(card%data(i)%text(1)) .or. is_pattern(card%data(i)%text(2))) then
+                  call add_matching(card, card%data(i), contact, deck)
+               else
+                  call read_faces(card, card%data(i), deck, contact)
+                  call add_contact(card, .false., contact, deck)
+               end if
             end do
          end associate
       end do
       places = cards_of(deck%cards, 'CLEARANCE')
       do n = 1, size(places)
          associate (card => deck%cards%keywords(places(n)))
-            call deck%need_named(card, 'MASTER', 'surface', master)
-            call deck%need_named(card, 'SLAVE', 'surface', slave)
+            call need_parameter(card, 'MASTER', deck, master)
+            call need_parameter(card, 'SLAVE', deck, slave)
             call need_parameter(card, 'VALUE', deck, text)
             value = 0.0_dp
+            call find_contacts([card%place_of('SLAVE'), card%place_of('MASTER')], slave, master, &
+               deck, contacts)
             call take_parameter(card, 'VALUE', deck, value)
-            call find_contact(slave, master, card%place, deck, i)
-            if (i == 0) cycle
-            associate (contact => deck%model%contacts(i))
-               if (contact%has_clearance) call deck%error(card%place, 'the clearance of '// &
-                  'contact pair '//contact%name//' is given twice')
-               contact%has_clearance = .true.
-               contact%clearance = value
-            end associate
+            do i = 1, size(contacts)
+               associate (contact => deck%model%contacts(contacts(i)))
+                  if (contact%has_clearance) call deck%error(card%place, 'the clearance of '// &
+                     'contact pair '//contact%name//' is given twice')
+                  contact%has_clearance = .true.
+                  contact%clearance = value
+               end associate
+            end do
          end associate
       end do
    end subroutine build_contacts
 
-   !> The interface of two surfaces; 0 after an error, and where a surface is 0.
-   subroutine find_contact(slave, master, place, deck, contact)
-      integer, intent(in) :: slave, master                   !! surfaces
-      type(place_type), intent(in) :: place                  !! where they are named
+   !> Adds an interface for each slave surface that is opposite some master, where names of a data
+   !> card are patterns. Its master are those faces that are opposite.
+   subroutine add_matching(card, data, common, deck)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: data
+      type(contact_definition_type), intent(in) :: common
       type(deck_type), intent(inout) :: deck
-      integer, intent(out) :: contact
+      type(contact_definition_type) :: contact
+      type(surface_type) :: part
+      character(:), allocatable :: left_out
+      integer, allocatable :: masters(:), slaves(:)
+      integer, parameter :: most_named = 5
+      integer :: chosen, i, left, pairs
 
-      contact = 0
-      if (slave == 0 .or. master == 0) return
-      contact = findloc(deck%model%contacts%slave == slave .and. deck%model%contacts%master == &
-         master, .true., dim=1)
-      if (contact == 0) call deck%missing(place, 'no *CONTACT PAIR has the slave surface '// &
-         deck%mesh%surfaces(slave)%name//' and the master surface '// &
-         deck%mesh%surfaces(master)%name, 'surface')
-   end subroutine find_contact
+      call deck%need_items(data, 1, 'surface', 'slave surface', slaves)
+      call deck%need_items(data, 2, 'surface', 'master surface', masters)
+      call check_extra(data, 2, 'slave surface, master surface', deck)
+      if (size(slaves) == 0 .or. size(masters) == 0) return
+      do i = 1, size(slaves) + size(masters)
+         chosen = merge(slaves(min(i, size(slaves))), masters(max(i - size(slaves), 1)), &
+            i <= size(slaves))
+         if (count([slaves, masters] == chosen) > 1) then
+            call deck%error(data%place(2), 'surface '//deck%mesh%surfaces(chosen)%name// &
+               ' is meant by both names; a surface cannot be in contact with itself')
+            return
+         end if
+         call need_faces(data%place(merge(1, 2, i <= size(slaves))), 'name the surface of a '// &
+            'rigid body in full, and each slave on a card of its own', deck, chosen)
+         if (chosen == 0) return
+      end do
+      left_out = ''
+      left = 0
+      pairs = 0
+      do i = 1, size(slaves)
+         contact = common
+         call find_facing(deck%mesh, slaves(i), masters, chosen, part%faces)
+         if (chosen == 0) then
+            left = left + 1
+            if (left <= most_named) left_out = left_out//', '//deck%mesh%surfaces(slaves(i))%name
+            cycle
+         end if
+         pairs = pairs + 1
+         contact%slave = slaves(i)
+         contact%master = chosen
+         if (size(part%faces, 2) < size(deck%mesh%surfaces(chosen)%faces, 2)) then
+            part%name = deck%mesh%surfaces(chosen)%name
+            part%card = deck%mesh%surfaces(chosen)%card
+            deck%mesh%surfaces = [deck%mesh%surfaces, part]
+            deck%face_places = [deck%face_places, place_list_type(spread(data%place(2), 1, &
+               size(part%faces, 2)))]
+            contact%master = size(deck%mesh%surfaces)
+         end if
+         if (.not. card%has('NAME')) contact%name = deck%mesh%surfaces(slaves(i))%name
+         call add_contact(card, .true., contact, deck)
+      end do
+      if (left > most_named) left_out = left_out//' and '//to_text(left - most_named)//' more'
+      if (pairs > 0) call deck%note('*CONTACT PAIR '//to_upper(data%text(1))//', '// &
+         to_upper(data%text(2))//': '//counted(pairs, 'pair')//', named after the slave surfaces')
+      if (pairs == 0) then
+         call deck%error(data%place(1), 'none of '//left_out(3:)//' is opposite a face of '// &
+            to_upper(data%text(2))//'; name surfaces that look at each other, slaves first')
+      else if (left_out /= '') then
+         call deck%note('*CONTACT PAIR '//to_upper(data%text(1))//', '//to_upper(data%text(2))// &
+            ': opposite no face of the master, and in no pair: '//left_out(3:))
+      end if
+   end subroutine add_matching
+
+   !> The interfaces of two surfaces, or of those that patterns mean; none after an error.
+   subroutine find_contacts(places, slave, master, deck, contacts)
+      type(place_type), intent(in) :: places(2)              !! where they are named
+      character(*), intent(in) :: slave, master              !! names
+      type(deck_type), intent(inout) :: deck
+      integer, allocatable, intent(out) :: contacts(:)
+      integer :: i, k
+
+      allocate (contacts(0))
+      if (len(slave) == 0 .or. len(master) == 0) return
+      k = 1
+      if (.not. is_pattern(slave)) call deck%look_up('surface', to_upper(slave), places(1), k)
+      i = 1
+      if (.not. is_pattern(master)) call deck%look_up('surface', to_upper(master), places(2), i)
+      if (i == 0 .or. k == 0) return
+      associate (pairs => deck%model%contacts, surfaces => deck%mesh%surfaces)
+         do i = 1, size(pairs)
+            if (pairs(i)%slave == 0 .or. pairs(i)%master == 0) cycle
+            if (matches(to_upper(slave), to_upper(surfaces(pairs(i)%slave)%name)) .and. &
+               matches(to_upper(master), to_upper(surfaces(pairs(i)%master)%name))) contacts = &
+               [contacts, i]
+         end do
+      end associate
+      if (size(contacts) == 0) call deck%missing(places(1), 'no *CONTACT PAIR has the slave '// &
+         'surface '//to_upper(slave)//' and the master surface '//to_upper(master), 'surface')
+   end subroutine find_contacts
 
    !> Reads what all data cards of a card have in common.
    subroutine read_parameters(card, deck, contact)
@@ -126,29 +211,30 @@ contains
          'slave surface')
    end subroutine read_faces
 
-   !> A name stands for a group of the result file: it is used once, and is one that HDF5
-   !> allows for a group. The last pair has the name of its slave surface only if no other has it;
-   !> it follows the name of a card with several pairs.
-   subroutine check_name(card, deck, contacts)
+   !> Adds a pair. Its name stands for a group of the result file: it is used once, and is one
+   !> that HDF5 allows for a group. The pair has the name of its slave surface only if no other has
+   !> it; it follows the name of a card with several pairs.
+   subroutine add_contact(card, by_pattern, contact, deck)
       type(keyword_card_type), intent(in) :: card
+      logical, intent(in) :: by_pattern         ! whether it is one of several of a data card
+      type(contact_definition_type), intent(in) :: contact
       type(deck_type), intent(inout) :: deck
-      type(contact_definition_type), intent(inout) :: contacts(:)
-      integer :: n
+      character(:), allocatable :: name
       logical :: is_taken, several
 
-      n = size(contacts)
-      several = card%has('NAME') .and. size(card%data) > 1
-      if (several .and. contacts(n)%slave > 0) contacts(n)%name = contacts(n)%name//'-'// &
-         deck%mesh%surfaces(contacts(n)%slave)%name
-      if ((several .or. .not. card%has('NAME')) .and. contacts(n)%master > 0) then
-         is_taken = deck%index_of('contact pair', contacts(n)%name) > 0
-         if (is_taken) contacts(n)%name = contacts(n)%name//'-'// &
-            deck%mesh%surfaces(contacts(n)%master)%name
-         call deck%note('*CONTACT PAIR '// &
+      several = card%has('NAME') .and. (by_pattern .or. size(card%data) > 1)
+      name = contact%name
+      if (several .and. contact%slave > 0) name = name//'-'//deck%mesh%surfaces(contact%slave)%name
+      if ((several .or. .not. card%has('NAME')) .and. contact%master > 0) then
+         is_taken = deck%index_of('contact pair', name) > 0
+         if (is_taken) name = name//'-'//deck%mesh%surfaces(contact%master)%name
+         if (.not. by_pattern) call deck%note('*CONTACT PAIR '// &
             trim(merge('of several pairs:', 'without NAME=:   ', several))//' '// &
-            contacts(n)%name//', '//trim(merge('its surfaces     ', 'the slave surface', is_taken)))
+            name//', '//trim(merge('its surfaces     ', 'the slave surface', is_taken)))
       end if
-      associate (place => card%place_of('NAME'), name => contacts(n)%name)
+      deck%model%contacts = [deck%model%contacts, contact]
+      deck%model%contacts(size(deck%model%contacts))%name = name
+      associate (place => card%place_of('NAME'))
          if (deck%index_of('contact pair', name) > 0) call deck%error(place, 'contact pair '// &
             name//' is defined twice')
          call deck%add_name('contact pair', name)
@@ -157,7 +243,7 @@ contains
          if (name == '.' .or. name == '..') call deck%error(place, 'a contact pair must not be '// &
             'named . or ..: its name is a group of the result file')
       end associate
-   end subroutine check_name
+   end subroutine add_contact
 
    !> Builds all ties, one for each data card.
    subroutine build_ties(deck)
@@ -201,7 +287,8 @@ contains
       type(contact_changes_type) :: changes
       type(friction_change_type) :: change
       type(pair_change_type) :: pair
-      integer :: j
+      integer, allocatable :: contacts(:)
+      integer :: i, j
 
       if (step == 0) return
       changes = deck%model%steps(step)%changes
@@ -229,9 +316,11 @@ contains
                card%place, '*MODEL CHANGE needs either ADD or REMOVE')
             if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
             do j = 1, size(card%data)
-               call read_contact(card%data(j), 2, 'slave surface, master surface', deck, &
-                  pair%contact)
-               if (pair%contact > 0) changes%pairs = [changes%pairs, pair]
+               call read_contacts(card%data(j), 2, 'slave surface, master surface', deck, contacts)
+               do i = 1, size(contacts)
+                  pair%contact = contacts(i)
+                  changes%pairs = [changes%pairs, pair]
+               end do
             end do
          case default
             call change_interferences(card, step, deck, changes)
@@ -248,7 +337,8 @@ contains
       type(contact_changes_type), intent(inout) :: changes
       type(interference_type) :: given
       character(:), allocatable :: kind
-      integer :: j
+      integer, allocatable :: contacts(:)
+      integer :: i, j
       logical :: valid
 
       kind = choice(card, 'TYPE', 'CONTACT PAIR', deck, '')
@@ -266,16 +356,19 @@ contains
          valid = .true.
          given%value = 1.0_dp
          if (given%shrinks) then
-            call read_contact(card%data(j), 2, 'slave surface, master surface', deck, given%contact)
+            call read_contacts(card%data(j), 2, 'slave surface, master surface', deck, contacts)
          else
-            call read_contact(card%data(j), 3, 'slave surface, master surface, interference', &
-               deck, given%contact)
+            call read_contacts(card%data(j), 3, 'slave surface, master surface, interference', &
+               deck, contacts)
             call read_field(card%data(j), 3, 'interference', deck, given%value, valid)
          end if
-         if (given%contact == 0 .or. .not. valid) cycle
-         changes%interferences = [changes%interferences, given]
-         if (.not. given%shrinks) call check_clearance(card%data(j), &
-            deck%model%contacts(given%contact), given%value, deck)
+         if (.not. valid) cycle
+         do i = 1, size(contacts)
+            given%contact = contacts(i)
+            changes%interferences = [changes%interferences, given]
+            if (.not. given%shrinks) call check_clearance(card%data(j), &
+               deck%model%contacts(given%contact), given%value, deck)
+         end do
       end do
    end subroutine change_interferences
 
@@ -306,19 +399,21 @@ contains
       end associate
    end subroutine check_clearance
 
-   !> The interface of the two surfaces that a data card names; 0 after an error.
-   subroutine read_contact(data, most, layout, deck, contact)
+   !> The interfaces of the two surfaces that a data card names; none after an error.
+   subroutine read_contacts(data, most, layout, deck, contacts)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: most                 ! most fields
       character(*), intent(in) :: layout
       type(deck_type), intent(inout) :: deck
-      integer, intent(out) :: contact
-      integer :: master, slave
+      integer, allocatable, intent(out) :: contacts(:)
+      character(:), allocatable :: master, slave
+      logical :: valid
 
-      call deck%need_item(data, 1, 'surface', 'slave surface', slave)
-      call deck%need_item(data, 2, 'surface', 'master surface', master)
+      valid = .true.
+      call read_field(data, 1, 'slave surface', deck, slave, valid)
+      call read_field(data, 2, 'master surface', deck, master, valid)
       call check_extra(data, most, layout, deck)
-      call find_contact(slave, master, data%place(1), deck, contact)
-   end subroutine read_contact
+      call find_contacts([data%place(1), data%place(2)], slave, master, deck, contacts)
+   end subroutine read_contacts
 
 end module deck_builder_contact

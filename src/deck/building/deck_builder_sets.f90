@@ -13,6 +13,7 @@ module deck_builder_sets
    use kinds, only: dp
    use load_requests, only: target_type
    use mesh, only: set_type, surface_type
+   use name_index, only: is_pattern
    use number_lists, only: number_list_type
    use sorting, only: sort_order, unique_sorted
    use text, only: read_integer, to_text, to_upper
@@ -140,9 +141,9 @@ contains
       type(deck_type), intent(inout) :: deck
       type(draft_type), intent(inout) :: draft
       character(:), allocatable :: name
-      integer, allocatable :: nodes(:)
+      integer, allocatable :: nodes(:), others(:)
       type(target_type) :: other
-      integer :: set, j, i, known
+      integer :: set, j, i, k, known
       logical :: valid
 
       call need_parameter(card, card%name, deck, name)
@@ -159,6 +160,14 @@ contains
             cycle
          end if
          do i = 1, size(card%data(j)%fields)
+            if (is_pattern(card%data(j)%text(i))) then
+               call deck%find_matches(card%data(j), i, draft%numbers%noun//' set', others, known)
+               do k = 1, size(others)
+                  if (others(k) /= set) call draft%members(set)%add(unique_sorted( &
+                     draft%members(others(k))%numbers()))
+               end do
+               cycle
+            end if
             valid = .true.
             call deck%need_target(draft%numbers%noun, card%data(j), i, other, valid, known)
             if (other%item > 0) call draft%members(set)%add([other%item])
@@ -264,7 +273,7 @@ contains
       type(place_list_type), intent(inout) :: places   ! receives where each face is named
       character(:), allocatable :: kind
       type(number_list_type) :: found, named   ! faces, and the data cards that name them
-      integer, allocatable :: cards_of_faces(:), elements(:), keys(:), order(:)
+      integer, allocatable :: cards_of_faces(:), elements(:), keys(:), order(:), sets(:)
       type(target_type) :: target
       integer :: face, i, j, errors
       logical :: valid
@@ -295,12 +304,18 @@ contains
             cycle
          end if
          valid = .true.
-         call deck%need_target('element', card%data(j), 1, target, valid)
+         if (is_pattern(card%data(j)%text(1))) then
+            call deck%find_matches(card%data(j), 1, 'element set', sets)
+            elements = [(deck%mesh%element_sets(sets(i))%members, i=1, size(sets))]
+            valid = size(sets) > 0
+         else
+            call deck%need_target('element', card%data(j), 1, target, valid)
+            if (valid) elements = target%members(deck%mesh%element_sets)
+         end if
          ! An unknown set may be one of lines, which has no face.
          if (valid .or. card%data(j)%has(2)) call read_face(card%data(j), deck, face, valid)
          call check_extra(card%data(j), 2, 'element or set, face', deck)
          if (.not. valid) cycle
-         elements = target%members(deck%mesh%element_sets)
          call check_face(card%data(j), elements, face, deck, valid)
          if (.not. valid) cycle
          call found%add(4*elements + face - 1)

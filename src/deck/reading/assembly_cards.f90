@@ -4,7 +4,7 @@
 !> become INSTANCE.NAME. Nodes and elements of the first instance keep their numbers; those of the
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
-   use card_parameters, only: chosen, need_parameter, surface_kinds
+   use card_parameters, only: chosen, need_parameter, surface_kinds, take_parameter
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
       keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
@@ -37,6 +37,7 @@ module assembly_cards
       type(string_type), allocatable :: parts(:)         !! names of the parts so far, upper case
       integer, allocatable :: first(:), last(:)          !! (parts) keyword cards within each
       type(instance_type), allocatable :: instances(:)   !! those so far
+      integer :: begun = 1                               !! first one of the last *INSTANCE
       type(instance_type) :: assembly                    !! cards of the assembly itself
       character(:), allocatable :: prefix                !! the name of the assembly and a dot
       integer :: step = 0                                !! power of ten between instances
@@ -51,14 +52,20 @@ contains
       type(deck_report_type), intent(inout) :: report   !! receives errors
       type(cards_type) :: all
       type(reading_type) :: open
-      integer :: k, n
+      integer :: k, n, times
+      logical :: is_number
 
       if (.not. any([(level_of(cards%keywords(k)%name) /= at_model .or. &
          cards%keywords(k)%has('INSTANCE'), k=1, size(cards%keywords))])) return
       allocate (open%parts(0), open%first(0), open%last(0), open%instances(0))
       open%assembly%name = ''
       open%prefix = '.'
-      n = count([(cards%keywords(k)%name == 'INSTANCE', k=1, size(cards%keywords))])
+      n = 0
+      do k = 1, size(cards%keywords)
+         if (cards%keywords(k)%name /= 'INSTANCE') cycle
+         call read_integer(cards%keywords(k)%text('MULTIPLE'), times, is_number)
+         n = n + merge(max(times, 1), 1, is_number)
+      end do
       call find_step(cards, n, report, open%step)
       open%assembly%offset = n*open%step
       call move_alloc(cards%notes, all%notes)
@@ -138,7 +145,7 @@ contains
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: name
-      integer :: level
+      integer :: i, level
 
       associate (card => cards%keywords(k))
          level = level_of(card%name)
@@ -147,7 +154,9 @@ contains
             case (at_part)
                open%last(size(open%last)) = k
             case (at_instance)
-               call copy_card(card, open%instances(size(open%instances)), all)
+               do i = open%begun, size(open%instances)
+                  call copy_card(card, open%instances(i), all)
+               end do
             case default
                call take_flat(card, open, all, report)
             end select
@@ -171,7 +180,7 @@ contains
                open%first = [open%first, k + 1]
                open%last = [open%last, k]
             else if (level == at_instance) then
-               call open_instance(cards, card, open, all, report)
+               call open_instances(cards, card, open, all, report)
             else
                open%prefix = to_upper(card%text('NAME'))//'.'
             end if
@@ -179,25 +188,55 @@ contains
       end associate
    end subroutine take_card
 
-   !> Begins an instance with the cards of its part.
-   subroutine open_instance(cards, card, open, all, report)
+   !> Begins the instances of a card, of which each is moved once more than the one before.
+   subroutine open_instances(cards, card, open, all, report)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
       type(reading_type), intent(inout) :: open
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
       type(instance_type) :: instance
+      type(motion_type) :: once
+      character(:), allocatable :: name
+      integer :: i, times
+
+      call need_parameter(card, 'NAME', report, name)
+      call read_motion(card%data, 1, report, once)
+      instance%name = name
+      instance%motion_type = once
+      instance%moves = size(card%data) > 0
+      open%begun = size(open%instances) + 1
+      if (.not. card%has('MULTIPLE')) then
+         call open_instance(cards, card, instance, open, all, report)
+         return
+      end if
+      times = 1
+      call take_parameter(card, 'MULTIPLE', report, times, '>=1')
+      instance%motion_type = motion_type()
+      do i = 1, times
+         instance%name = name//'-'//to_text(i)
+         call open_instance(cards, card, instance, open, all, report)
+         instance%shift = once%moved(instance%shift)
+         instance%turn = matmul(once%turn, instance%turn)
+      end do
+   end subroutine open_instances
+
+   !> Begins an instance with the cards of its part.
+   subroutine open_instance(cards, card, instance, open, all, report)
+      type(cards_type), intent(in) :: cards
+      type(keyword_card_type), intent(in) :: card
+      type(instance_type), intent(inout) :: instance
+      type(reading_type), intent(inout) :: open
+      type(cards_type), intent(inout) :: all
+      type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: part
       integer :: i, k
 
-      call need_parameter(card, 'NAME', report, instance%name)
       instance%offset = size(open%instances)*open%step
       do i = 1, size(open%instances)
          if (open%instances(i)%name == instance%name) call report%error(card%place_of('NAME'), &
             'instance '//instance%name//' is defined twice')
       end do
-      call read_motion(card%data, 1, report, instance%motion_type)
-      instance%moves = size(card%data) > 0
       open%instances = [open%instances, instance]
       if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name// &
          ': numbers of its nodes and elements are those of the part plus '// &
@@ -329,7 +368,7 @@ contains
          continue
       case ('NSET', 'ELSET')
          if (card%has('GENERATE')) last = 2
-      case ('NGEN', 'TIE', 'CONTACT PAIR')
+      case ('NGEN', 'NFILL', 'TIE', 'CONTACT PAIR')
          last = 2
       case ('ELGEN', 'SURFACE')
          last = 1

@@ -11,7 +11,7 @@ module deck_context
    use load_requests, only: request_list_type, target_type
    use mesh, only: mesh_type, set_type
    use model, only: model_type
-   use name_index, only: name_index_type
+   use name_index, only: is_pattern, name_index_type
    use number_lists, only: number_list_type
    use quantity_types, only: quantity_type
    use sorting, only: number_index_type
@@ -91,6 +91,8 @@ module deck_context
       procedure :: need_named
       procedure :: take_named
       procedure :: need_item
+      procedure :: need_items
+      procedure :: find_matches
       procedure :: need_element_set
       procedure :: need_target
       procedure :: look_up
@@ -192,6 +194,51 @@ contains
       if (valid) call self%look_up(noun, to_upper(name), data%place(position), index)
    end subroutine need_item
 
+   !> Indexes of the items that a field of a data card names, by a name or by a pattern; none after
+   !> an error.
+   subroutine need_items(self, data, position, noun, what, indexes)
+      class(deck_type), intent(inout) :: self           !! receives errors
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position                   !! the field
+      character(*), intent(in) :: noun                  !! what it names, such as surface
+      character(*), intent(in) :: what                  !! what the field holds
+      integer, allocatable, intent(out) :: indexes(:)
+      integer :: index
+
+      if (is_pattern(data%text(position))) then
+         call self%find_matches(data, position, noun, indexes)
+      else
+         call self%need_item(data, position, noun, what, index)
+         indexes = pack([index], index > 0)
+      end if
+   end subroutine need_items
+
+   !> Indexes of the items, among the first ones, whose names a field means by a pattern. That there
+   !> is none is an error.
+   subroutine find_matches(self, data, position, noun, indexes, known)
+      class(deck_type), intent(inout) :: self           !! receives the error
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: position                   !! the field
+      character(*), intent(in) :: noun                  !! such as surface
+      integer, allocatable, intent(out) :: indexes(:)
+      integer, intent(in), optional :: known            !! items so far
+      type(string_type), allocatable :: names(:)
+      character(:), allocatable :: pattern
+      integer :: k, most
+
+      most = huge(most)
+      if (present(known)) most = known
+      k = findloc(nouns == noun, .true., dim=1)
+      indexes = self%names(k)%matching(data%text(position))
+      indexes = pack(indexes, indexes <= most)
+      call self%used(k)%add(indexes)
+      if (size(indexes) > 0) return
+      names = self%names(k)%known()
+      pattern = to_upper(data%text(position))
+      call self%missing(data%place(position), 'no '//noun//' matches '//pattern// &
+         nearest_known(pattern, names(:min(size(names), most))), noun, pattern)
+   end subroutine find_matches
+
    !> Index of the item that has a name; 0 after an error.
    subroutine look_up(self, noun, name, place, index)
       class(deck_type), intent(inout) :: self           !! receives errors
@@ -234,6 +281,9 @@ contains
       else if (noun == 'element set' .and. self%index_of('node set', name) > 0) then
          message = name//' is a node set, and an element set is due here; give its elements a '// &
             'name by *ELSET'
+      else if (is_pattern(name)) then
+         message = name//' is a pattern, and one name is due here; patterns are data of *NSET, '// &
+            '*ELSET, *SURFACE, *CONTACT PAIR and what changes it: make a set or surface of all'
       else
          known = self%names(findloc(nouns == noun, .true., dim=1))%known()
          message = 'unknown '//noun//' '//name//nearest_known(name, known(:min(size(known), most)))

@@ -123,7 +123,7 @@ module keywords
       keyword_type('END PART', in_model, 0, 0, ''), &
       keyword_type('ASSEMBLY', in_model, 0, 0, 'NAME='), &
       keyword_type('END ASSEMBLY', in_model, 0, 0, ''), &
-      keyword_type('INSTANCE', in_model, 0, 2, 'NAME=/PART='), &
+      keyword_type('INSTANCE', in_model, 0, 2, 'NAME=/PART=/MULTIPLE='), &
       keyword_type('END INSTANCE', in_model, 0, 0, ''), &
       keyword_type('FIXED POINT', in_both, 0, 0, 'METHOD=/TOL=/MAXITER=/G=/CONSTANT='), &
       keyword_type('START', in_both, 0, many, 'FROM='), &
