@@ -20,8 +20,8 @@ module contact_fronts
    !> Factors of one set.
    type :: contact_fronts_type
       integer :: full = 0                          !! sets that were factored, so far
-      real(dp), private :: border = 1.0_dp         !! scale of the border [force/length]
-      integer, private :: borders = 0              !! motions that border the rows
+      real(dp), private :: border_size = 1.0_dp    !! scale of the border [force/length]
+      type(sum_list_type), private :: border       !! motions that border the rows
       logical, private :: may_change = .false.     !! whether other sets may use the factors
       type(front_factors_type), private :: fronts
       type(contact_rows_type), private :: rows     !! that were factored
@@ -56,19 +56,19 @@ contains
          end associate
          changed = self%fronts%above_changed(changed)
       else
-         self%borders = merge(system%motions%basis%count, unconstrained%count, hold > 0.0_dp)
-         call self%fronts%begin(system%tree, self%borders)
-         self%border = max(maxval(abs(system%own)), tiny(1.0_dp))
+         if (hold > 0.0_dp) then
+            self%border = system%motions%basis
+         else
+            self%border = unconstrained
+         end if
+         call self%fronts%begin(system%tree, self%border)
+         self%border_size = max(maxval(abs(system%own)), tiny(1.0_dp))
          changed = .true.
       end if
       self%rows = rows
       call set_scale(self, system)
       self%full = self%full + 1
-      if (hold > 0.0_dp) then
-         call factor_fronts(self, system, hold, system%motions%basis, changed, singular)
-      else
-         call factor_fronts(self, system, hold, unconstrained, changed, singular)
-      end if
+      call factor_fronts(self, system, hold, changed, singular)
       self%may_change = is_plain .and. .not. singular
    end subroutine factor
 
@@ -98,34 +98,33 @@ contains
    end subroutine set_scale
 
    !> Factors some fronts, with motions that border the free rows.
-   pure subroutine factor_fronts(self, system, hold, motions, changed, singular)
+   pure subroutine factor_fronts(self, system, hold, changed, singular)
       type(contact_fronts_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: hold
-      type(sum_list_type), intent(in) :: motions   ! (borders, tail)
       logical, intent(in) :: changed(:)
       logical, intent(out) :: singular
       type(triplet_list_type) :: entries
-      logical :: is_sought(system%schur%order + self%borders)
-      real(dp) :: column_size(system%schur%order + self%borders)
+      logical :: is_sought(system%schur%order + self%border%count)
+      real(dp) :: column_size(system%schur%order + self%border%count)
       integer :: k, q
 
-      associate (tail => system%schur%order, free => self%rows%free)
+      associate (tail => system%schur%order, free => self%rows%free, motions => self%border)
          is_sought = .false.
          is_sought(free) = .true.
          is_sought(tail + 1:) = .true.
          column_size(:tail) = system%column_size
          column_size(tail + 1:) = 1.0_dp
          call form_entries(self, system, changed, size(motions%value), entries)
-         do q = 1, self%borders
+         do q = 1, self%border%count
             do k = motions%start(q), motions%start(q + 1) - 1
                associate (row => motions%value(k), part => motions%coefficient(k))
                   if (.not. is_sought(row)) cycle
-                  call entries%add(row, tail + q, self%scale(row)*self%border*part)
+                  call entries%add(row, tail + q, self%scale(row)*self%border_size*part)
                   call entries%add(tail + q, row, part)
                end associate
             end do
-            if (hold > 0.0_dp) call entries%add(tail + q, tail + q, -self%border/hold)
+            if (hold > 0.0_dp) call entries%add(tail + q, tail + q, -self%border_size/hold)
          end do
          call self%fronts%factor(entries, is_sought, column_size, changed, singular)
       end associate
@@ -172,7 +171,7 @@ contains
                   end do
                end do
             end do
-            if (pass == 1) call entries%reserve(n + 2*of_motions + self%borders)
+            if (pass == 1) call entries%reserve(n + 2*of_motions + self%border%count)
          end do
       end associate
    end subroutine form_entries
@@ -186,13 +185,13 @@ contains
       real(dp), allocatable, intent(out), optional :: unbalanced(:, :)
       real(dp), allocatable :: bordered(:, :)
 
-      allocate (bordered(size(x, 1) + self%borders, size(x, 2)), source=0.0_dp)
+      allocate (bordered(size(x, 1) + self%border%count, size(x, 2)), source=0.0_dp)
       associate (free => self%rows%free)
          bordered(free, :) = spread(self%scale(free), 2, size(x, 2))*x(free, :)
          call self%fronts%solve(bordered)
          x(free, :) = bordered(free, :)
       end associate
-      if (present(unbalanced)) unbalanced = self%border*bordered(size(x, 1) + 1:, :)
+      if (present(unbalanced)) unbalanced = self%border_size*bordered(size(x, 1) + 1:, :)
    end subroutine solve
 
    !> Displacements of some rows for forces on them alone.

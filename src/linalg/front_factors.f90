@@ -11,6 +11,7 @@ module front_factors
    use kinds, only: dp
    use sorting, only: invert_lists
    use sparse_matrix, only: triplet_list_type
+   use sum_lists, only: sum_list_type
    implicit none
    private
    public :: front_factors_type
@@ -39,7 +40,7 @@ module front_factors
    type :: front_factors_type
       type(front_type), allocatable, private :: front(:)
       integer, allocatable, private :: above(:)    !! (fronts) the next one above, 0 for the last
-      integer, allocatable, private :: home(:)     !! (unknowns) front, the last for borders
+      integer, allocatable, private :: home(:)     !! (unknowns) front
    contains
       procedure :: begin
       procedure :: is_begun
@@ -57,13 +58,13 @@ contains
    pure subroutine begin(self, tree, borders)
       class(front_factors_type), intent(inout) :: self
       type(front_tree_type), intent(in) :: tree
-      integer, intent(in) :: borders
-      integer :: i
+      type(sum_list_type), intent(in) :: borders     !! (borders, unknowns) that each is joined to
+      integer :: q
 
       if (allocated(self%front)) deallocate (self%front)
       allocate (self%front(size(tree%parent)))
       self%above = tree%parent
-      self%home = [tree%front, (size(tree%parent), i=1, borders)]
+      self%home = [tree%front, (tree%front_above(borders%values_of(q)), q=1, borders%count)]
    end subroutine begin
 
    !> Whether it has begun.

@@ -19,6 +19,8 @@ module front_tree
       integer, allocatable :: front(:)         !! (vertices) in which each is eliminated
       !> Fronts of edges of vertex i, the lower one of both ends: touched(start(i):start(i + 1) - 1)
       integer, allocatable :: start(:), touched(:)
+   contains
+      procedure :: front_above
    end type front_tree_type
 
 contains
@@ -52,6 +54,25 @@ contains
       tree%front = below(head(position))
       call find_touched(graph, tree)
    end subroutine set_front_tree
+
+   !> The first front that is above all of some vertices, or is theirs.
+   pure integer function front_above(self, vertices) result(front)
+      class(front_tree_type), intent(in) :: self
+      integer, intent(in) :: vertices(:)
+      integer :: i, other
+
+      front = self%front(vertices(1))
+      do i = 2, size(vertices)
+         other = self%front(vertices(i))
+         do while (front /= other)
+            if (front < other) then
+               front = self%parent(front)
+            else
+               other = self%parent(other)
+            end if
+         end do
+      end do
+   end function front_above
 
    !> The elimination tree, and how many rows each column has below its diagonal.
    pure subroutine eliminate(graph, position, above, below)
