@@ -5,11 +5,12 @@ module unconstrained_bodies
    use conductance_laws, only: law_none
    use connections, only: connections_type, contact_laws_type
    use contact_system, only: contact_open, contact_slip, contact_stick
-   use dense, only: null_space
    use kinds, only: dp
    use model, only: model_type
    use rigid_motions, only: find_free_motions, free_motion_type, joint_type, joints_of
+   use sparse_null_space, only: null_space_of
    use steps, only: load_film_coefficient
+   use sum_lists, only: sum_list_type
    use text, only: append, string_type, to_text
    implicit none
    private
@@ -214,8 +215,9 @@ contains
       character(*), intent(in) :: ending            ! of each message
       type(string_type), allocatable, intent(out) :: messages(:)
       logical :: joined(0:size(has_source), 0:size(has_source))
-      real(dp), allocatable :: rows(:, :), free(:, :)
-      integer :: body, i, k, other
+      type(sum_list_type) :: rows
+      real(dp), allocatable :: free(:, :)
+      integer :: body, k, other, unknowns
 
       joined = .false.
       do k = 1, size(conducts)
@@ -226,14 +228,14 @@ contains
             call join(points%ties%slave(k), points%ties%master(k))
          end do
       end if
-      rows = equation_rows(model, points, prescribed)
+      call list_equations(model, points, prescribed, unknowns, rows)
       do body = 1, size(has_source)
-         if (has_source(body)) call add_row(body, 0)
+         if (has_source(body)) call rows%add([body], [1.0_dp])
          do other = 1, body - 1
-            if (joined(body, other)) call add_row(body, other)
+            if (joined(body, other)) call rows%add([body, other], [1.0_dp, -1.0_dp])
          end do
       end do
-      free = null_space(transpose(rows))
+      free = null_space_of(rows, unknowns)
       allocate (messages(0))
       do body = 1, size(has_source)
          if (any(abs(free(body, :)) > negligible)) call append(messages, 'the temperature of '// &
@@ -248,31 +250,22 @@ contains
             joined(maxval(b), minval(b)) = maxval(b) > minval(b)
          end associate
       end subroutine join
-
-      subroutine add_row(first, second)
-         integer, intent(in) :: first, second
-
-         rows = reshape(rows, [size(rows, 1), size(rows, 2) + 1], pad=[0.0_dp])
-         i = size(rows, 2)
-         rows(first, i) = 1.0_dp
-         if (second > 0) rows(second, i) = -1.0_dp
-      end subroutine add_row
    end subroutine find_undetermined
 
    !> Conditions of equations on the temperatures of the bodies and, behind them, of the nodes of no
-   !> body that they name, a column each.
-   pure function equation_rows(model, points, prescribed) result(rows)
+   !> body that they name.
+   pure subroutine list_equations(model, points, prescribed, unknowns, rows)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points
       logical, intent(in) :: prescribed(:)
-      real(dp), allocatable :: rows(:, :)
-      integer :: lone(size(prescribed)), e, i, k, n
+      integer, intent(out) :: unknowns
+      type(sum_list_type), intent(out) :: rows
+      real(dp), allocatable :: row(:)
+      integer :: lone(size(prescribed)), e, i, k
 
       lone = 0
-      n = 0
       do e = 1, size(points%equations)
          if (.not. points%equations(e)%is_thermal()) cycle
-         n = n + 1
          lone(points%equations(e)%node) = 1
       end do
       where (model%mesh%node_body > 0 .or. prescribed) lone = 0
@@ -282,19 +275,21 @@ contains
          k = k + 1
          lone(i) = k
       end do
-      allocate (rows(k, n), source=0.0_dp)
-      n = 0
+      unknowns = k
+      call rows%reserve(size(points%equations) + k, 2*k)
+      allocate (row(unknowns))
       do e = 1, size(points%equations)
          if (.not. points%equations(e)%is_thermal()) cycle
-         n = n + 1
+         row = 0.0_dp
          do i = 1, size(points%equations(e)%node)
             associate (node => points%equations(e)%node(i))
                k = max(model%mesh%node_body(node), lone(node))
-               if (k > 0) rows(k, n) = rows(k, n) + points%equations(e)%coefficient(i)
+               if (k > 0) row(k) = row(k) + points%equations(e)%coefficient(i)
             end associate
          end do
+         call rows%add([(k, k=1, unknowns)], row)
       end do
-   end function equation_rows
+   end subroutine list_equations
 
    !> Bodies with a prescribed temperature, with a heat capacity in a transient step, or with a film
    !> in a step: its own ones and those of the steps before that it keeps.

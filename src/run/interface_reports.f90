@@ -102,14 +102,21 @@ contains
       integer, intent(in) :: slave(:)            !! (m) slave nodes
       integer, intent(in) :: master(:)           !! (m) master nodes
       real(dp), intent(in) :: normal(:, :)       !! (2, m) unit vectors
-      integer :: i, k
+      integer :: before(size(slave)), i, k
+      integer :: last(maxval([0, slave, master]))   ! of those whose lower node it is
 
+      last = 0
       do k = 1, size(slave)
-         do i = 1, k - 1
-            if (slave(i) + master(i) /= slave(k) + master(k)) cycle
-            if (slave(i) /= slave(k) .and. slave(i) /= master(k)) cycle
+         associate (lower => min(slave(k), master(k)))
+            i = last(lower)
+            before(k) = i
+            last(lower) = k
+         end associate
+         do while (i > 0)
             first_repeated = k
-            if (abs(dot_product(normal(:, i), normal(:, k))) > parallel) return
+            if (slave(i) + master(i) == slave(k) + master(k) .and. &
+               abs(dot_product(normal(:, i), normal(:, k))) > parallel) return
+            i = before(i)
          end do
       end do
       first_repeated = 0

@@ -9,7 +9,7 @@ module touch_checks
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use sorting, only: number_index_type, sort_order
+   use sorting, only: invert_lists, number_index_type, sort_order
    use text, only: counted, others, to_text
    implicit none
    private
@@ -24,6 +24,7 @@ module touch_checks
    real(dp), parameter :: overlapping = 0.05_dp
 
    real(dp), parameter :: margin = 0.1_dp   !! part of a side by which it may bulge past its nodes
+   integer, parameter :: nodes_per_stripe = 8
    integer, parameter :: most_steps = 8     !! to the nearest position on a curved side
 
    !> A node on a free side that is not one of the side's nodes.
@@ -91,27 +92,39 @@ contains
       type(touch_type), allocatable, intent(out) :: touches(:)
       type(touch_type), allocatable :: more(:)
       integer, allocatable :: free(:), nodes(:), others(:)
+      !> Nodes in stripes across the longer extent of the mesh, and free sides of each node
+      integer, allocatable :: in_stripe(:), of_node(:), stripe_start(:), start(:)
       logical :: is_free(0:size(mesh%node_number))
-      real(dp) :: box(4)
-      integer :: i, k, n, partner, s
+      real(dp) :: box(4), extent(2), lowest(2)
+      integer :: along, i, j, k, n, partner, s, stripes
 
       free = pack([(s, s=1, sides%count)], sides%elements(2, :sides%count) == 0)
       is_free = .false.
       is_free([sides%ends(:, free)]) = .true.
       nodes = pack([(n, n=1, size(is_free) - 1)], is_free(1:))
       allocate (touches(0))
+      if (size(nodes) == 0) return
+      lowest = minval(mesh%coordinates(:, nodes), dim=2)
+      extent = maxval(mesh%coordinates(:, nodes), dim=2) - lowest
+      along = maxloc(extent, dim=1)
+      stripes = size(nodes)/nodes_per_stripe + 1
+      call invert_lists(reshape(stripe(mesh%coordinates(along, nodes)), [1, size(nodes)]), &
+         [(1, n=1, size(nodes))], stripes, stripe_start, in_stripe)
+      call invert_lists(sides%ends([1, 3, 2], free), 2 + merge(1, 0, sides%ends(2, free) > 0), &
+         size(is_free) - 1, start, of_node)
       do i = 1, size(free)
          associate (ends => sides%ends(:, free(i)))
             box = [minval(mesh%coordinates(:, pack(ends, ends > 0)), dim=2), &
                maxval(mesh%coordinates(:, pack(ends, ends > 0)), dim=2)] + &
                margin*length_of(mesh, ends)*[-1, -1, 1, 1]
-            do n = 1, size(nodes)
-               associate (x => mesh%coordinates(:, nodes(n)))
+            do j = stripe_start(stripe(box(along))), stripe_start(stripe(box(along + 2)) + 1) - 1
+               n = nodes(in_stripe(j))
+               associate (x => mesh%coordinates(:, n))
                   if (x(1) < box(1) .or. x(1) > box(3)) cycle
                   if (x(2) < box(2) .or. x(2) > box(4)) cycle
-                  if (any(ends == nodes(n))) cycle
+                  if (any(ends == n)) cycle
                   if (place_on(mesh, ends, x, close_by*length_of(mesh, ends)) < 0.0_dp) cycle
-                  others = pack(free, any(sides%ends(:, free) == nodes(n), dim=1))
+                  others = free(of_node(start(n):start(n + 1) - 1))
                   others = pack(others, [(lie_on_each_other(mesh, sides, free(i), others(k)), &
                      k=1, size(others))])
                   partner = 0
@@ -120,12 +133,18 @@ contains
                      if (norm2(mesh%coordinates(:, ends(k)) - x) <= close_by*length_of(mesh, &
                         ends)) partner = ends(k)
                   end do
-                  more = [(touch_type(nodes(n), free(i), others(k), partner), k=1, size(others))]
+                  more = [(touch_type(n, free(i), others(k), partner), k=1, size(others))]
                end associate
                touches = [touches, more]
             end do
          end associate
       end do
+   contains
+      elemental integer function stripe(x)
+         real(dp), intent(in) :: x
+
+         stripe = 1 + int(min(max((x - lowest(along))/extent(along), 0.0_dp), 1.0_dp)*(stripes - 1))
+      end function stripe
    end subroutine find_touches
 
    !> Drops the touches of faces that a *CONTACT PAIR, *TIE, *EQUATION or *COUPLING relates, and of
