@@ -15,12 +15,15 @@ PYTHON = ROOT.parent / "build" / "venv" / "bin" / "python"
 def run(script, module):
     """Run `main` of a module of this package as the program `script`; return its exit status.
 
-    Begins again with the Python of build/venv where that is there.
+    Begins again with the Python of build/venv where that is there, and keeps what it compiles, mostly
+    packages, in build/python.
     """
-    sys.dont_write_bytecode = True  # the source tree stays as it is
     script = Path(script).resolve()
-    if PYTHON.exists() and Path(sys.executable) != PYTHON:
-        os.execv(PYTHON, [str(PYTHON), str(script), *sys.argv[1:]])
+    if PYTHON.exists():
+        if Path(sys.executable) != PYTHON:
+            os.execv(PYTHON, [str(PYTHON), str(script), *sys.argv[1:]])
+        sys.pycache_prefix = str(ROOT.parent / "build" / "python")
+        sys.dont_write_bytecode = False
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # end quietly where `| head` has read enough
     try:
         main = import_module(f"thercon_post.{module}").main

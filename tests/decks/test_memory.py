@@ -4,11 +4,9 @@ import csv
 import os
 import re
 import resource
-import shutil
 import subprocess
 
 import pytest
-from blocks import block, solid, without_unused_surfaces, write
 from deck_runs import COUPLED, CYLINDER, INPUT, PROGRAM, copy_deck, of_release, run
 
 MEGABYTE = 1e6
@@ -171,42 +169,3 @@ def test_the_estimate_covers_a_plain_run(tmp_path, solver):
     deck = few_increments(without_checks(CYLINDER, tmp_path, [
         "*REFINE, LEVELS=2", "*OPTIONS, ERRORS=NO", f"*SOLVER, TYPE={solver}"]))
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
-
-
-FAILED_CHECKS = ['*VERIFY, KIND=ANALYTIC, SOURCE="none: these fail"', "normal_force, P, LAST, 3., 1.E-12",
-                 "pressure, MAX, LAST, 3., 1.E-12", "NT, MAX, LAST, 3., 1.E-12"]
-
-
-def three_blocks(path, *cards, solver="SKYLINE", pairing="NODES", ramp=""):
-    """Write a deck of a block on another with a third one tied to it, in two steps."""
-    lines = [0.0, 1.0, 2.0]
-    steps = [card for load in (10.0, 20.0) for card in (
-        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.5, 1.",
-        f"*BOUNDARY{ramp}", f"C.TOP, 11, 11, {load!r}", f"*DSLOAD{ramp}", f"C.TOP, P, {load!r}",
-        "*END STEP")]
-    return write(path, without_unused_surfaces([
-        *block("A", lines, [1.0, 2.0]), *block("B", lines, [0.0, 1.0], first=101),
-        *block("C", [0.0, 0.9, 2.0], [2.0, 3.0], first=201),
-        *(card for name in "ABC" for card in solid(name, 1000.0, 0.3, 1e-5)),
-        "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.3", "*GAP LAW, TYPE=GAS", "2.E-3, 5.E-3",
-        "*GAP LAW, TYPE=POWER", "1., 0.1, 1.",
-        f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}", "A.BOTTOM, B.TOP",
-        "*TIE, NAME=T", "C.BOTTOM, A.TOP", "*AMPLITUDE, NAME=R", "0., 0., 0.5, 1., 1., 0.5",
-        "*BOUNDARY", "B.BOTTOM, 1, 2", "B.BOTTOM, 11", "A.LEFT, 1", "C.LEFT, 1",
-        f"*SOLVER, TYPE={solver}", *steps, *cards]))
-
-
-@pytest.mark.skipif(not shutil.which("valgrind"), reason="needs valgrind")
-@pytest.mark.parametrize(("status", "cards", "options"), [
-    (4, FAILED_CHECKS, {"ramp": ", AMPLITUDE=R"}),
-    (0, [], {"solver": "MUMPS", "pairing": "SURFACES"}),
-    (1, ["*CONTACT PAIR, INTERACTION=NONE, NAME=Q", "A.TOP, C.BOTTOM"], {}),
-], ids=["amplitude, failed checks", "MUMPS", "refused"])
-def test_no_memory_is_lost(tmp_path, status, cards, options):
-    """MUMPS reads what it has not set yet; all else is checked by the tests of the preset `debug`."""
-    deck = three_blocks(tmp_path / "deck.inp", *cards, **options)
-    process = subprocess.run(
-        ["valgrind", "--quiet", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect",
-         "--undef-value-errors=no", "--error-exitcode=9",
-         PROGRAM, "run", "--quiet", deck, "--out", tmp_path], capture_output=True, text=True, check=False)
-    assert process.returncode == status, process.stderr

@@ -305,12 +305,11 @@ def stated_and_true(rows, deck, names, exact):
                 yield row, float(row[f"error_{key}"]), abs(found[key] / exact[key] - 1.0)
 
 
-@pytest.mark.parametrize("scheme", ["L-STABLE", "IMPLICIT"])
-def test_rows_of_steps_that_store_heat_have_the_errors_that_are_stated(tmp_path, scheme):
+def test_rows_of_steps_that_store_heat_have_the_errors_that_are_stated(tmp_path):
     """Against a fine mesh with 64 times as many increments; every scheme but the deck's is a row."""
-    deck = transients.two_blocks(tmp_path / "deck.inp", f"*THERMAL SCHEME, TYPE={scheme}")
+    deck = transients.two_blocks(tmp_path / "deck.inp", "*THERMAL SCHEME, TYPE=L-STABLE")
     rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.02")
-    schemes = {"L-STABLE", "IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT"} - {scheme}
+    schemes = {"IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "EXPLICIT"}
     assert {row["varied"] for row in rows} >= schemes
     fine = transients.two_blocks(tmp_path / "fine.inp", "*REFINE, LEVELS=2",
                                  times=f"{transients.FIRST / 64!r}, {transients.PERIOD!r}")
