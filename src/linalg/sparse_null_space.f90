@@ -6,8 +6,8 @@ module sparse_null_space
    private
    public :: null_space_of
 
-   !> What rows leave, beside the largest entry of all, that makes them pivots in each round, so that
-   !> the better pivots come first; less is rounding.
+   !> What rows leave, beside the largest entry of all, that makes them pivots in each round: the
+   !> better pivots come first. Less is rounding.
    real(dp), parameter :: left(4) = [1.0e-1_dp, 1.0e-3_dp, 1.0e-6_dp, 1.0e-9_dp]
 
 contains

@@ -57,7 +57,7 @@ PARTS = {
     "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly",
                                   "contact_system:free_motions", "contact_system:is_driven",
-                                  "contact_system:is_driven", "contact_system:least_drive"},
+                                  "contact_system:is_driven", "tail_motions:least_drive"},
     "films": {"loads:film_matrix", "unit_loads:film_matrix"},
     "estimated errors": {
         "divided_mesh", "doubled_increments", "error_estimator",
