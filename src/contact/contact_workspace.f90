@@ -20,10 +20,6 @@ module contact_workspace
    !> remainder of loads that were taken off.
    real(dp), parameter :: unresolved = 1.0e-3_dp
 
-   !> Change of displacements, as part of the largest, that does not spoil the forces of the last
-   !> solution with its own rounding.
-   real(dp), parameter :: small_change = 1.0e-3_dp
-
    !> Compliance of the contact points of an interface that close in the increment.
    type :: compliance_type
       real(dp), allocatable :: matrix(:, :)   !! (2n, 2n), unallocated until it is sought
@@ -245,8 +241,8 @@ contains
    end function start_of_slip
 
    !> S d, with the soft hold. On a sparse tail face nodes have the displacements of their bodies,
-   !> beside which strains are small: forces go by a small change from the last solution, so that
-   !> they have the same rounding from pass to pass.
+   !> beside which strains are small: forces go by the change from the last solution, so that they
+   !> have the same rounding from pass to pass, unless that one was farther away.
    pure subroutine find_forces(self, system, d, lambda, terms)
       type(contact_workspace_type), intent(in) :: self
       type(contact_system_type), intent(in) :: system
@@ -258,7 +254,7 @@ contains
       call system%schur%add_product(d, lambda, terms)
       if (allocated(self%known)) then
          change = d - self%known(:, 1)
-         if (maxval(abs(change)) <= small_change*maxval(abs(d))) then
+         if (maxval(abs(change)) <= maxval(abs(d))) then
             call system%schur%add_product(change, rest)
             lambda = self%known(:, 2) + rest
          end if

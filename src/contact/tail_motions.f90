@@ -8,7 +8,7 @@ module tail_motions
    use dense, only: column_space, least_squares, lu_type, null_space
    use kinds, only: dp
    use sparse_null_space, only: null_space_of
-   use sum_lists, only: sum_list_type
+   use sum_lists, only: sum_list_type, sums_of_columns
    implicit none
    private
    public :: tail_motions_type
@@ -45,18 +45,13 @@ contains
       type(sum_list_type), intent(in) :: rigid     !! (q, tail) motions
       integer, intent(in) :: tail                  !! rows
       logical, intent(in) :: is_full               !! whether the tail is full
-      integer :: i, q
+      integer :: q
       logical :: singular
 
       self%rigid = rigid
       self%is_orthonormal = is_full
       if (is_full) then
-         associate (columns => column_space(rigid%as_columns(tail)))
-            call self%basis%reserve(size(columns, 2), size(columns))
-            do q = 1, size(columns, 2)
-               call self%basis%add([(i, i=1, tail)], columns(:, q))
-            end do
-         end associate
+         self%basis = sums_of_columns(column_space(rigid%as_columns(tail)))
       else
          self%basis = rigid
          do q = 1, rigid%count

@@ -3,7 +3,7 @@ module sum_lists
    use kinds, only: dp
    implicit none
    private
-   public :: sum_list_type, add_terms, differences, single_values
+   public :: sum_list_type, add_terms, differences, single_values, sums_of_columns
 
    !> The sums.
    type :: sum_list_type
@@ -51,6 +51,18 @@ contains
          call list%add(values(i:i), [1.0_dp])
       end do
    end function single_values
+
+   !> Sums with the coefficients of the columns of a matrix, those that are not 0.
+   pure function sums_of_columns(columns) result(list)
+      real(dp), intent(in) :: columns(:, :)         !! (values, n)
+      type(sum_list_type) :: list                   !! (n)
+      integer :: i, j
+
+      call list%reserve(size(columns, 2), count(abs(columns) > 0.0_dp))
+      do j = 1, size(columns, 2)
+         call list%add([(i, i=1, size(columns, 1))], columns(:, j))
+      end do
+   end function sums_of_columns
 
    !> Makes room, for no more than an estimate; what the list held is dropped.
    pure subroutine reserve(self, sums, terms)
