@@ -1,6 +1,6 @@
 !> Orders of elimination. For a skyline: reverse Cuthill-McKee from a pseudo-peripheral start
 !> (A. George and J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981,
-!> ch. 4). For MUMPS: nested dissection by METIS.
+!> ch. 4). For MUMPS and for fronts: nested dissection by METIS.
 module ordering
    use, intrinsic :: iso_c_binding, only: c_int
    use errors, only: error_type, set_error, status_internal

@@ -27,8 +27,7 @@ module memory_needs
    real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]
    real(dp), parameter :: field_values = 25.0_dp       !! of a node and written increment that wait
    real(dp), parameter :: dense_matrices = 12.0_dp     !! of the contact unknowns, held at a time
-   real(dp), parameter :: bytes_per_point = 60.0e3_dp  !! of a contact point on a sparse tail
-   real(dp), parameter :: motions_of_bodies = 11.0_dp  !! of all displacements, with a sparse tail
+   real(dp), parameter :: bytes_per_point = 50.0e3_dp  !! of a contact point on a sparse tail
    !> Numbers of a node and contact point: of responses at the rates of *STABILITY, and to heat of
    !> friction.
    real(dp), parameter :: motion_responses = 13.0_dp, friction_responses = 3.0_dp
@@ -59,8 +58,7 @@ contains
          real(model%steps%max_increments, dp))/max(model%steps%field_frequency, 1), 0.0_dp, &
          model%steps%field_frequency > 0))
       bytes = base + per_entry*entries + min(waiting, real_bytes*field_values*nodes*written) + &
-         merge(bytes_per_point*points + real_bytes*motions_of_bodies*2*nodes* &
-         model%mesh%body_count, dense_matrices*real_bytes*(3*points)**2, &
+         merge(bytes_per_point*points, dense_matrices*real_bytes*(3*points)**2, &
          has_sparse_tail(model, points))
       if (any(model%steps%stability_frequency > 0) .and. any(heat_capacity(model%materials) > &
          0.0_dp)) bytes = bytes + real_bytes*motion_responses*nodes*points
