@@ -35,7 +35,8 @@ def copy_without_checks(source, folder, more=""):
     return deck
 
 
-@pytest.mark.parametrize("deck", sorted(INPUT.glob("**/*.inp")), ids=lambda deck: deck.stem)
+@pytest.mark.parametrize("deck", sorted(deck for deck in INPUT.glob("**/*.inp") if "ERRORS=NO" not in deck.read_text()),
+    ids=lambda deck: deck.stem)
 def test_estimates_change_no_digit_of_a_deck(tmp_path, deck):
     folder = shutil.copytree(deck.parent, tmp_path / "deck")
     assert_equal_results(folder / deck.name)
