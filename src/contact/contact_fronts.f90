@@ -138,40 +138,34 @@ contains
       integer, intent(in) :: of_motions
       type(triplet_list_type), intent(out) :: entries
       type(sum_list_type) :: forces, rows   ! in each row, C; in which rows each one is, C^T
-      integer :: e, i, j, k, n, pass
+      integer :: e, i, j, k
 
       forces = self%rows%forces()
       rows = forces%transposed(system%schur%order)
       associate (s => system%schur%sparse, home => system%tree%front)
-         do pass = 1, 2
-            n = 0
-            do i = 1, size(home)
-               if (.not. self%scale(i) > 0.0_dp) cycle
-               if (.not. changed(home(i))) cycle
-               do e = forces%start(i), forces%start(i + 1) - 1
-                  do k = s%row_start(forces%value(e)), s%row_start(forces%value(e) + 1) - 1
-                     j = s%column(k)
-                     if (.not. self%scale(j) > 0.0_dp .or. home(j) < home(i)) cycle
-                     n = n + 1
-                     if (pass == 2) call entries%add(i, j, &
-                        self%scale(i)*forces%coefficient(e)*s%value(k))
-                  end do
-               end do
-               if (abs(self%rows%spring(i)) > 0.0_dp) then
-                  n = n + 1
-                  if (pass == 2) call entries%add(i, i, self%scale(i)*self%rows%spring(i))
-               end if
-               do k = s%row_start(i), s%row_start(i + 1) - 1
-                  do e = rows%start(s%column(k)), rows%start(s%column(k) + 1) - 1
-                     j = rows%value(e)
-                     if (home(j) <= home(i)) cycle
-                     n = n + 1
-                     if (pass == 2) call entries%add(j, i, &
-                        self%scale(j)*rows%coefficient(e)*s%value(k))
-                  end do
+         associate (used => forces%value(:forces%start(forces%count + 1) - 1))
+            call entries%reserve(sum(s%row_start(used + 1) - s%row_start(used)) + size(home) + &
+               2*of_motions + self%border%count)
+         end associate
+         do i = 1, size(home)
+            if (.not. self%scale(i) > 0.0_dp) cycle
+            if (.not. changed(home(i))) cycle
+            do e = forces%start(i), forces%start(i + 1) - 1
+               do k = s%row_start(forces%value(e)), s%row_start(forces%value(e) + 1) - 1
+                  j = s%column(k)
+                  if (.not. self%scale(j) > 0.0_dp .or. home(j) < home(i)) cycle
+                  call entries%add(i, j, self%scale(i)*forces%coefficient(e)*s%value(k))
                end do
             end do
-            if (pass == 1) call entries%reserve(n + 2*of_motions + self%border%count)
+            if (abs(self%rows%spring(i)) > 0.0_dp) call entries%add(i, i, &
+               self%scale(i)*self%rows%spring(i))
+            do k = s%row_start(i), s%row_start(i + 1) - 1
+               do e = rows%start(s%column(k)), rows%start(s%column(k) + 1) - 1
+                  j = rows%value(e)
+                  if (home(j) > home(i)) call entries%add(j, i, &
+                     self%scale(j)*rows%coefficient(e)*s%value(k))
+               end do
+            end do
          end do
       end associate
    end subroutine form_entries
