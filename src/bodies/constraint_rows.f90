@@ -26,6 +26,12 @@ module constraint_rows
    !> rounding; a body would be stiff along what is left of them.
    real(dp), parameter :: negligible_in_tie = 1.0e-9_dp
 
+   !> The same for rows with introduced values. A part p writes a degree of freedom by 1/p times
+   !> these values, and the rounding of the matrix grows by 1/p^2. Contact points that form a cycle
+   !> but for p, as where nodes of matching faces are not exactly opposite, end with a link, which
+   !> keeps p as it is. With p below 0.003, rounding decides what sticks in a rod of twelve pellets.
+   real(dp), parameter :: least_beside_values = 1.0e-2_dp
+
    !> Part of a row's largest coefficient that a degree of freedom needs to be written by the row.
    real(dp), parameter :: pivot_of_choice = 0.1_dp, least_pivot = 0.5_dp
 
@@ -84,7 +90,7 @@ contains
       real(dp) :: least(rows%count)
       integer :: i
 
-      least = [(largest(rows, i)*merge(negligible_in_tie, negligible, is_tie(rows, i)), &
+      least = [(largest(rows, i)*merge(negligible_in_tie, least_beside_values, is_tie(rows, i)), &
          i=1, rows%count)]
    end function least_coefficients
 
