@@ -29,7 +29,7 @@ module constraint_rows
    !> The same for rows with introduced values. A part p writes a degree of freedom by 1/p times
    !> these values, and the rounding of the matrix grows by 1/p^2. Contact points that form a cycle
    !> but for p, as where nodes of matching faces are not exactly opposite, end with a link, which
-   !> keeps p as it is. With p below 0.003, rounding decides what sticks in a rod of twelve pellets.
+   !> keeps p as it is. With p below 0.004, rounding decides what sticks in a rod of twelve pellets.
    real(dp), parameter :: least_beside_values = 1.0e-2_dp
 
    !> Part of a row's largest coefficient that a degree of freedom needs to be written by the row.
