@@ -23,6 +23,7 @@ module contact_fronts
       real(dp), private :: border_size = 1.0_dp    !! scale of the border [force/length]
       type(sum_list_type), private :: border       !! motions that border the rows
       logical, private :: may_change = .false.     !! whether other sets may use the factors
+      real(dp), private :: hold = 0.0_dp           !! that the border has [force/length]
       type(front_factors_type), private :: fronts
       type(contact_rows_type), private :: rows     !! that were factored
       real(dp), allocatable, private :: scale(:)   !! (tail) factors of the rows, 0 where not free
@@ -46,8 +47,8 @@ contains
       logical :: is_plain, changed(size(system%tree%parent))
       integer :: i
 
-      is_plain = hold <= 0.0_dp .and. unconstrained%count == 0
-      if (self%may_change .and. is_plain) then
+      is_plain = unconstrained%count == 0
+      if (self%may_change .and. is_plain .and. abs(hold - self%hold) <= 0.0_dp) then
          changed = .false.
          associate (differing => differ(rows, self%rows), tree => system%tree)
             do i = 1, size(differing)
@@ -66,6 +67,7 @@ contains
          changed = .true.
       end if
       self%rows = rows
+      self%hold = hold
       call set_scale(self, system)
       self%full = self%full + 1
       call factor_fronts(self, system, hold, changed, singular)
