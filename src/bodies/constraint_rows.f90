@@ -27,11 +27,11 @@ module constraint_rows
    real(dp), parameter :: negligible_in_tie = 1.0e-9_dp
 
    !> The same for rows of contact points, as part of the largest coefficient that the degree of
-   !> freedom has in any of them: rotations have those of their arms. A part p writes it by 1/p times
-   !> their relative values, and the rounding of the matrix grows by 1/p^2. Contact points that form a
-   !> cycle but for p, as where nodes of matching faces are not exactly opposite, end with a link,
-   !> which keeps p as it is. With p below 0.004 rounding decides what sticks in a rod of twelve
-   !> pellets.
+   !> freedom has in any of them: rotations have those of their arms. A part p writes it by 1/p
+   !> times their relative values, and the rounding of the matrix grows by 1/p^2. Contact points
+   !> that form a cycle but for p, as where nodes of matching faces are not exactly opposite, end
+   !> with a link, which keeps p as it is. With p below 0.004 rounding decides what sticks in a rod
+   !> of twelve pellets.
    real(dp), parameter :: least_of_contact = 1.0e-2_dp
 
    !> Part of a row's largest coefficient that a degree of freedom needs to be written by the row.

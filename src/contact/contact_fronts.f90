@@ -6,7 +6,8 @@
 !>
 !>    (C S + K) x + Z mu = f,   Z^T x = mu/hold,
 !>
-!> without a hold Z^T x = 0.
+!> without a hold Z^T x = 0. Fronts stay from set to set where nothing borders them, or all motions
+!> with the same hold.
 module contact_fronts
    use contact_system, only: contact_rows_type, contact_system_type, differ
    use front_factors, only: front_factors_type
