@@ -3,10 +3,10 @@
 !> u are the degrees of freedom, g their prescribed values, v the unknowns: the degrees of freedom
 !> that no constraint writes by others, the values that constraints introduce, such as relative
 !> displacements of contact points, and the forces of links. A link is a constraint that says
-!> nothing new of the degrees of freedom, as where contact points form a cycle; it relates
-!> introduced values to each other, G v + H g = 0. An unknown force, a Lagrange multiplier mu, keeps
-!> it: rows k G v = -k H g, columns k G^T mu. k is the stiffness of the bodies there, so that k mu
-!> is the force and mu compares with displacements.
+!> nothing new of the degrees of freedom, or little, as where contact points form a cycle; it
+!> relates introduced values to each other, G v + H g = 0. An unknown force, a Lagrange multiplier
+!> mu, keeps it: rows k G v = -k H g, columns k G^T mu. k is the stiffness of the bodies there, so
+!> that k mu is the force and mu compares with displacements.
 !>
 !> Ties are constraints of degrees of freedom alone, A u = 0; they have no unknowns. Their forces,
 !> A^T lambda, follow from what the bodies leave out of balance at the degrees of freedom that ties

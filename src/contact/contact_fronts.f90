@@ -6,7 +6,8 @@
 !>
 !>    (C S + K) x + Z mu = f,   Z^T x = mu/hold,
 !>
-!> without a hold Z^T x = 0.
+!> without a hold Z^T x = 0. Fronts stay from set to set where nothing borders them, or all motions
+!> with the same hold.
 module contact_fronts
    use contact_system, only: contact_rows_type, contact_system_type, differ
    use front_factors, only: front_factors_type
@@ -23,6 +24,7 @@ module contact_fronts
       real(dp), private :: border_size = 1.0_dp    !! scale of the border [force/length]
       type(sum_list_type), private :: border       !! motions that border the rows
       logical, private :: may_change = .false.     !! whether other sets may use the factors
+      real(dp), private :: hold = 0.0_dp           !! that the border has [force/length]
       type(front_factors_type), private :: fronts
       type(contact_rows_type), private :: rows     !! that were factored
       real(dp), allocatable, private :: scale(:)   !! (tail) factors of the rows, 0 where not free
@@ -46,8 +48,8 @@ contains
       logical :: is_plain, changed(size(system%tree%parent))
       integer :: i
 
-      is_plain = hold <= 0.0_dp .and. unconstrained%count == 0
-      if (self%may_change .and. is_plain) then
+      is_plain = unconstrained%count == 0
+      if (self%may_change .and. is_plain .and. abs(hold - self%hold) <= 0.0_dp) then
          changed = .false.
          associate (differing => differ(rows, self%rows), tree => system%tree)
             do i = 1, size(differing)
@@ -66,6 +68,7 @@ contains
          changed = .true.
       end if
       self%rows = rows
+      self%hold = hold
       call set_scale(self, system)
       self%full = self%full + 1
       call factor_fronts(self, system, hold, changed, singular)

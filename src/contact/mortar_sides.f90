@@ -220,6 +220,20 @@ contains
       beside = direction(1)*(x(2, :) - point(2)) - direction(2)*(x(1, :) - point(1))
    end function beside_line
 
+   !> How far points lie beside the normal at a point of a slave's side. All counts from the side's
+   !> first node: so what the distance from the origin makes of rounding is that of nodes alone.
+   pure function beside_normal(side, psi, x) result(beside)
+      type(slave_side_type), intent(in) :: side
+      real(dp), intent(in) :: psi(:)          !! shape functions at the point of the side
+      real(dp), intent(in) :: x(:, :)         !! (2, n) the points [length]
+      real(dp) :: beside(size(x, 2))          !! times the length of the normal
+
+      associate (first => side%x(:, 1))
+         beside = beside_line(matmul(side%normal, psi), matmul(side%x - spread(first, 2, &
+            size(psi)), psi), x - spread(first, 2, size(x, 2)))
+      end associate
+   end function beside_normal
+
    !> Coordinate of a side whose normal meets a point, by the Illinois method: false position, in
    !> which an end that stays counts half as much each time.
    pure function opposite_coordinate(side, x, at_ends) result(xi)
@@ -238,7 +252,7 @@ contains
          before = xi
          xi = (ends(1)*values(2) - ends(2)*values(1))/(values(2) - values(1))
          psi = side_shape(size(psi), xi)
-         value = sum(beside_line(matmul(side%normal, psi), matmul(side%x, psi), reshape(x, [2, 1])))
+         value = sum(beside_normal(side, psi, reshape(x, [2, 1])))
          if (abs(value) <= 0.0_dp .or. abs(xi - before) <= epsilon(xi)) exit
          if (value*values(2) < 0.0_dp) then
             ends(1) = ends(2)
@@ -258,15 +272,14 @@ contains
       real(dp), intent(in) :: xi              !! coordinate of the slave's side
       type(face_line_type), intent(in) :: master
       real(dp) :: beside_it(size(master%x, 2)), psi(size(side%nodes))
-      real(dp) :: eta, gap, nearest, normal(2), point(2), x(2, master%side_nodes)
+      real(dp) :: eta, gap, nearest, point(2), x(2, master%side_nodes)
       integer :: nodes(master%side_nodes), s
 
       side_opposite = 0
       nearest = huge(nearest)
       psi = side_shape(size(psi), xi)
-      normal = matmul(side%normal, psi)
       point = matmul(side%x, psi)
-      beside_it = beside_line(normal, point, master%x)
+      beside_it = beside_normal(side, psi, master%x)
       do s = 1, side_total(size(master%x, 2), master%side_nodes, master%closed)
          nodes = side_positions(s, size(nodes), size(beside_it))
          if (beside_it(nodes(1))*beside_it(nodes(size(nodes))) > 0.0_dp) cycle
@@ -295,7 +308,7 @@ contains
       integer :: step
 
       psi = side_shape(size(psi), xi)
-      beside_it = beside_line(matmul(side%normal, psi), matmul(side%x, psi), x)
+      beside_it = beside_normal(side, psi, x)
       do step = 1, most_steps
          slope = side_slope(size(x, 2), eta)
          rate = dot_product(beside_it, slope)

@@ -7,10 +7,12 @@ HEIGHT, POWER, PRESS = 10.0, 0.4, 2.0
 ALONG = 4   # elements of a pellet along the rod
 
 
-def rod(pellets, tail=None, kind="CAX4", expansion=1e-5, friction=0.1, counts=(4, ALONG, 1)):
+def rod(pellets, tail=None, kind="CAX4", expansion=1e-5, friction=0.1, counts=(4, ALONG, 1),
+        starts=(0.0, 0.0)):
     """Return the cards of a rod; its kind is that of its elements, or what is special.
 
-    Counts are elements of a pellet across and along, and of the tube across.
+    Counts are elements of a pellet across and along, and of the tube across; starts are where the
+    pellets and the tube begin.
     """
     across, along, of_tube = counts
     element = kind if kind.startswith("CAX") else "CAX4"
@@ -23,11 +25,12 @@ def rod(pellets, tail=None, kind="CAX4", expansion=1e-5, friction=0.1, counts=(4
     pair = ", PAIRING=SURFACES" if kind == "mortar" else ", PAIRING=NODES"
     names = [f"P{k}" for k in range(pellets)]
     cards = [*mesh("TUBE", np.linspace(4.12, 4.7, of_tube + 1),
-                   np.linspace(0, HEIGHT * pellets, along * pellets + 1), element, first=100001),
+                   starts[1] + np.linspace(0, HEIGHT * pellets, along * pellets + 1), element,
+                   first=100001),
              *material("TUBE", over(0.8, 7e4, 0.35), over(1.2, 6e-6), over(0.7, 0.017), **stores)]
     for k, name in enumerate(names):
         cards += [*mesh(name, np.linspace(0, 4.1, across + 1),
-                        np.linspace(HEIGHT * k, HEIGHT * (k + 1), along + 1), element,
+                        starts[0] + np.linspace(HEIGHT * k, HEIGHT * (k + 1), along + 1), element,
                         first=100 * k + 1),
                   *material(name, over(0.8, 1.8e5, 0.316), over(1.2, expansion), over(0.7, 3e-3),
                            **stores)]

@@ -8,7 +8,7 @@ import pytest
 from blocks import write
 from changes import note_changes
 from deck_runs import COUPLED, copy_deck, run, solve
-from pellets import PRESS, rod
+from pellets import ALONG, HEIGHT, PRESS, rod
 
 KINDS = ["CAX4", "CAX8", "mortar", "tables", "transient"]
 
@@ -38,6 +38,23 @@ def test_the_sparse_tail_gives_what_the_full_matrix_gives(tmp_path, pellets, kin
                         ("heat_flux", np.max(np.abs(full["heat_flux"]))),
                         ("gap", np.max(np.abs(full["gap"]))), ("slip", np.max(np.abs(full["gap"])))):
         assert sparse[name] == pytest.approx(full[name], rel=0, abs=1e-9 * scale), name
+
+
+@pytest.mark.parametrize("tail", ["FULL", "SPARSE"])
+@pytest.mark.parametrize(("base", "offset"), [(1700.0, 0.0), (0.0, 1e-12), (0.0, 1e-8), (0.0, 1e-4)])
+def test_mortar_points_that_all_but_form_cycles_act_as_cycles(tmp_path, tail, base, offset):
+    """Nothing depends on where a rod is, and no more than in proportion on a small offset.
+
+    Wall, wall and end of two pellets make a cycle where the nodes of the tube are opposite theirs.
+    """
+    exact = contact_of(solve(write(tmp_path / "exact.inp", rod(4, tail, "mortar"))))
+    deck = write(tmp_path / "moved.inp", rod(4, tail, "mortar", starts=(base, base + offset)))
+    moved = contact_of(solve(deck))
+    part = offset / (HEIGHT / ALONG)
+    assert np.array_equal(exact["status"], moved["status"])
+    for name in ("pressure", "shear", "heat_flux", "gap"):
+        scale = np.max(np.abs(exact[name]))
+        assert moved[name] == pytest.approx(exact[name], rel=0, abs=(1e-8 + 100 * part) * scale), name
 
 
 def test_forces_on_every_pellet_balance(tmp_path):
