@@ -12,6 +12,7 @@ module rigid_motions
    use kinds, only: dp
    use mesh, only: mesh_type
    use rigid_parts, only: find_rigid_parts, rigid_parts_type
+   use sorting, only: unique_sorted
    use sparse_null_space, only: null_space_of
    use sum_lists, only: sum_list_type
    use text, only: to_text
@@ -293,18 +294,40 @@ contains
                motion%deforms = other%deforms
                motion%way = other%way
             else if ((other%turns .eqv. motion%turns) .and. other%way == motion%way) then
-               ! Parts of one body are told once.
-               if (.not. any(alike .and. bodies%body == bodies%body(p))) motion%company = &
-                  motion%company//' together with body '//to_text(bodies%body(p))
                alike(p) = .true.
             else
                motion%company = motion%company//' while body '//to_text(bodies%body(p))//' '// &
                   other%verb()//'s '//other%way
             end if
          end do
+         motion%company = together_with(unique_sorted(pack(bodies%body, alike .and. &
+            bodies%body /= motion%body)))//motion%company
          if (all(alike .or. bodies%body /= motion%body)) motion%element = 0
       end associate
    end function motion_of
+
+   !> The bodies that move as another one does, in words.
+   pure function together_with(bodies) result(words)
+      integer, intent(in) :: bodies(:)            ! ascending, each once
+      character(:), allocatable :: words
+      integer :: first, last
+
+      words = ''
+      first = 1
+      do while (first <= size(bodies))
+         last = first
+         do while (last < size(bodies))
+            if (bodies(last + 1) > bodies(last) + 1) exit
+            last = last + 1
+         end do
+         words = words//', '//to_text(bodies(first))
+         if (last < first + 2) last = first
+         if (last > first) words = words//' to '//to_text(bodies(last))
+         first = last + 1
+      end do
+      if (size(bodies) == 1) words = ' together with body '//words(3:)
+      if (size(bodies) > 1) words = ' together with bodies '//words(3:)
+   end function together_with
 
    !> What a motion does, in a word.
    pure function verb(self) result(word)

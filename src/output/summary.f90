@@ -234,7 +234,7 @@ contains
             to_text(b)//', '//place_words(model%mesh, errors(b)%node(q))))
       end do
       associate (cornered => count([(size(errors(b)%corners) > 0, b=1, size(errors))]))
-         if (cornered > 0) call append(lines, '  '//to_text(cornered)//' bodies have singular '// &
+         if (cornered > 0) call append(lines, '  '//to_text(cornered)//' of them with singular '// &
             'corners, where stress has no bound; the listing names them')
       end associate
    end subroutine add_largest_maxima
@@ -333,10 +333,14 @@ contains
       type(string_type), allocatable, intent(inout) :: lines(:)
       character(:), allocatable :: bound
       real(dp) :: values(1)
-      integer :: i, q
+      integer :: closed(size(interfaces)), i, points(size(interfaces)), q
 
-      call append(lines, 'largest in '//to_text(size(interfaces))//' interfaces; /contact of '// &
-         'the result file has every one, the listing those at the end of each step')
+      closed = [(count(self%contacts(i)%contact_state /= contact_open), i=1, size(interfaces))]
+      points = [(size(self%contacts(i)%contact_state), i=1, size(interfaces))]
+      call append(lines, 'largest in '//to_text(size(interfaces))//' interfaces ('// &
+         to_text(count(closed == points))//' closed, '//to_text(count(closed > 0 .and. &
+         closed < points))//' in part, '//to_text(count(closed == 0))//' open); /contact of the '// &
+         'result file has every one, the listing those at the end of each step')
       do q = 1, size(estimated)
          if (estimated(q)%resolution > 0.0_dp) cycle   ! an edge, which is at its own face
          i = largest_at(estimated(q)%name, self%contacts)

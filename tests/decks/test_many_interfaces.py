@@ -9,6 +9,7 @@ from blocks import write
 from changes import note_changes
 from deck_runs import COUPLED, copy_deck, run, solve
 from pellets import ALONG, HEIGHT, PRESS, rod
+from physics import material, mesh
 
 KINDS = ["CAX4", "CAX8", "mortar", "tables", "transient"]
 
@@ -170,3 +171,16 @@ def test_what_needs_the_full_matrix_is_refused_on_a_sparse_tail(tmp_path, card, 
     process = run("check", write(tmp_path / "rod.inp", cards))
     assert process.returncode == 1
     assert f"TAIL=SPARSE does not go with {name}" in process.stderr + process.stdout
+
+
+def test_bodies_that_move_together_are_named_in_few_words(tmp_path):
+    names = [f"B{k}" for k in range(5)]
+    cards = [card for k, name in enumerate(names) for card in [
+        *mesh(name, [0, 1], [k, k + 1], "CPE4", first=100 * k + 1), *material(name, (1e5, 0.3))]]
+    cards += ["*SURFACE INTERACTION, NAME=G", "*FRICTION", "0.3"]
+    for upper, lower in zip(names[1:], names, strict=False):
+        cards += [f"*CONTACT PAIR, INTERACTION=G, NAME={upper}", f"{upper}.BOTTOM, {lower}.TOP"]
+    deck = write(tmp_path / "pile.inp", [*cards, "*STEP", "*STATIC", "*BOUNDARY", "B0.BOTTOM, 2",
+                                         "*DSLOAD", "B4.TOP, P, 1.", "*END STEP"])
+    process = run("check", deck)
+    assert "can move along x together with bodies 2 to 5: no *BOUNDARY" in process.stderr
