@@ -3,6 +3,7 @@ module run_sizes
    use connections, only: connections_type
    use constraint_checks, only: check_equations, check_prescribed
    use errors, only: error_type
+   use field_problem, only: field_reduction_type
    use heat_reduction, only: heat_reduction_type
    use kinds, only: dp, long
    use linear_solver, only: linear_solver_type
@@ -91,14 +92,25 @@ contains
       integer :: i
 
       bytes = 0
-      if (allocated(bodies%equilibrium%solver)) call measure(bodies%equilibrium%solver)
+      call measure_field(bodies%equilibrium)
       do i = 1, size(heat_reductions)
-         if (allocated(heat_reductions(i)%solver)) call measure(heat_reductions(i)%solver)
+         call measure_field(heat_reductions(i))
       end do
       sizes%heat_factored = sum(heat_reductions%factored)
       sizes%stiffness_factored = bodies%equilibrium%factored
       sizes%factor_bytes = max(sizes%factor_bytes, bytes)
    contains
+      subroutine measure_field(field)
+         class(field_reduction_type), intent(in) :: field
+         integer :: k
+
+         if (allocated(field%solver)) call measure(field%solver)
+         if (.not. allocated(field%pieces%piece)) return
+         do k = 1, size(field%pieces%piece)
+            call measure(field%pieces%piece(k)%solver)
+         end do
+      end subroutine measure_field
+
       subroutine measure(solver)
          class(linear_solver_type), intent(in) :: solver
 
