@@ -74,6 +74,7 @@ class Contact:
     friction: float | None
     pairing: str = "NODES"
     units: dict = field(default_factory=dict)
+    parts: dict = field(default_factory=dict)  # of several interfaces: the points of each
 
     def __getitem__(self, key):
         return self.data[key]
@@ -95,7 +96,12 @@ class Contact:
         peak = self.data["pressure"].max(axis=1)
         found = self.data | {"peak_pressure": peak}
         return {key: found[key] for key in sorted(found, key=lambda key: not key.endswith("_force"))
-                if found[key].shape == peak.shape and key not in GEOMETRY}
+                if key == "peak_pressure" or self.is_total(key)}
+
+    def is_total(self, key):
+        """Whether a dataset has one value an increment: its length alone does not tell, as there may
+        be as many contact points as increments."""
+        return self.data[key].ndim == 1 and key not in GEOMETRY
 
     def unit(self, key):
         """Return the unit of a quantity; empty where the deck names none."""
@@ -111,7 +117,7 @@ class Contact:
         """
         if along in ("x", "y") and not self.grows(along):
             raise UserError(f"{along} does not grow along contact '{self.name}': use --along s")
-        choices = ("x", "y") if PATTERN in self.name else ("x",)
+        choices = ("x", "y") if self.parts else ("x",)
         name = along or next(filter(self.grows, choices), "s")
         return name, self.data[name]
 
@@ -121,6 +127,26 @@ class Contact:
         return bool(np.all(np.diff(places) >= 0.0)) and all(
             np.all(np.diff(places[piece]) > 0.0) for piece in self.pieces
         )
+
+    def follow(self, along):
+        """Whether several interfaces follow one another along x or y (None: either), as in a rod; in a
+        stack they overlap."""
+        return any(self.grows(name) for name in "xy" if along in (name, None))
+
+    def own_axis(self, along):
+        """Return (name, coordinate of the pairs) for several interfaces that overlap: the first of x,
+        y and the own arc length s of each that varies within every one, or that of `along`."""
+        starts = np.concatenate([np.full(part.stop - part.start, self.data["s"][part][0])
+                                 for part in self.parts.values()])
+        places = {"x": self.data["x"], "y": self.data["y"], "s": self.data["s"] - starts}
+        for name in [along] if along else places:
+            steps = [np.diff(places[name][part]) for part in self.parts.values()]
+            if all(np.all(each >= 0.0) or np.all(each <= 0.0) for each in steps) and all(
+                np.all(np.diff(places[name][piece]) != 0.0) for piece in self.pieces
+            ):
+                return name, places[name]
+        raise UserError(f"{along} is constant or turns along an interface of '{self.name}': "
+                        f"use --along {self.own_axis(None)[0]}")
 
     def edge_on_axis(self, edge, coordinate):
         """Return zone edges, given as arc length s, on the coordinate of the pairs."""
@@ -336,8 +362,10 @@ class Result:
             found = [self.contact(each) for each in self.contact_names
                      if re.fullmatch(words, each, re.IGNORECASE)]
             if found:
-                return Contact(name, join(found), common([each.friction for each in found]),
-                               common([each.pairing for each in found]) or "NODES", found[0].units)
+                data, parts = join(found)
+                return Contact(name, data, common([each.friction for each in found]),
+                               common([each.pairing for each in found]) or "NODES", found[0].units,
+                               parts)
         if name not in self.contact_names:
             known = ", ".join(self.contact_names) or "none"
             hint = nearest_name(name, self.contact_names)

@@ -12,10 +12,11 @@ from . import style
 from .edge_curves import edge_curves
 from .errors import UserError
 from .overlay import axis_words, file_parts, read_overlays
-from .result import MARKED, OPEN, PATTERN, SLIP, STICK
+from .result import MARKED, OPEN, SLIP, STICK
 from .style import plt
 from .tables import stack_tables, write_table
 from .zone_names import CURVES, name_regions
+from .zone_rows import Rows
 
 PASSED_OVER = ("increment", "time", "s_edge_contact", "s_edge_stick")
 NAMES = {OPEN: ("I", "open"), SLIP: ("II", "slip"), STICK: ("III", "stick")}
@@ -23,7 +24,7 @@ CURVE_NAMES = {"edge_contact": "edge of contact", "edge_stick": "edge of stick"}
 LINES = {"edge_contact": "solid", "edge_stick": (0, (3.5, 1.5))}
 WIDTHS = {"edge_contact": 1.0, "edge_stick": 1.8}  # dashes are seen where they lie on the other
 TINTS = ("#FFFFFF", "#DCE8F2", "#FBE9C8")  # of open, slip, stick
-FILLS = ("#FFFFFF", "#7FB2D9", style.ORANGE)
+FILLS = ("#DEDEDE", "#7FB2D9", style.ORANGE)  # white is where no interface is
 
 
 def draw(results, options):
@@ -49,12 +50,18 @@ def draw(results, options):
 def picture_of(result, name, options):
     """Return the diagram of one contact of a result."""
     contact = result.contact(name)
+    if contact.parts and not contact.follow(options.along):
+        rows = Rows(contact, options.along)
+        return Picture(result, contact, rows.along, rows.places, options.log, rows)
     return Picture(result, contact, *contact.axis(options.along), options.log)
 
 
 def tables_of(pictures, kind):
-    """Return the columns of one diagram, or of several with the names of their results."""
+    """Return the columns of one diagram, or of several with the names of their results; None where
+    a diagram has no such table."""
     tables = [getattr(picture, kind)() for picture in pictures]
+    if None in tables:
+        return None
     if len(tables) == 1:
         return tables[0]
     names = [np.full(len(table["load"]), picture.result.name, dtype=object)
@@ -64,9 +71,15 @@ def tables_of(pictures, kind):
 
 def draw_beside(pictures, overlays):
     """Return a figure with a panel for each result, on one scale of places."""
+    first = pictures[0]
+    for picture in pictures[1:]:
+        if (first.rows and first.rows.labels()) != (picture.rows and picture.rows.labels()):
+            raise UserError(f"{picture.result.path}: the interfaces '{first.contact.name}' are not "
+                            f"those of {first.result.path}: draw it alone")
+    width, height = first.size(2.05 * len(pictures))
     figure, panels = plt.subplots(
         1, len(pictures), sharey=True, layout="constrained", squeeze=False,
-        figsize=(0.9 + 2.05 * len(pictures), style.SINGLE_COLUMN),
+        figsize=(0.9 + width, height),
     )
     handles = {}
     drawn = [picture.draw_panel(axes, overlays) for picture, axes in zip(pictures, panels[0])]
@@ -90,14 +103,15 @@ def draw_beside(pictures, overlays):
 
 
 class Picture:
-    """The diagram of one contact."""
+    """The diagram of one contact, or of several interfaces: along a common coordinate, or in rows."""
 
-    def __init__(self, result, contact, along, coordinate, log=False):
+    def __init__(self, result, contact, along, coordinate, log=False, rows=None):
         if result.increments == 0:
             raise UserError(f"{result.path}: holds no accepted increment")
         self.result, self.contact = result, contact
         self.along, self.coordinate, self.log = along, coordinate, log
-        self.is_joined = PATTERN in contact.name  # its many edges would hide its zones
+        self.is_joined = bool(contact.parts)  # its many edges would hide its zones
+        self.rows = rows
         load = result.history["load"]
         rising = bool(np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0))
         self.rising = rising
@@ -126,7 +140,7 @@ class Picture:
     def draw(self, overlays):
         """Return the finished figure, with digitised figures laid over."""
         figure, axes = plt.subplots(
-            layout="constrained", figsize=(style.SINGLE_COLUMN * 1.25, style.SINGLE_COLUMN)
+            layout="constrained", figsize=self.size(style.SINGLE_COLUMN * 1.25)
         )
         self.settle(axes, self.window(self.draw_panel(axes, overlays)))
         figure.legend(
@@ -139,8 +153,15 @@ class Picture:
             name_regions(self, axes)
         return figure
 
+    def size(self, width):
+        """Return width and height of a figure whose panels are as wide as given."""
+        return self.rows.size(width) if self.rows else (width, style.SINGLE_COLUMN)
+
     def draw_panel(self, axes, overlays):
         """Draw zones, states and curves; return the places of the digitised figures laid over."""
+        if overlays and self.is_joined:
+            raise UserError(f"--with {overlays[0].label}: several interfaces have no curves to lay it "
+                            "over: name one with --contact")
         if overlays and not self.rising:
             raise UserError(
                 f"{self.result.path}: the load turns: no digitised figure fits over time"
@@ -160,7 +181,10 @@ class Picture:
     def settle(self, axes, window):
         """Set ranges and labels of the axes; return what the label says of the rest of the face and
         of the increments that are marked."""
-        axes.set_ylabel(self.result.units.label(f"${self.along}$", "length"))
+        if self.rows:
+            self.rows.name(axes, self.result.units)
+        else:
+            axes.set_ylabel(self.result.units.label(f"${self.along}$", "length"))
         low, high = limits(np.log10(self.abscissa) if self.log else self.abscissa)
         if self.log:
             style.log_abscissa(axes, 10.0**low, 10.0**high)
@@ -182,6 +206,8 @@ class Picture:
 
     def window(self, drawn):
         """Return the range of the ordinate: what contact has and digitised figures have."""
+        if self.rows:
+            return self.rows.window
         low, high = self.contact.window(self.coordinate)
         low, high = np.min(drawn, initial=low), np.max(drawn, initial=high)
         room = 0.025 * (high - low)
@@ -193,13 +219,15 @@ class Picture:
         load = between(self.abscissa)
         if self.log:
             load = 10.0 ** between(np.log10(self.abscissa))
-        looks = {"norm": BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3), "linewidth": 0.15, "zorder": 0,
-                 "edgecolors": "face"}  # no light seams
+        looks = {"norm": BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3), "zorder": 0}
         for piece in self.contact.pieces:
             status = self.status[:, piece]
             if self.is_joined:
-                places = np.clip(between(self.coordinate[piece]), *self.coordinate[piece][[0, -1]])
-                axes.pcolormesh(load, places, status.T, cmap=ListedColormap(FILLS), **looks)
+                at = self.coordinate[piece]
+                places = np.clip(between(at), at.min(), at.max())
+                # Dots have no light seams, and hide nothing of the narrow fields at the ends.
+                axes.pcolormesh(load, places, status.T, cmap=ListedColormap(FILLS), rasterized=True,
+                                **looks)
                 continue
             alike = (status == status[:, :1]).all(axis=1) & (status[:, 0] != OPEN)
             if not alike.any():
@@ -209,6 +237,8 @@ class Picture:
                 between(self.coordinate[piece])[[0, -1]],
                 np.where(alike, status[:, 0], OPEN)[None, :],
                 cmap=ListedColormap(TINTS),
+                linewidth=0.15,
+                edgecolors="face",  # no light seams
                 **looks,
             )
 
@@ -258,7 +288,10 @@ class Picture:
         return f"contact point {words.get(name, 'in ' + name)}"
 
     def table(self):
-        """Return the curves as columns: edges on the axis of the picture, and as arc length."""
+        """Return the curves as columns: edges on the axis of the picture, and as arc length; None of
+        several interfaces in rows, which have neither."""
+        if self.rows:
+            return None
         history = self.result.history
         columns = {
             "increment": np.arange(1, self.result.increments + 1),
@@ -270,9 +303,13 @@ class Picture:
         return columns
 
     def pair_table(self):
-        """Return the raw pair states as columns: the pairs of one increment below the last."""
+        """Return the raw pair states as columns: the pairs of one increment below the last; of several
+        interfaces with their names."""
         n, m = self.status.shape
-        return {
+        names = [np.full(part.stop - part.start, name, dtype=object)
+                 for name, part in self.contact.parts.items()]
+        columns = {"contact": np.tile(np.concatenate(names), n)} if names else {}
+        return columns | {
             "increment": np.repeat(np.arange(1, n + 1), m),
             "load": np.repeat(self.result.history["load"], m),
             "x": np.tile(self.contact["x"], n),
