@@ -14,8 +14,11 @@ from blocks import write  # noqa: E402
 from comparing import coarse_pictures  # noqa: E402, F401  fixture
 from deck_runs import solve  # noqa: E402
 from pellets import rod  # noqa: E402
+from synthetic import write_result  # noqa: E402
 
-from thercon_post.cli import main as plot  # noqa: E402
+from thercon_post import style, zones  # noqa: E402
+from thercon_post.cli import main as plot, parser  # noqa: E402
+from thercon_post.errors import UserError  # noqa: E402
 from thercon_post.result import Result  # noqa: E402
 
 PELLETS = 11   # W10 comes before W2 by name
@@ -56,3 +59,114 @@ def test_zones_and_profiles_of_all_interfaces_are_one_picture_each(result, tmp_p
 def test_a_pattern_that_no_interface_has_is_an_error(result, tmp_path, capsys):
     assert plot(["zones", str(result), "--contact", "Q*", "--out", str(tmp_path)]) == 2
     assert "no contact 'Q*'" in capsys.readouterr().err
+
+
+def write_stack(path, names, **choices):
+    """Write a result whose interfaces are flat, the first at y = 0, each 5 above the one before; the
+    last runs from the right to the left. Return the path."""
+    write_result(path, contacts=tuple(names), **choices)
+    with h5py.File(path, "a") as file:
+        for k, name in enumerate(names):
+            group = file[f"contact/{name}"]
+            group["y"][:] = 5.0 * k
+            group["normal_force"] = np.arange(len(file["history/load"])) + 100.0 * k
+        group["x"][:] = group["x"][()][::-1]
+    return path
+
+
+@pytest.mark.parametrize("columns", [6, 7])
+def test_places_are_joined_and_forces_summed_with_as_many_increments_as_contact_points(tmp_path, columns):
+    path, names = write_stack(tmp_path / "stack.vtkhdf", ("A1", "A2"), columns=columns), ("A1", "A2")
+    with Result(path) as one:
+        pairs, joined = [one.contact(name) for name in names], one.contact("A*")
+        assert (len(pairs[0]["x"]) == one.increments) == (columns == 7)
+        for name in ("x", "y", "weight", "slave_node", "master_node", "pressure"):
+            assert np.array_equal(joined[name], np.concatenate([pair[name] for pair in pairs], axis=-1))
+        assert np.array_equal(joined["normal_force"], 100.0 + 2.0 * np.arange(one.increments))
+        assert set(joined.totals()) == {"normal_force", "edge_contact", "edge_stick", "peak_pressure"}
+
+
+@pytest.mark.usefixtures("coarse_pictures")
+@pytest.mark.parametrize("picture", ["zones", "profiles", "courses"])
+def test_pictures_are_drawn_with_as_many_increments_as_contact_points(tmp_path, picture):
+    path = write_stack(tmp_path / "stack.vtkhdf", ("A1", "A2"), columns=7)
+    assert plot([picture, str(path), "--contact", "A*", "--out", str(tmp_path), "--csv"]) == 0
+
+
+def zone_picture(result, *options, pattern="*"):
+    """Return the zone diagram of interfaces, usually all, of a result that is open."""
+    options = parser().parse_args(["zones", str(result.path), *options])
+    return zones.picture_of(result, pattern, options)
+
+
+def test_interfaces_of_a_stack_have_a_row_each_along_their_common_coordinate(tmp_path):
+    names = [f"P{k}" for k in (2, 9, 10, 11)]  # P10 comes before P2 by name
+    with Result(write_stack(tmp_path / "stack.vtkhdf", names)) as one:
+        for options, key in (((), "x"), (("--along", "x"), "x"), (("--along", "s"), "s")):
+            picture = zone_picture(one, *options)
+            figure = picture.draw([])
+            (axes,) = figure.axes
+            assert [label.get_text() for label in axes.get_yticklabels()] == names
+            assert f"${key}$ = 0 to " in axes.get_ylabel()
+            ticks, count = axes.get_yticks(), len(picture.coordinate) // len(names)
+            for k, name in enumerate(names):
+                drawn = picture.coordinate[k * count : (k + 1) * count]
+                own = one.contact(name)[key]
+                assert np.diff(drawn) / np.diff(own) == pytest.approx(0.8 / np.ptp(own))
+                assert np.min(drawn) + np.max(drawn) == pytest.approx(2.0 * ticks[k])
+            assert np.diff(ticks) == pytest.approx(1.0)
+            style.plt.close(figure)
+        with pytest.raises(UserError, match=r"y is constant .* use --along x"):
+            zone_picture(one, "--along", "y")
+
+
+def test_the_picture_of_a_stack_grows_with_its_interfaces_up_to_a_limit(tmp_path):
+    heights, shown = [], []
+    for count in (10, 40, 150):
+        path = write_stack(tmp_path / f"{count}.vtkhdf", [f"P{k:03}" for k in range(count)], columns=2)
+        with Result(path) as one:
+            figure = zone_picture(one).draw([])
+            heights.append(figure.get_figheight())
+            shown.append([label.get_text() for label in figure.axes[0].get_yticklabels()])
+            style.plt.close(figure)
+    assert heights[0] < heights[1] < heights[2] < 11.7  # inches of a page
+    assert [len(each) for each in shown[:2]] == [10, 40]
+    assert shown[2][:2] in (["P000", "P003"], ["P000", "P002"])  # as many as there is room for
+    room = 72.0 * heights[2] / len(shown[2])
+    assert room > style.SETTINGS["ytick.labelsize"]
+
+
+def test_open_differs_from_where_no_interface_is(tmp_path):
+    with Result(write_stack(tmp_path / "stack.vtkhdf", ("A1", "A2"))) as one:
+        figure = zone_picture(one).draw([])
+        (axes,) = figure.axes
+        assert {mesh.cmap(0) for mesh in axes.collections}.isdisjoint({axes.get_facecolor()})
+        style.plt.close(figure)
+
+
+def test_a_rod_has_one_diagram_and_a_row_each_along_a_coordinate_in_which_its_interfaces_overlap(result):
+    with Result(result) as one:
+        picture = zone_picture(one, pattern="W*")
+        assert picture.rows is None and picture.along == "y"
+        assert len(zone_picture(one, "--along", "s", pattern="W*").rows.names) == PELLETS
+
+
+def test_tables_of_several_interfaces_name_the_one_of_each_contact_point(tmp_path):
+    with Result(write_stack(tmp_path / "stack.vtkhdf", ("A2", "A10"))) as one:
+        table = zone_picture(one).pair_table()
+        for name in ("A2", "A10"):
+            rows = table["contact"] == name
+            assert np.array_equal(table["status"][rows], one.contact(name)["status"].ravel())
+
+
+@pytest.mark.usefixtures("coarse_pictures")
+def test_results_with_other_interfaces_and_digitised_figures_are_refused(tmp_path, capsys):
+    two = write_stack(tmp_path / "two.vtkhdf", ("A1", "A2"))
+    three = write_stack(tmp_path / "three.vtkhdf", ("A1", "A2", "A3"))
+    asked = ["--contact", "A*", "--out", str(tmp_path)]
+    assert plot(["zones", str(two), str(three), *asked]) == 2
+    assert "three.vtkhdf: the interfaces 'A*' are not those of" in capsys.readouterr().err
+    assert plot(["zones", str(two), str(two), *asked]) == 0
+    (tmp_path / "paper.csv").write_text("load,edge_contact\n60,1\n900,2\n")
+    assert plot(["zones", str(two), "--with", str(tmp_path / "paper.csv"), *asked]) == 2
+    assert "--with paper: several interfaces" in capsys.readouterr().err
