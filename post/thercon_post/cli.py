@@ -22,7 +22,10 @@ digitised shear is immaterial. Columns of the tables written here are passed ove
 
 WITH_ZONES = """A digitised figure is a CSV file with a heading. Columns: load and any of
 edge_contact, edge_stick, on the axis of the picture (x, or s with --along s). Empty fields are
-passed over, so curves need not share their loads."""
+passed over, so curves need not share their loads. --contact 'GAP-*' draws all interfaces whose
+names match: along x or y where they follow one another, as in a rod; where they overlap in it, as
+in a stack, in a row for each, with its name. All rows show the same coordinate: x if it varies
+within every interface, else y, else the arc length s of each; --along selects another one."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -134,7 +137,7 @@ def add_name(picture):
     """Add the choice of contact."""
     picture.add_argument(
         "--contact", metavar="NAME", help="interface (default: all, a picture each); those that a pattern "
-        "such as 'GAP-*' means are drawn in one picture, along x or y"
+        "such as 'GAP-*' means are drawn in one picture"
     )
 
 
