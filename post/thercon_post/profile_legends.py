@@ -19,19 +19,20 @@ QUANTITY_LINES = {
 MU_P_WIDTH = 1.4  # its dots are seen where friction lies on them
 
 COLUMNS = 2  # of the legend
+PARTS_NAMED = 8  # of the interfaces that overlap
 LEGEND_LINE = 0.16  # height of a line of the legend, in inches
 
 
 def add(picture, panels, kinds, overlays):
     """Name curves, loads, zone edges and digitised figures on the panels of a picture."""
-    several = len(picture.rows) > 1
+    several = picture.several
     handles = []
     for axes, quantities, letter in zip(panels, kinds, "abc"):
         handles += quantity_handles(picture, quantities) if len(quantities) > 1 else []
         if len(kinds) > 1:
             place = {"xytext": (-30, 4), "textcoords": "offset points"}
             axes.annotate(f"({letter})", (0, 1), xycoords="axes fraction", **place)
-    handles += load_handles(picture) if several else []
+    handles += (part_handles if picture.overlap else load_handles)(picture) if several else []
     handles += edge_handles(picture)
     handles += [overlay.handle() for overlay in overlays]
     if handles:  # outside: within the panels it would lie on curves
@@ -69,6 +70,14 @@ def load_handles(picture):
         Line2D([], [], color=colour, marker=style.marker(number), label=text)
         for number, (colour, text) in enumerate(zip(picture.colours, load_texts(picture)))
     ]
+
+
+def part_handles(picture):
+    """Return the legend's entries for the curves of interfaces that overlap: of many for some, their
+    colours being in the order of their places."""
+    names = list(picture.contact.parts)
+    shown = np.unique(np.linspace(0, len(names) - 1, PARTS_NAMED).round().astype(int))
+    return [Line2D([], [], color=picture.colours[k], label=style.plain(names[k])) for k in shown]
 
 
 def load_texts(picture):

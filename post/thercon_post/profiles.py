@@ -5,7 +5,8 @@ import numpy as np
 from . import profile_legends, style
 from .overlay import axis_words, file_parts, read_overlays
 from .profile_legends import EDGES, QUANTITY_LINES
-from .result import PATTERN, UNJUDGED
+from .errors import UserError
+from .result import UNJUDGED
 from .style import plt
 from .tables import stack_tables
 
@@ -40,8 +41,14 @@ class Picture:
     def __init__(self, result, contact, rows, options):
         self.result, self.contact, self.rows = result, contact, rows
         self.along, self.coordinate = contact.axis(options.along)
-        self.window = options.range or contact.window(self.coordinate, rows, with_heat=True)
-        self.colours = style.shades(len(rows))
+        self.overlap = contact.overlap(options.along)
+        if self.overlap and len(rows) > 1:
+            raise UserError(f"profiles of '{contact.name}' overlap, so several loads would hide each "
+                            "other: give one load, or name one interface with --contact")
+        whole = float(self.coordinate.min()), float(self.coordinate.max())
+        self.window = options.range or (
+            whole if self.overlap else contact.window(self.coordinate, rows, with_heat=True))
+        self.colours = style.shades(len(contact.parts) if self.overlap else len(rows))
         self.sign = friction_sign(contact, rows)
 
     def draw(self, overlays):
@@ -81,15 +88,20 @@ class Picture:
         return figure
 
     def panel_kinds(self):
-        """Return the quantities of each panel; with several loads friction has its own."""
+        """Return the quantities of each panel; with several curves friction has its own."""
         traction, flux = self.contact.get("shear"), self.contact.get("heat_flux")
         friction = []
         if traction is not None and np.any(traction[self.rows] != 0.0):
             friction = ["shear"] if self.contact.friction is None else ["shear", "mu_p"]
         kinds = [["pressure", *friction]]
-        if len(self.rows) > 1 and friction:
+        if self.several and friction:
             kinds = [["pressure"], friction]
         return kinds + ([["heat_flux"]] if flux is not None else [])
+
+    @property
+    def several(self):
+        """Whether panels have a curve for each of several loads or interfaces."""
+        return len(self.colours) > 1
 
     def values(self, quantity, row):
         """Return what is drawn of a quantity: the file's values, friction with one sign."""
@@ -108,7 +120,7 @@ class Picture:
         near = np.convolve(shown, [1, 1, 1])[1:-1] > 0  # lines run on to the next pairs
         drawn = np.concatenate((values[near], -values[near])) if both else values[near]
         looks = {"color": self.colours[number], "linestyle": QUANTITY_LINES[quantity]}
-        if quantity != "mu_p":
+        if quantity != "mu_p" and not self.overlap:  # the marks of some would hide the others
             marker = "s" if quantity == "shear" and len(self.rows) == 1 else style.marker(number)
             looks["mfc"] = "white" if quantity == "shear" else looks["color"]
             symbols = looks | {"linestyle": "none", "marker": marker}
@@ -117,10 +129,11 @@ class Picture:
             looks["lw"] = profile_legends.MU_P_WIDTH
         for piece in self.contact.pieces:
             places, heights = at[piece], values[piece]
+            if self.overlap:
+                looks["color"] = self.colours[self.contact.part_number(piece)]
             if quantity != "heat_flux":
-                edges = self.edges("edges_contact", row)
                 # no fall to zero at the face's end
-                edges = edges[(edges > places[0]) & (edges < places[-1])]
+                edges = self.edges("edges_contact", row, within=piece)
                 order = np.argsort(np.append(places, edges), kind="stable")
                 places = np.append(places, edges)[order]
                 heights = np.append(heights, np.zeros(len(edges)))[order]
@@ -138,12 +151,15 @@ class Picture:
 
     def marked_edges(self, key, row):
         """Return the edges of a kind that are marked: of many interfaces they would hide the rest."""
-        return [] if PATTERN in self.contact.name else self.edges(key, row)
+        return [] if self.contact.parts else self.edges(key, row)
 
-    def edges(self, key, row):
-        """Return the sharpened edges of a kind at one load, on the axis of the picture."""
+    def edges(self, key, row, within=slice(None)):
+        """Return the sharpened edges of a kind at one load, inside a piece of the face if that is
+        given, on the axis of the picture."""
         edges = np.atleast_1d(self.contact[key][row])
-        return self.contact.edge_on_axis(edges[~np.isnan(edges)], self.coordinate)
+        first, last = self.contact["s"][within][[0, -1]]
+        edges = edges[(edges > first) & (edges < last) if within != slice(None) else ~np.isnan(edges)]
+        return self.contact.edge_on_axis(edges, self.coordinate)
 
     def mark_edges(self, axes, row, colour):
         """Mark zone edges: through the panel for one load, at its foot for several."""
@@ -199,9 +215,11 @@ def friction_sign(contact, rows):
 def table(result, contact, rows):
     """Return the drawn profiles as columns: the pairs of one load below those of another."""
     count = len(contact["x"])
+    names = contact.point_names()
     tables = []
     for row in rows:
-        columns = {
+        columns = {"contact": names} if len(names) else {}
+        columns |= {
             "increment": np.full(count, row + 1),
             "load": np.full(count, result.history["load"][row]),
             "x": contact["x"],

@@ -111,10 +111,12 @@ class Contact:
 
     def axis(self, along):
         """Return (name, coordinate of the pairs): x where it grows along the face, of several
-        interfaces y where that does, else s.
+        interfaces y where that does, else s; of interfaces that overlap that of each.
 
         `along` is "x", "y", "s" or None for the choice made here.
         """
+        if self.overlap(along):
+            return self.own_axis(along)
         if along in ("x", "y") and not self.grows(along):
             raise UserError(f"{along} does not grow along contact '{self.name}': use --along s")
         choices = ("x", "y") if self.parts else ("x",)
@@ -128,17 +130,25 @@ class Contact:
             np.all(np.diff(places[piece]) > 0.0) for piece in self.pieces
         )
 
-    def follow(self, along):
-        """Whether several interfaces follow one another along x or y (None: either), as in a rod; in a
-        stack they overlap."""
-        return any(self.grows(name) for name in "xy" if along in (name, None))
+    def overlap(self, along):
+        """Whether there are several interfaces that overlap along a coordinate (None: x and y), as in
+        a stack; in a rod they follow one another."""
+        return bool(self.parts) and not any(self.grows(name) for name in "xy" if along in (name, None))
+
+    def part_number(self, piece):
+        """Return which of several interfaces, from 0, a piece is of."""
+        return sum(part.stop <= piece.start for part in self.parts.values())
+
+    def point_names(self):
+        """Return the interface of each contact point of several interfaces; nothing of a single one."""
+        return np.repeat(np.array(list(self.parts), dtype=object),
+                         [part.stop - part.start for part in self.parts.values()])
 
     def own_axis(self, along):
         """Return (name, coordinate of the pairs) for several interfaces that overlap: the first of x,
         y and the own arc length s of each that varies within every one, or that of `along`."""
-        starts = np.concatenate([np.full(part.stop - part.start, self.data["s"][part][0])
-                                 for part in self.parts.values()])
-        places = {"x": self.data["x"], "y": self.data["y"], "s": self.data["s"] - starts}
+        own = [self.data["s"][part] - self.data["s"][part][0] for part in self.parts.values()]
+        places = {"x": self.data["x"], "y": self.data["y"], "s": np.concatenate(own)}
         for name in [along] if along else places:
             steps = [np.diff(places[name][part]) for part in self.parts.values()]
             if all(np.all(each >= 0.0) or np.all(each <= 0.0) for each in steps) and all(

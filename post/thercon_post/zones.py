@@ -50,7 +50,7 @@ def draw(results, options):
 def picture_of(result, name, options):
     """Return the diagram of one contact of a result."""
     contact = result.contact(name)
-    if contact.parts and not contact.follow(options.along):
+    if contact.overlap(options.along):
         rows = Rows(contact, options.along)
         return Picture(result, contact, rows.along, rows.places, options.log, rows)
     return Picture(result, contact, *contact.axis(options.along), options.log)
@@ -306,9 +306,8 @@ class Picture:
         """Return the raw pair states as columns: the pairs of one increment below the last; of several
         interfaces with their names."""
         n, m = self.status.shape
-        names = [np.full(part.stop - part.start, name, dtype=object)
-                 for name, part in self.contact.parts.items()]
-        columns = {"contact": np.tile(np.concatenate(names), n)} if names else {}
+        names = self.contact.point_names()
+        columns = {"contact": np.tile(names, n)} if len(names) else {}
         return columns | {
             "increment": np.repeat(np.arange(1, n + 1), m),
             "load": np.repeat(self.result.history["load"], m),
