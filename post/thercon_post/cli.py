@@ -15,17 +15,21 @@ SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG.
 Files are DIR/NAME.PICTURE.png and so on, RESULT being NAME.vtkhdf; what was chosen by options
 stands in the name. Axes have the units of `*OPTIONS, UNITS=`, or none."""
 
+OF_SEVERAL = """--contact 'GAP-*' draws all interfaces whose names match: along x or y where they
+follow one another, as in a rod; where they overlap in it, as in a stack, {}. All show the same
+coordinate: x if it varies within every interface, else y, else the arc length s of each; --along
+selects another one."""
+
 WITH_PROFILES = """A digitised figure is a CSV file with a heading. Columns: x (or s, with --along
 s) and any of pressure, shear, heat_flux; one called load separates curves of several loads. Empty
 fields are passed over, so curves need not share their x. Where friction has one sign, that of the
-digitised shear is immaterial. Columns of the tables written here are passed over."""
+digitised shear is immaterial. Columns of the tables written here are passed over. """ + OF_SEVERAL.format(
+    "a line for each, from light to dark in the order of the stack, at one load")
 
 WITH_ZONES = """A digitised figure is a CSV file with a heading. Columns: load and any of
 edge_contact, edge_stick, on the axis of the picture (x, or s with --along s). Empty fields are
-passed over, so curves need not share their loads. --contact 'GAP-*' draws all interfaces whose
-names match: along x or y where they follow one another, as in a rod; where they overlap in it, as
-in a stack, in a row for each, with its name. All rows show the same coordinate: x if it varies
-within every interface, else y, else the arc length s of each; --along selects another one."""
+passed over, so curves need not share their loads. """ + OF_SEVERAL.format(
+    "a row for each, with its name, in the order of the stack")
 
 
 class Parser(argparse.ArgumentParser):
@@ -120,8 +124,8 @@ def add_contact(picture):
     picture.add_argument(
         "--along",
         choices=("x", "y", "s"),
-        help="x, y or arc length s (default: x where it grows along the face; of several interfaces in "
-        "one picture also y)",
+        help="x, y or arc length s (default: x where it grows along the face, else s; of several "
+        "interfaces see below)",
     )
     picture.add_argument(
         "--with",

@@ -48,7 +48,7 @@ def quantity_handles(picture, quantities):
     tau = r"$\tau$" if picture.sign > 0.0 else r"$-\tau$"
     bound = r"$\pm\mu p$" if picture.two_signs() else r"$\mu p$"
     names = {"pressure": "pressure $p$", "shear": f"friction {tau}", "mu_p": bound}
-    markers = {"pressure": "o", "shear": "s"} if len(picture.rows) == 1 else {}
+    markers = {} if picture.several else {"pressure": "o", "shear": "s"}
     return [
         Line2D(
             [],

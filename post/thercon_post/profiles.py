@@ -6,7 +6,7 @@ from . import profile_legends, style
 from .overlay import axis_words, file_parts, read_overlays
 from .profile_legends import EDGES, QUANTITY_LINES
 from .errors import UserError
-from .result import UNJUDGED
+from .result import OPEN, UNJUDGED
 from .style import plt
 from .tables import stack_tables
 
@@ -132,11 +132,7 @@ class Picture:
             if self.overlap:
                 looks["color"] = self.colours[self.contact.part_number(piece)]
             if quantity != "heat_flux":
-                # no fall to zero at the face's end
-                edges = self.edges("edges_contact", row, within=piece)
-                order = np.argsort(np.append(places, edges), kind="stable")
-                places = np.append(places, edges)[order]
-                heights = np.append(heights, np.zeros(len(edges)))[order]
+                places, heights = self.with_edges(row, piece, heights)
             for sign in (1, -1) if both else (1,):
                 axes.plot(places, sign * heights, zorder=2, **looks)
         return drawn
@@ -153,13 +149,21 @@ class Picture:
         """Return the edges of a kind that are marked: of many interfaces they would hide the rest."""
         return [] if self.contact.parts else self.edges(key, row)
 
-    def edges(self, key, row, within=slice(None)):
-        """Return the sharpened edges of a kind at one load, inside a piece of the face if that is
-        given, on the axis of the picture."""
+    def with_edges(self, row, piece, values):
+        """Return places and values of a piece with zeros at the edges of contact inside it; at a
+        contact point that is an edge, on its open side."""
+        s, status = self.contact["s"][piece], self.contact["status"][row, piece]
+        edges = self.contact["edges_contact"][row]
+        edges = edges[(edges > s[0]) & (edges < s[-1])]  # no fall to zero at the face's end
+        after = np.searchsorted(s, edges, side="right")
+        after -= (s[after - 1] == edges) & (status[after - 2] == OPEN)
+        on_axis = self.contact.edge_on_axis(edges, self.coordinate)
+        return np.insert(self.coordinate[piece], after, on_axis), np.insert(values, after, 0.0)
+
+    def edges(self, key, row):
+        """Return the sharpened edges of a kind at one load, on the axis of the picture."""
         edges = np.atleast_1d(self.contact[key][row])
-        first, last = self.contact["s"][within][[0, -1]]
-        edges = edges[(edges > first) & (edges < last) if within != slice(None) else ~np.isnan(edges)]
-        return self.contact.edge_on_axis(edges, self.coordinate)
+        return self.contact.edge_on_axis(edges[~np.isnan(edges)], self.coordinate)
 
     def mark_edges(self, axes, row, colour):
         """Mark zone edges: through the panel for one load, at its foot for several."""

@@ -16,7 +16,7 @@ from deck_runs import solve  # noqa: E402
 from pellets import rod  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
-from thercon_post import style, zones  # noqa: E402
+from thercon_post import profiles, style, zones  # noqa: E402
 from thercon_post.cli import main as plot, parser  # noqa: E402
 from thercon_post.errors import UserError  # noqa: E402
 from thercon_post.result import Result  # noqa: E402
@@ -170,3 +170,47 @@ def test_results_with_other_interfaces_and_digitised_figures_are_refused(tmp_pat
     (tmp_path / "paper.csv").write_text("load,edge_contact\n60,1\n900,2\n")
     assert plot(["zones", str(two), "--with", str(tmp_path / "paper.csv"), *asked]) == 2
     assert "--with paper: several interfaces" in capsys.readouterr().err
+
+
+def profile_picture(result, *options):
+    """Return the profiles of all interfaces of a result that is open."""
+    options = parser().parse_args(["profiles", str(result.path), *options])
+    return profiles.Picture(result, result.contact("*"), [result.increments - 1], options)
+
+
+def test_profiles_of_a_stack_have_a_line_for_each_interface_along_its_own_coordinate(tmp_path):
+    names = [f"P{k}" for k in (2, 9, 10)]
+    with Result(write_stack(tmp_path / "stack.vtkhdf", names)) as one:
+        picture = profile_picture(one)
+        figure = picture.draw([])
+        lines, pairs = figure.axes[-1].lines, [one.contact(name) for name in names]  # heat flux
+        assert len(lines) == len({line.get_color() for line in lines}) == len(names)
+        for line, pair in zip(lines, pairs):
+            assert np.array_equal(line.get_xdata(), pair["x"])
+            assert np.array_equal(line.get_ydata(), pair["heat_flux"][-1])
+        named = {text.get_text(): handle.get_color() for text, handle in
+                 zip(figure.legends[0].get_texts(), figure.legends[0].legend_handles)}
+        assert [named[name] for name in names] == [line.get_color() for line in lines]
+        style.plt.close(figure)
+
+
+def test_a_zone_that_begins_and_ends_at_contact_points_has_a_symmetric_profile(tmp_path):
+    path = write_stack(tmp_path / "stack.vtkhdf", ("A1", "A2"))
+    with h5py.File(path, "a") as file:
+        for group in file["contact"].values():
+            group["x"][:] = group["s"][:] = np.arange(21.0)
+            group["status"][:] = group["pressure"][:] = 0
+            group["status"][:, 8:13], group["pressure"][:, 8:13] = 1, [3.0, 2.0, 1.0, 2.0, 3.0]
+            group["edges_contact"][:, :2] = 8.0, 12.0
+    with Result(path) as one:
+        figure = profile_picture(one).draw([])
+        for line in figure.axes[0].lines:
+            assert np.array_equal(line.get_xdata(), 20.0 - line.get_xdata()[::-1])
+            assert np.array_equal(line.get_ydata(), line.get_ydata()[::-1])
+        style.plt.close(figure)
+
+
+def test_profiles_of_a_stack_at_several_loads_are_refused(tmp_path, capsys):
+    path = write_stack(tmp_path / "stack.vtkhdf", ("A1", "A2"))
+    assert plot(["profiles", str(path), "--contact", "A*", "--load", "300", "600"]) == 2
+    assert "give one load" in capsys.readouterr().err
