@@ -11,7 +11,7 @@ from .style import plt
 from .tables import stack_tables
 
 CURVES = ("pressure", "shear", "heat_flux")
-PASSED_OVER = ("x", "s", "contact", "increment", "load", "status", "mu_p")
+PASSED_OVER = ("x", "y", "s", "contact", "increment", "load", "status", "mu_p")
 
 
 def draw(result, options):
@@ -219,15 +219,12 @@ def friction_sign(contact, rows):
 def table(result, contact, rows):
     """Return the drawn profiles as columns: the pairs of one load below those of another."""
     count = len(contact["x"])
-    names = contact.point_names()
     tables = []
     for row in rows:
-        columns = {"contact": names} if len(names) else {}
-        columns |= {
+        columns = {
             "increment": np.full(count, row + 1),
             "load": np.full(count, result.history["load"][row]),
-            "x": contact["x"],
-            "s": contact["s"],
+            **contact.places(),
             "status": contact["status"][row],
         }
         columns |= {key: contact[key][row] for key in CURVES if contact.get(key) is not None}

@@ -139,17 +139,22 @@ class Contact:
         """Return which of several interfaces, from 0, a piece is of."""
         return sum(part.stop <= piece.start for part in self.parts.values())
 
-    def point_names(self):
-        """Return the interface of each contact point of several interfaces; nothing of a single one."""
-        return np.repeat(np.array(list(self.parts), dtype=object),
-                         [part.stop - part.start for part in self.parts.values()])
+    def places(self):
+        """Return where the contact points are as columns of tables: x and s, of several interfaces
+        with the name of each point's, y, and s along that one."""
+        if not self.parts:
+            return {"x": self.data["x"], "s": self.data["s"]}
+        counts = [part.stop - part.start for part in self.parts.values()]
+        starts = [self.data["s"][part.start] for part in self.parts.values()]
+        return {"contact": np.repeat(np.array(list(self.parts), dtype=object), counts),
+                "x": self.data["x"], "y": self.data["y"],
+                "s": self.data["s"] - np.repeat(starts, counts)}
 
     def own_axis(self, along):
         """Return (name, coordinate of the pairs) for several interfaces that overlap: the first of x,
         y and the own arc length s of each that varies within every one, or that of `along`."""
-        own = [self.data["s"][part] - self.data["s"][part][0] for part in self.parts.values()]
-        places = {"x": self.data["x"], "y": self.data["y"], "s": np.concatenate(own)}
-        for name in [along] if along else places:
+        places = self.places()
+        for name in along or "xys":
             steps = [np.diff(places[name][part]) for part in self.parts.values()]
             if all(np.all(each >= 0.0) or np.all(each <= 0.0) for each in steps) and all(
                 np.all(np.diff(places[name][piece]) != 0.0) for piece in self.pieces

@@ -306,13 +306,11 @@ class Picture:
         """Return the raw pair states as columns: the pairs of one increment below the last; of several
         interfaces with their names."""
         n, m = self.status.shape
-        names = self.contact.point_names()
-        columns = {"contact": np.tile(names, n)} if len(names) else {}
-        return columns | {
+        places = {name: np.tile(values, n) for name, values in self.contact.places().items()}
+        return {
             "increment": np.repeat(np.arange(1, n + 1), m),
             "load": np.repeat(self.result.history["load"], m),
-            "x": np.tile(self.contact["x"], n),
-            "s": np.tile(self.contact["s"], n),
+            **places,
             "status": self.status.ravel(),
         }
 

@@ -157,6 +157,8 @@ def test_tables_of_several_interfaces_name_the_one_of_each_contact_point(tmp_pat
         for name in ("A2", "A10"):
             rows = table["contact"] == name
             assert np.array_equal(table["status"][rows], one.contact(name)["status"].ravel())
+            for place in "xys":
+                assert table[place][rows] == pytest.approx(np.tile(one.contact(name)[place], one.increments))
 
 
 @pytest.mark.usefixtures("coarse_pictures")
