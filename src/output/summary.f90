@@ -339,8 +339,8 @@ contains
       points = [(size(self%contacts(i)%contact_state), i=1, size(interfaces))]
       call append(lines, 'largest in '//to_text(size(interfaces))//' interfaces ('// &
          to_text(count(closed == points))//' closed, '//to_text(count(closed > 0 .and. &
-         closed < points))//' in part, '//to_text(count(closed == 0))//' open); /contact of the '// &
-         'result file has every one, the listing those at the end of each step')
+         closed < points))//' in part, '//to_text(count(closed == 0))//' open); /contact of '// &
+         'the result file has every one, the listing those at the end of each step')
       do q = 1, size(estimated)
          if (estimated(q)%resolution > 0.0_dp) cycle   ! an edge, which is at its own face
          i = largest_at(estimated(q)%name, self%contacts)
