@@ -16,6 +16,8 @@ module pressure_overclosure
 
    !> Change of a tangent, relative, that counts as none: the law is then met to its square.
    real(dp), parameter :: settled_change = 1.0e-7_dp
+   !> Distance from a law, relative, that is rounding: on the corner of a table both tangents will do.
+   real(dp), parameter :: rounding = 1.0e-12_dp
 
    !> The tangents of all contact points.
    type :: pressure_overclosure_type
@@ -79,6 +81,8 @@ contains
       real(dp), intent(in) :: force(:)           !! (m) compressive [force]
       logical, intent(out) :: settled
       real(dp), dimension(size(force)) :: next, onset, stiffness
+      real(dp) :: found
+      logical :: is_met, is_same
       integer :: k
 
       settled = .true.
@@ -87,13 +91,15 @@ contains
       stiffness = self%stiffness
       do k = 1, size(force)
          if (.not. self%is_soft(k) .or. self%area(k) <= 0.0_dp) cycle
-         next(k) = self%law(k)%overlap_under(force(k)/self%area(k))
+         found = self%law(k)%overlap_under(force(k)/self%area(k))
+         next(k) = found
          if (abs(overlap(k) - self%at(k)) < abs(next(k) - self%at(k))) next(k) = overlap(k)
          call self%law(k)%tangent(next(k), stiffness(k), onset(k))
          stiffness(k) = stiffness(k)*self%area(k)
-         settled = settled .and. abs(stiffness(k) - self%stiffness(k)) <= &
-            settled_change*self%stiffness(k) .and. abs(onset(k) - self%onset(k)) <= &
-            settled_change*abs(next(k) - onset(k))
+         is_same = abs(stiffness(k) - self%stiffness(k)) <= settled_change*self%stiffness(k) .and. &
+            abs(onset(k) - self%onset(k)) <= settled_change*abs(next(k) - onset(k))
+         is_met = force(k) > 0.0_dp .and. abs(overlap(k) - found) <= rounding*abs(found - onset(k))
+         settled = settled .and. (is_same .or. is_met)
       end do
       if (settled) return
       self%at = next

@@ -56,8 +56,8 @@ PARTS = {
     "cycles of contact points": {"field_constraints:stiffness_alone", "linear_constraints:links"},
     "paths to a contact zone": {"lemke_path"},
     "bodies that contact holds": {"active_set:hold_softly",
-                                  "contact_system:free_motions", "contact_system:is_driven",
-                                  "contact_system:is_driven", "tail_motions:least_drive"},
+                                  "contact_system:free_motions", "tail_motions:is_driven",
+                                  "tail_motions:least_drive"},
     "films": {"loads:film_matrix", "unit_loads:film_matrix"},
     "estimated errors": {
         "divided_mesh", "doubled_increments", "error_estimator",

@@ -78,6 +78,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(contact_definition_type) :: contact
       type(surface_type) :: part
+      type(place_list_type) :: places
       character(:), allocatable :: left_out
       integer, allocatable :: masters(:), slaves(:)
       integer, parameter :: most_named = 5
@@ -117,8 +118,8 @@ contains
             part%name = deck%mesh%surfaces(chosen)%name
             part%card = deck%mesh%surfaces(chosen)%card
             deck%mesh%surfaces = [deck%mesh%surfaces, part]
-            deck%face_places = [deck%face_places, place_list_type(spread(data%place(2), 1, &
-               size(part%faces, 2)))]
+            places = place_list_type(spread(data%place(2), 1, size(part%faces, 2)))
+            deck%face_places = [deck%face_places, places]
             contact%master = size(deck%mesh%surfaces)
          end if
          if (.not. card%has('NAME')) contact%name = deck%mesh%surfaces(slaves(i))%name
