@@ -16,7 +16,7 @@ module pressure_overclosure
 
    !> Change of a tangent, relative, that counts as none: the law is then met to its square.
    real(dp), parameter :: settled_change = 1.0e-7_dp
-   !> Distance from a law, relative, that is rounding: on the corner of a table both tangents will do.
+   !> Distance from a law, relative, that is rounding: on a corner of a table both tangents will do.
    real(dp), parameter :: rounding = 1.0e-12_dp
 
    !> The tangents of all contact points.
