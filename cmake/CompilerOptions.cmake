@@ -50,11 +50,9 @@ if(THERCON_SANITIZERS)
       -fsanitize=${THERCON_SANITIZERS} -fno-sanitize=signed-integer-overflow -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
    # A call for every check takes the compiler two thirds of the time of checks that are written out, and
-   # the program longer: the kernels have the compiler's own limit. They alone have local arrays that
-   # they pass on with another size; elsewhere the run-time checks see every local variable.
+   # the program longer: the kernels have the compiler's own limit.
    set(called_checks --param=asan-instrumentation-with-call-threshold=)
-   set(local_checks --param=asan-stack=)
-   target_compile_options(thercon_sanitizers INTERFACE ${called_checks}0 ${local_checks}0)
+   target_compile_options(thercon_sanitizers INTERFACE ${called_checks}0)
    target_link_options(thercon_checks INTERFACE -fsanitize=${THERCON_SANITIZERS})
 endif()
 if(THERCON_COVERAGE)

@@ -51,8 +51,8 @@ module contact_system
    use pressure_overclosure, only: pressure_overclosure_type
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use sum_lists, only: sum_list_type
-   use tail_motions, only: tail_motions_type
    use tail_matrix, only: tail_matrix_type
+   use tail_motions, only: tail_motions_type
    implicit none
    private
    public :: contact_system_type, contact_rows_type, rows_of, differ, &

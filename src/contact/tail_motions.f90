@@ -135,18 +135,17 @@ contains
       class(tail_motions_type), intent(in) :: self
       real(dp), intent(in) :: sums(:)         !! (q) resultants of the forces without signs [force]
       real(dp) :: least(size(self%moves))     !! (tail) [force]
+      real(dp) :: part
       integer :: k, q
 
       least = 0.0_dp
       do q = 1, self%rigid%count
-         associate (first => self%rigid%start(q), last => self%rigid%start(q + 1) - 1)
-            do k = first, last
-               associate (to => least(self%rigid%value(k)))
-                  to = to + cancelled*sums(q)*abs(self%rigid%coefficient(k))/ &
-                     sum(self%rigid%coefficient(first:last)**2)
-               end associate
-            end do
-         end associate
+         part = cancelled*sums(q)/max(sum(self%rigid%coefficients_of(q)**2), tiny(1.0_dp))
+         do k = self%rigid%start(q), self%rigid%start(q + 1) - 1
+            associate (to => least(self%rigid%value(k)))
+               to = to + part*abs(self%rigid%coefficient(k))
+            end associate
+         end do
       end do
    end function least_drive
 

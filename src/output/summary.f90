@@ -145,7 +145,6 @@ contains
    !> Most lines that there can be.
    pure integer function most_lines(model)
       type(model_type), intent(in) :: model
-
       integer :: interfaces, told
 
       interfaces = size(model%contacts)
