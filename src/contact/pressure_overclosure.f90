@@ -3,10 +3,10 @@
 !>    force = stiffness (overlap - onset),
 !>
 !> and the contact system is solved with these tangents until they are those of the solution
-!> (Newton), or the solution is on the laws. From one to the next a contact point goes to the overlap that was found, or to that
-!> under the pressure that was found, whichever is nearer to where it was: an exponential law would
-!> overflow on the way to the former from a small pressure, and lose its pressure on the way to the
-!> latter from a large one.
+!> (Newton), or the solution is on the laws. From one to the next a contact point goes to the
+!> overlap that was found, or to that under the pressure that was found, whichever is nearer to
+!> where it was: an exponential law would overflow on the way to the former from a small pressure,
+!> and lose its pressure on the way to the latter from a large one.
 module pressure_overclosure
    use kinds, only: dp
    use overlap_laws, only: overlap_law_type
