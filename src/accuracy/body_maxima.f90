@@ -8,169 +8,122 @@ module body_maxima
    use field_recovery, only: point_map_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use mesh_division, only: child_element
-   use records, only: field_record_type
+   use model, only: model_type
+   use records, only: field_record_type, increment_record_type
    use refinement, only: parents_of
+   use simulation, only: simulation_type
+   use singular_corners, only: find_singular_corners
    implicit none
    private
-   public :: places_type, values_type, places_of, divided_places, divided_point, vertex_near, &
-      largest_change, elements_about, of_stress, of_temperature
+   public :: body_maxima_type, elements_about
 
    integer, parameter :: of_stress = 1, of_temperature = 2   !! as in maxima
 
-   !> Maxima of the bodies; point 0 where there is none.
-   type :: places_type
-      integer, allocatable :: point(:, :)        !! (maxima, bodies)
-      real(dp), allocatable :: value(:, :)       !! (maxima, bodies)
-   end type places_type
-
-   !> Values of a quantity at the points of two meshes.
-   type :: values_type
-      real(dp), allocatable :: before(:), after(:)
-   end type values_type
+   !> Maxima of the bodies of a mesh.
+   type :: body_maxima_type
+      real(dp), allocatable :: value(:, :)       !! (maxima, bodies); -huge where there is none
+      integer, allocatable :: node(:, :)         !! (maxima, bodies) likewise 0
+      logical, allocatable :: counts(:, :)       !! (maxima, elements) those looked at
+      logical, allocatable :: is_singular(:)     !! (nodes)
+   contains
+      procedure :: find
+      procedure :: of_divided
+      procedure :: larger_corners
+   end type body_maxima_type
 
 contains
 
-   !> The maxima of fields.
-   pure function places_of(mesh, points, fields, counts) result(found)
+   !> Finds the maxima of an increment.
+   subroutine find(self, model, simulation, record)
+      class(body_maxima_type), intent(out) :: self
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation        !! the run at its end
+      type(increment_record_type), intent(in) :: record      !! with its fields
+      integer :: i
+
+      allocate (self%is_singular(size(model%mesh%node_number)), source=.false.)
+      allocate (self%counts(size(maxima), size(model%mesh%element_kind)), source=.false.)
+      self%counts(of_temperature, :) = allocated(record%fields%reaction_heat)
+      if (allocated(record%fields%stress)) then
+         call find_singular_corners(model, simulation, record, self%is_singular)
+         self%counts(of_stress, :) = .not. elements_about(model%mesh, &
+            pack([(i, i=1, size(self%is_singular))], self%is_singular), 1)
+      end if
+      call find_places(self, model%mesh, simulation%recovery%points, record%fields)
+   end subroutine find
+
+   !> The maxima on a divided mesh, in the children of some of the elements that count.
+   pure subroutine of_divided(self, divided, near, fine)
+      class(body_maxima_type), intent(in) :: self
+      type(divided_mesh_type), intent(in) :: divided         !! solved
+      logical, intent(in) :: near(:)                         !! (elements before)
+      type(body_maxima_type), intent(out) :: fine
+      logical :: is_looked_at(size(self%counts, 1), size(near))
+
+      is_looked_at = self%counts .and. spread(near, 1, size(self%counts, 1))
+      fine%counts = is_looked_at(:, parents_of(divided%division))
+      call find_places(fine, divided%model%mesh, divided%points(), divided%record%fields)
+   end subroutine of_divided
+
+   !> Singular corners in one of whose elements stress is at least the body's largest elsewhere.
+   pure function larger_corners(self, mesh, points, fields) result(is_larger)
+      class(body_maxima_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points          !! of stress
+      type(point_map_type), intent(in) :: points
       type(field_record_type), intent(in) :: fields
-      logical, intent(in) :: counts(:, :)                 !! (maxima, elements) those looked at
-      type(places_type) :: found
+      logical :: is_larger(size(self%is_singular))           !! (nodes)
       integer :: e, n
 
-      allocate (found%point(size(maxima), mesh%body_count), source=0)
-      allocate (found%value(size(maxima), mesh%body_count), source=-huge(1.0_dp))
+      is_larger = .false.
+      if (.not. any(self%is_singular)) return
       associate (stress => point_values('von_mises', fields, points%node))
-         do e = 1, size(counts, 2)
+         do e = 1, size(mesh%element_kind)
+            n = element_node_count(mesh%element_kind(e))
+            if (maxval(stress(points%element_points(:n, e))) < self%value(of_stress, &
+               mesh%element_body(e))) cycle
+            is_larger(mesh%element_nodes(:n, e)) = .true.
+         end do
+      end associate
+      is_larger = is_larger .and. self%is_singular
+   end function larger_corners
+
+   !> The maxima of fields.
+   pure subroutine find_places(self, mesh, points, fields)
+      class(body_maxima_type), intent(inout) :: self      ! with those looked at
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points          ! of stress
+      type(field_record_type), intent(in) :: fields
+      integer :: e, n
+
+      allocate (self%node(size(maxima), mesh%body_count), source=0)
+      allocate (self%value(size(maxima), mesh%body_count), source=-huge(1.0_dp))
+      associate (stress => point_values('von_mises', fields, points%node))
+         do e = 1, size(self%counts, 2)
             n = element_node_count(mesh%element_kind(e))
             associate (places => points%element_points(:n, e))
-               if (size(stress) > 0 .and. counts(of_stress, e)) call take(of_stress, &
-                  mesh%element_body(e), places, stress(places), found)
-               if (counts(of_temperature, e)) call take(of_temperature, mesh%element_body(e), &
-                  places, fields%temperature(points%node(places)), found)
+               if (size(stress) > 0 .and. self%counts(of_stress, e)) call take(self, of_stress, &
+                  mesh%element_body(e), points%node(places), stress(places))
+               if (self%counts(of_temperature, e)) call take(self, of_temperature, &
+                  mesh%element_body(e), points%node(places), &
+                  fields%temperature(points%node(places)))
             end associate
          end do
       end associate
-   end function places_of
+   end subroutine find_places
 
-   !> Keeps the largest value at some points of a body where it exceeds what was found.
-   pure subroutine take(q, body, places, values, found)
+   !> Keeps the largest value at some nodes of a body where it exceeds what was found.
+   pure subroutine take(self, q, body, nodes, values)
+      class(body_maxima_type), intent(inout) :: self
       integer, intent(in) :: q, body
-      integer, intent(in) :: places(:)           ! (n) points
+      integer, intent(in) :: nodes(:)            ! (n)
       real(dp), intent(in) :: values(:)          ! (n)
-      type(places_type), intent(inout) :: found
       integer :: k
 
       k = maxloc(values, dim=1)
-      if (values(k) <= found%value(q, body)) return
-      found%value(q, body) = values(k)
-      found%point(q, body) = places(k)
+      if (values(k) <= self%value(q, body)) return
+      self%value(q, body) = values(k)
+      self%node(q, body) = nodes(k)
    end subroutine take
-
-   !> The maxima where some elements are divided, of the children of those looked at.
-   pure function divided_places(divided, counts) result(found)
-      type(divided_mesh_type), intent(in) :: divided
-      logical, intent(in) :: counts(:, :)                 !! (maxima, elements) before
-      type(places_type) :: found
-
-      found = places_of(divided%model%mesh, divided%points(), divided%fields, &
-         counts(:, parents_of(divided%division)))
-   end function divided_places
-
-   !> The point of a divided mesh that a point is there.
-   pure integer function divided_point(divided, mesh, points, point)
-      type(divided_mesh_type), intent(in) :: divided
-      type(mesh_type), intent(in) :: mesh                 !! before
-      type(point_map_type), intent(in) :: points          !! before
-      integer, intent(in) :: point
-      integer, allocatable :: after(:)
-      integer :: e
-
-      divided_point = 0
-      do e = 1, size(mesh%element_kind)
-         if (all(points%element_points(:, e) /= point)) cycle
-         after = points_after(divided, divided%points(), mesh, e)
-         divided_point = after(findloc(points%element_points(:, e), point, dim=1))
-         return
-      end do
-   end function divided_point
-
-   !> The largest change of values at the nodes of the elements at a node.
-   pure real(dp) function largest_change(divided, mesh, points, values, node) result(largest)
-      type(divided_mesh_type), intent(in) :: divided
-      type(mesh_type), intent(in) :: mesh                 !! before
-      type(point_map_type), intent(in) :: points          !! before
-      type(values_type), intent(in) :: values             !! at the points of both meshes
-      integer, intent(in) :: node                         !! of the mesh before
-      type(point_map_type) :: fine
-      integer :: e, n
-
-      fine = divided%points()
-      largest = 0.0_dp
-      do e = 1, size(mesh%element_kind)
-         n = element_node_count(mesh%element_kind(e))
-         if (all(mesh%element_nodes(:n, e) /= node)) cycle
-         largest = max(largest, maxval(abs(values%after(points_after(divided, fine, mesh, e)) - &
-            values%before(points%element_points(:n, e)))))
-      end do
-   end function largest_change
-
-   !> The points of a divided mesh that those of an element are there: at the same nodes in its
-   !> parts.
-   pure function points_after(divided, fine, mesh, e) result(after)
-      type(divided_mesh_type), intent(in) :: divided
-      type(point_map_type), intent(in) :: fine            ! of the divided mesh
-      type(mesh_type), intent(in) :: mesh                 ! before
-      integer, intent(in) :: e
-      integer :: after(element_node_count(mesh%element_kind(e)))
-      integer :: child, k, part, place
-
-      do child = 1, merge(4, 1, divided%is_divided(e))
-         part = e
-         if (divided%is_divided(e)) part = child_element(divided%division, e, child)
-         do k = 1, size(after)
-            place = findloc(divided%model%mesh%element_nodes(:, part), mesh%element_nodes(k, e), &
-               dim=1)
-            if (place > 0) after(k) = fine%element_points(place, part)
-         end do
-      end do
-   end function points_after
-
-   !> The largest value on the sides of the elements at a node by the parabola through both ends and
-   !> the middle of each, which is new on sides of two nodes; -huge where none has its vertex
-   !> within.
-   pure real(dp) function vertex_near(divided, mesh, values, node) result(largest)
-      type(divided_mesh_type), intent(in) :: divided
-      type(mesh_type), intent(in) :: mesh                 !! before
-      real(dp), intent(in) :: values(:)                   !! (nodes of the divided mesh and more)
-      integer, intent(in) :: node                         !! of the mesh before
-      logical :: is_near(size(mesh%node_number))
-      integer :: e, middle, s
-      real(dp) :: bend, slope
-
-      is_near = .false.
-      do e = 1, size(mesh%element_kind)
-         associate (own => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
-            if (any(own == node)) is_near(own) = .true.
-         end associate
-      end do
-      largest = -huge(1.0_dp)
-      associate (sides => divided%division%sides)
-         do s = 1, sides%count
-            if (.not. all(is_near(sides%ends([1, 3], s)))) cycle
-            middle = merge(sides%ends(2, s), divided%division%between(1, s), sides%ends(2, s) > 0)
-            if (middle == 0) cycle
-            associate (a => values(sides%ends(1, s)), b => values(middle), c => &
-               values(sides%ends(3, s)))
-               slope = 0.5_dp*(c - a)
-               bend = 0.5_dp*(a + c) - b
-               if (2*abs(bend) > abs(slope)) largest = max(largest, b - slope**2/(4*bend))
-            end associate
-         end do
-      end associate
-   end function vertex_near
 
    !> The elements at some nodes, and in further layers those beside them.
    pure function elements_about(mesh, nodes, layers) result(is_near)

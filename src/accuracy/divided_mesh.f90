@@ -1,30 +1,35 @@
-!> The change of the quantities of an increment where elements at its contact are divided into four:
-!> the increment is solved on the divided mesh, from the displacements and temperatures that the run
-!> had before it. Contact points, operators and reduction of the divided mesh are its own; nothing
-!> that the run reads is written.
+!> A deck beside itself on a mesh some or all of whose elements are divided into four.
+!>
+!> Either the last increment of each step is solved there, from the displacements and temperatures
+!> that the run had before it (ERRORS=LAST), or the whole deck is followed with all elements divided
+!> and two increments for each of the run (ERRORS=FULL). Contact points, operators and reduction of
+!> the divided mesh are its own; nothing that the run reads is written.
 module divided_mesh
+   use companion_states, only: implicit_state, implicit_step
    use connections, only: connections_type
+   use contact_points, only: contact_points_type
    use contact_system, only: contact_open
    use controls, only: method_anderson
-   use doubled_increments, only: implicit_state, implicit_step
    use element_kinds, only: element_node_count
    use equations, only: equation_nodes
-   use field_recovery, only: error_record_type, point_map_type
    use errors, only: error_type
-   use heat_equation, only: heat_across, heat_equation_type
+   use field_recovery, only: error_record_type, point_map_type
+   use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type
-   use increments, only: accept_increment
-   use interface_quantities, only: quantities_of_state
+   use increments, only: accept_increment, advance
+   use interface_quantities, only: contacts_of_state
    use kinds, only: dp
    use load_histories, only: end_of_step
    use local_refinement, only: choose_neighbours, elements_at_surfaces, largest_part
    use mesh_division, only: divide, division_type, refined_members
-   use model, only: model_type
-   use records, only: field_record_type
+   use model, only: model_type, uncertainty_no
+   use records, only: field_record_type, increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use refinement, only: divide_model, parents_of
+   use restarts, only: bring_to, exchange_run
    use solution_state, only: solution_state_type
-   use steps, only: boundary_type, solves_heat, step_type
+   use state_tables, only: state_table_type
+   use steps, only: boundary_type, step_type
    use simulation, only: make_initial_state, simulation_type
    implicit none
    private
@@ -34,60 +39,152 @@ module divided_mesh
    !> Part of the heat that crosses all contact points which the elements divided for it carry
    real(dp), parameter :: of_heat = 0.99_dp
 
-   !> The divided model and its run, of which only the ends of steps are solved.
+   !> The divided model and its run.
    type :: divided_mesh_type
       logical, allocatable :: is_divided(:)             !! (elements) once prepared
       type(model_type) :: model                         !! the divided one
       type(division_type) :: division
-      !> Temperature and, where the step solves it, stress at the end of the step; stress is smooth
-      !> where the elements are divided besides those at the contact
-      type(field_record_type), allocatable :: fields
+      !> Its increment to the end of the run's, with its interfaces, displacements, temperatures and
+      !> stress where that is due; of an end of a step no more than these
+      type(increment_record_type) :: record
       !> Freed by release. Held by value, its copying, which nothing calls, would be most of the
       !> code of this module and of those that hold a divided mesh
       type(simulation_type), pointer, private :: run => null()
       type(solution_state_type), private :: initial     !! state before the first increment
-      !> heat of both meshes with the films at the end, where the runs' have others
-      type(heat_reduction_type), private :: heat, coarse_heat
+      type(heat_reduction_type), private :: heat        !! where the films at the end are others
    contains
-      procedure :: find_change
+      procedure :: solve_end
+      procedure :: begin
+      procedure :: follow
+      procedure :: exchange
       procedure :: points
+      procedure :: interfaces
       procedure :: release
    end type divided_mesh_type
 
 contains
 
-   !> The change of the quantities of the interfaces at the end of a step, in the equilibrium of
-   !> heat on both meshes. A scheme of (3.4) with a past is solved anew without one on the mesh as
-   !> it is.
+   !> Solves the end of the run's step in the equilibrium of heat, with the elements divided that
+   !> are closed or conduct most of the heat, and some more. Anderson's method solves the increment
+   !> without the loads of all jumps; where it fails, that of the deck does with them.
    !> Errors: as reduced_bodies' prepare and reduce, or the increment has no solution.
-   subroutine find_change(self, simulation, model, also, previous, change, error)
+   subroutine solve_end(self, simulation, model, also, near, previous, error)
       class(divided_mesh_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation     !! the run at the end
       type(model_type), intent(in) :: model
       logical, intent(in) :: also(:)                      !! (elements) that are divided besides
+      logical, intent(in) :: near(:)                      !! (elements) whose stress counts
       type(solution_state_type), intent(in) :: previous   !! state before the last increment
-      real(dp), intent(out) :: change(:, :)               !! (quantities, interfaces)
       type(error_type), allocatable, intent(out) :: error
-      type(solution_state_type) :: state
-      type(heat_equation_type) :: equation
-      real(dp) :: values(size(change, 1), size(change, 2))
+      type(solution_state_type) :: before, guess, next
+      type(step_type) :: step
 
       call divide_at_contact(self, simulation, model, also, error)
-      if (.not. allocated(error)) call solve_end(self, simulation, also, previous, change, &
-         error)
       if (allocated(error)) return
-      state = simulation%state
-      associate (step => model%steps(simulation%control%step))
-         equation = heat_equation_type(step%scheme)
-         if (solves_heat(step%analysis) .and. .not. equation%is_steady()) then
-            call implicit_state(simulation, self%coarse_heat, model, implicit_step(step), &
-               previous, state, error)
-            if (allocated(error)) return
+      associate (run => self%run, number => simulation%control%step)
+         call enter_step(self, number)
+         call order_as_run(self, simulation%bodies)
+         call run%reduce(self%model, error)
+         if (allocated(error)) return
+         call run%loads%move_to(end_of_step(self%model%steps, number), self%model)
+         before = prolonged(self, simulation%bodies%points, previous)
+         guess = before
+         guess%increment_size = simulation%state%increment_size
+         guess%sources%load = run%loads%heat_load()
+         guess%sources%film = run%loads%film_matrix()
+         guess%force_load = run%loads%nodal_forces()
+         step = implicit_step(self%model%steps(number))
+         if (run%heat_reductions(1)%forms_on_demand) step%fixed_point%method = method_anderson
+         next = guess
+         call implicit_state(run, self%heat, self%model, step, before, next, error)
+         if (allocated(error) .and. run%heat_reductions(1)%forms_on_demand .and. &
+            run%bodies%is_coupled) then
+            run%heat_reductions(1)%forms_on_demand = .false.
+            self%heat%forms_on_demand = .false.
+            step = implicit_step(self%model%steps(number))
+            next = guess
+            call run%reduce(self%model, error)
+            if (.not. allocated(error)) call implicit_state(run, self%heat, self%model, step, &
+               before, next, error)
          end if
+         if (allocated(error)) return
+         call contacts_of_state(run%bodies, next, self%record%contacts)
+         self%record%fields = field_record_type(temperature=next%temperature)
+         call run%recovery%prepare(self%model, near(parents_of(self%division)))
+         if (next%has_mechanics) self%record%fields%displacement = reshape(next%displacement, &
+            [2, size(next%temperature)])
+         call recover_stress(self, next)
       end associate
-      call quantities_of_state(simulation%bodies, state, values)
-      change = change - values
-   end subroutine find_change
+   end subroutine solve_end
+
+   !> Begins to follow a run from its start, with all elements divided and increments that are not
+   !> made for their own errors.
+   !> Errors: as simulation_type's start.
+   subroutine begin(self, model, error)
+      class(divided_mesh_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      integer :: s
+
+      call divide_elements(self, model, spread(.true., 1, size(model%mesh%element_kind)))
+      self%model%uncertainty = uncertainty_no
+      deallocate (self%model%verifications)
+      allocate (self%model%verifications(0))
+      do s = 1, size(self%model%steps)
+         associate (step => self%model%steps(s))
+            step%first_increment = 0.5_dp*step%first_increment
+            step%smallest_increment = 0.5_dp*step%smallest_increment
+            step%max_increments = huge(1)
+            step%local_error = huge(1.0_dp)
+            step%largest_change = huge(1.0_dp)
+            step%field_frequency = 0
+            step%restart_frequency = 0
+            step%stability_frequency = 0
+            if (allocated(step%field_points%times)) deallocate (step%field_points%times)
+            if (allocated(step%element_prints)) deallocate (step%element_prints)
+         end associate
+      end do
+      call self%run%start(self%model, error)
+   end subroutine begin
+
+   !> Follows the run to the end of its increment.
+   !> Error: as advance of increments.
+   subroutine follow(self, simulation, record, error)
+      class(divided_mesh_type), intent(inout) :: self        !! begun
+      type(simulation_type), intent(in) :: simulation        !! the run at that end
+      type(increment_record_type), intent(in) :: record      !! of the increment
+      type(error_type), allocatable, intent(out) :: error
+      real(dp) :: half
+
+      associate (run => self%run, goal => simulation%control)
+         if (run%control%step < goal%step) call run%enter_step(self%model)
+         half = 0.5_dp*(goal%step_time - run%control%step_time)
+         do while (run%control%step_time < goal%step_time - goal%spacing)
+            run%control%landings = [run%control%landings, goal%step_time]
+            run%control%largest = half
+            call advance(run, self%model, self%record, error)
+            if (allocated(error)) return
+         end do
+         if (allocated(record%fields%stress) .and. .not. allocated(self%record%fields%stress)) &
+            call recover_stress(self, run%state)
+      end associate
+   end subroutine follow
+
+   !> Where the run that follows stands, in either direction.
+   !> Errors: as simulation_type's reduce.
+   subroutine exchange(self, table, error)
+      class(divided_mesh_type), intent(inout) :: self        !! begun
+      type(state_table_type), intent(inout) :: table
+      type(error_type), allocatable, intent(out) :: error
+
+      table%prefix = 'finer_'
+      if (table%is_restoring()) then
+         call bring_to(self%model, self%run, table, error)
+      else
+         call exchange_run(self%run, table)
+      end if
+      table%prefix = ''
+   end subroutine exchange
 
    !> The points of the divided mesh at which stress is averaged.
    pure function points(self)
@@ -96,6 +193,14 @@ contains
 
       points = self%run%recovery%points
    end function points
+
+   !> The contact points of every interface of the divided mesh.
+   pure subroutine interfaces(self, views)
+      class(divided_mesh_type), intent(in) :: self
+      type(contact_points_type), allocatable, intent(out) :: views(:)
+
+      call self%run%bodies%views(views)
+   end subroutine interfaces
 
    !> Frees the run with its factors.
    subroutine release(self)
@@ -106,17 +211,29 @@ contains
          deallocate (self%run)
       end if
       call self%heat%release()
-      call self%coarse_heat%release()
    end subroutine release
 
-   !> Divides the elements at the contact and some more, unless that is done.
-   !> Errors: as prepare.
+   !> Stress of a state, where mechanics is solved.
+   subroutine recover_stress(self, state)
+      type(divided_mesh_type), intent(inout) :: self
+      type(solution_state_type), intent(in) :: state
+      type(error_record_type) :: estimate
+
+      if (allocated(state%stress_temperature)) call self%run%recovery%recover_stress(self%model, &
+         reshape(state%displacement, [2, size(state%temperature)]), state%stress_temperature - &
+         self%model%initial_temperature, state%history, self%record%fields%stress, estimate)
+   end subroutine recover_stress
+
+   !> Divides the elements at the contact and some more, and prepares what solving ends of steps
+   !> takes of a run, unless that is done.
+   !> Errors: as reduced_bodies' prepare.
    subroutine divide_at_contact(self, simulation, model, also, error)
       type(divided_mesh_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
       type(model_type), intent(in) :: model
       logical, intent(in) :: also(:)                      ! (elements)
       type(error_type), allocatable, intent(out) :: error
+      type(heat_reduction_type) :: fresh_heat
       logical :: chosen(size(model%mesh%element_number))
 
       associate (points => simulation%bodies%points, state => simulation%state)
@@ -129,8 +246,34 @@ contains
          if (all(self%is_divided .eqv. chosen)) return
       end if
       call self%release()
-      call prepare(self, model, chosen, error)
+      call divide_elements(self, model, chosen)
+      self%heat = fresh_heat
+      call self%run%bodies%prepare(self%model, error)
+      if (allocated(error)) then
+         deallocate (self%is_divided)
+         return
+      end if
+      self%run%heat_reductions(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
+      self%heat%forms_on_demand = self%run%heat_reductions(1)%forms_on_demand
+      call self%run%loads%prepare(self%model)
+      self%initial = make_initial_state(self%model, self%run%bodies)
+      self%run%state = self%initial
    end subroutine divide_at_contact
+
+   !> Makes the model with some elements divided, for a fresh run.
+   subroutine divide_elements(self, model, chosen)
+      type(divided_mesh_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: chosen(:)                    ! (elements) as choose_neighbours asks
+
+      self%is_divided = chosen
+      self%model = model
+      self%division = divide(model%mesh, chosen)
+      call divide_model(self%model, self%division)
+      call hold_new_nodes(self%division, self%model)
+      call keep_to_equations(self%division, self%model)
+      allocate (self%run)
+   end subroutine divide_elements
 
    !> Elements at the contact points that count, with those next to them on the faces, and at ties;
    !> all of the faces where none counts.
@@ -171,35 +314,6 @@ contains
       end function nodes_of
 
    end function elements_at_contact
-
-   !> Divides some elements, and prepares what solving increments takes of a run.
-   !> Errors: as reduced_bodies' prepare.
-   subroutine prepare(self, model, chosen, error)
-      type(divided_mesh_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      logical, intent(in) :: chosen(:)                    ! (elements) as choose_neighbours asks
-      type(error_type), allocatable, intent(out) :: error
-      type(heat_reduction_type) :: fresh_heat
-
-      self%is_divided = chosen
-      self%model = model
-      self%division = divide(model%mesh, chosen)
-      call divide_model(self%model, self%division)
-      call hold_new_nodes(self%division, self%model)
-      call keep_to_equations(self%division, self%model)
-      allocate (self%run)
-      self%heat = fresh_heat
-      call self%run%bodies%prepare(self%model, error)
-      if (allocated(error)) then
-         deallocate (self%is_divided)
-         return
-      end if
-      self%run%heat_reductions(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
-      self%heat%forms_on_demand = self%run%heat_reductions(1)%forms_on_demand
-      call self%run%loads%prepare(self%model)
-      self%initial = make_initial_state(self%model, self%run%bodies)
-      self%run%state = self%initial
-   end subroutine prepare
 
    !> Prescribes what all nodes of a side or element have prescribed at the new nodes on it, too:
    !> the deck may name nodes one by one.
@@ -271,68 +385,6 @@ contains
             [5, size(model%mesh%hanging_sides, 2) + 1])
       end do
    end subroutine keep_to_equations
-
-   !> The quantities of the interfaces at the end of the run's step. Anderson's method solves the
-   !> increment without the loads of all jumps; where it fails, that of the deck does with them.
-   !> Errors: as simulation_type's reduce, or the increment has no solution.
-   subroutine solve_end(self, simulation, also, previous, values, error)
-      type(divided_mesh_type), intent(inout) :: self
-      type(simulation_type), intent(in) :: simulation
-      logical, intent(in) :: also(:)                      ! as for keep_fields
-      type(solution_state_type), intent(in) :: previous
-      real(dp), intent(out) :: values(:, :)
-      type(error_type), allocatable, intent(out) :: error
-      type(solution_state_type) :: before, guess, next
-      type(step_type) :: step
-
-      associate (run => self%run, number => simulation%control%step)
-         call enter_step(self, number)
-         call order_as_run(self, simulation%bodies)
-         call run%reduce(self%model, error)
-         if (allocated(error)) return
-         call run%loads%move_to(end_of_step(self%model%steps, number), self%model)
-         before = prolonged(self, simulation%bodies%points, previous)
-         guess = before
-         guess%increment_size = simulation%state%increment_size
-         guess%sources%load = run%loads%heat_load()
-         guess%sources%film = run%loads%film_matrix()
-         guess%force_load = run%loads%nodal_forces()
-         step = implicit_step(self%model%steps(number))
-         if (run%heat_reductions(1)%forms_on_demand) step%fixed_point%method = method_anderson
-         next = guess
-         call implicit_state(run, self%heat, self%model, step, before, next, error)
-         if (allocated(error) .and. run%heat_reductions(1)%forms_on_demand .and. &
-            run%bodies%is_coupled) then
-            run%heat_reductions(1)%forms_on_demand = .false.
-            self%heat%forms_on_demand = .false.
-            step = implicit_step(self%model%steps(number))
-            next = guess
-            call run%reduce(self%model, error)
-            if (.not. allocated(error)) call implicit_state(run, self%heat, self%model, step, &
-               before, next, error)
-         end if
-         if (allocated(error)) return
-         call quantities_of_state(run%bodies, next, values)
-         call keep_fields(self, next, also)
-      end associate
-   end subroutine solve_end
-
-   !> Keeps temperature and stress of a state, the latter where the step solves mechanics. Smooth
-   !> stress takes long, so it is formed only in the parts of some elements.
-   subroutine keep_fields(self, state, also)
-      type(divided_mesh_type), intent(inout) :: self
-      type(solution_state_type), intent(in) :: state
-      logical, intent(in) :: also(:)                      ! (elements before) those that count
-      type(error_record_type) :: estimate
-
-      if (allocated(self%fields)) deallocate (self%fields)
-      allocate (self%fields)
-      self%fields%temperature = state%temperature
-      call self%run%recovery%prepare(self%model, also(parents_of(self%division)))
-      if (allocated(state%stress_temperature)) call self%run%recovery%recover_stress(self%model, &
-         reshape(state%displacement, [2, size(state%temperature)]), state%stress_temperature - &
-         self%model%initial_temperature, state%history, self%fields%stress, estimate)
-   end subroutine keep_fields
 
    !> Orders unknowns as the run does. A new node comes with the first one of its side, or of its
    !> element if it lies inside: what it joins, that one joins already, so separators stay.

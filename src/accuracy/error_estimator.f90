@@ -1,70 +1,60 @@
-!> Bounds of the errors of a run, found beside it: one for each quantity of an interface at the end
-!> of a step, which everything else prints and judges by. It is the sum of three parts: mesh,
-!> increments, fixed point. Which elements err most, recovery finds: in stress and heat flux.
+!> Numerical uncertainties (95 %) of the numbers of a run, found beside it: by a finer mesh on which
+!> the last increment of each step is solved again, or the whole deck with increments half as long.
+!> One rule makes them of what changes there. Where fields err most, recovery finds.
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use body_bounds, only: body_bounds_type
-   use contact_definitions, only: pairing_surfaces
+   use body_maxima, only: body_maxima_type, elements_about
+   use checked_values, only: is_estimable, values_asked_for
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
-   use contact_system, only: contact_open
    use divided_mesh, only: divided_mesh_type
-   use doubled_increments, only: doubled_increments_type
+   use due_output, only: is_judged
    use element_kinds, only: element_corner_count
    use errors, only: error_type
-   use increment_quantities, only: history_value
-   use interface_quantities, only: quantities_of, quantities_of_state, regime_of
+   use field_quantities, only: maxima
+   use field_recovery, only: error_record_type, point_map_type
+   use increment_quantities, only: history_estimated, history_value
+   use interface_quantities, only: peaks_at_corner, quantities_of, spacing_at
    use kinds, only: dp
-   use local_refinement, only: elements_at_surfaces
+   use local_refinement, only: largest_part
    use mesh, only: mesh_type
-   use mesh_bounds, only: bounds_of_mesh, locked_in
-   use model, only: model_type
-   use no_estimates, only: no_reason, reason_of_run
+   use model, only: model_type, uncertainty_full, verify_type
+   use no_estimates, only: at_corner, first_reason, no_finer_value, no_reason, not_on_finer_mesh, &
+      not_unique, of_path, of_step, reason_count, reason_of_run, slides_far
    use other_states, only: find_other_states
    use quantity_histories, only: quantity_histories_type
-   use quantity_types, only: find_quantity
-   use records, only: increment_record_type
-   use field_recovery, only: error_record_type
-   use heat_equation, only: heat_equation_type
+   use quantity_types, only: find_quantity, of_nodes, quantity_type
+   use records, only: increment_record_type, uncertainty_type
+   use reported_quantities, only: verifiable
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
-   use state_tables, only: integers, reals, state_table_type
-   use steps, only: solves_heat
-   use summed_bounds, only: sum_up_body, sum_up_interface
-   use temperature_laws, only: relative_jump
-   use text, only: append, to_text
+   use state_tables, only: integers, state_table_type
+   use text, only: append, read_integer, to_text, to_upper
+   use uncertainty_rule, only: uncertainty_parts
    implicit none
    private
    public :: error_estimator_type, squared_errors
 
-   !> Error of the increments in the change that doubling them makes: that of errors that fall with
-   !> their length; of a peak pressure between mortar points with its square root, as what closes at
-   !> once does where round faces meet, and with it the friction that is locked in there.
-   real(dp), parameter :: of_doubled_increments = 1.0_dp, of_doubled_in_peak = 1 + sqrt(2.0_dp)
+   !> Part of the squared recovered error of stress and of flux, in every body, that the elements
+   !> have which are divided.
+   real(dp), parameter :: divided_part = 0.95_dp
+   integer, parameter :: layers = 2    !! of elements that are divided round a node
 
-   !> Part of the change from the round before that is left: one that divides elements leaves less.
-   real(dp), parameter :: left_by_round = 0.5_dp
-
+   !> Relative difference of quantities that the fixed point leaves
+   real(dp), parameter :: same = 1.0e-5_dp
    !> Relative error of a body below which its fields are smooth but for rounding.
    real(dp), parameter :: rounding = 1.0e-8_dp
 
-   !> Data of the bounds.
+   !> Data of the estimates.
    type :: error_estimator_type
       private
       type(divided_mesh_type) :: divided           !! the model with divided elements
-      type(body_bounds_type), allocatable :: bodies   !! their maxima
-      type(doubled_increments_type) :: doubled     !! the run with doubled increments
       type(solution_state_type) :: before          !! state before the present increment
       type(quantity_histories_type) :: histories   !! quantities at the increments before
-      logical, allocatable :: has_triangles(:)     !! (interfaces) with some at its faces
-      logical, allocatable :: is_mixed(:)          !! (interfaces) of different stiffness
-      real(dp), allocatable :: most_locked(:)      !! (interfaces) largest of locked_in so far
-      integer, allocatable :: regime(:)            !! (interfaces) regime_of their contact
-      !> Squared relative errors that are left in elements that are not divided, of both fields and
-      !> of heat alone
-      real(dp) :: energies(2) = 0.0_dp
       integer :: step = 0                          !! step of the present increment
       logical :: is_on = .false.                   !! whether there is anything to estimate
+      logical :: is_full = .false.                 !! whether the divided mesh follows the run
+      character(:), allocatable :: lost            !! why there is no finer run; else unallocated
    contains
       procedure :: start
       procedure :: begin_increment
@@ -76,22 +66,15 @@ module error_estimator
 contains
 
    !> Starts beside a run.
-   subroutine start(self, model, simulation)
+   subroutine start(self, model)
       class(error_estimator_type), intent(inout) :: self  !! fresh
       type(model_type), intent(in) :: model
-      type(simulation_type), intent(in) :: simulation     !! the run, started
-      integer :: i
+      type(error_type), allocatable :: error
 
-      self%is_on = model%estimates_errors
-      if (.not. self%is_on) return
-      allocate (self%most_locked(size(model%contacts)), source=0.0_dp)
-      allocate (self%regime(size(model%contacts)), source=contact_open)
-      self%has_triangles = [(any(elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
-         model%contacts(i)%master]) .and. element_corner_count(model%mesh%element_kind) == 3), &
-         i=1, size(model%contacts))]
-      self%is_mixed = [(differ_in_stiffness(model, [model%contacts(i)%slave, &
-         model%contacts(i)%master]), i=1, size(model%contacts))]
-      call self%doubled%start(model, simulation%bodies, simulation%state)
+      self%is_on = reason_of_run(model) == no_reason
+      self%is_full = self%is_on .and. model%uncertainty == uncertainty_full
+      if (self%is_full) call self%divided%begin(model, error)
+      if (allocated(error)) self%lost = error%message
    end subroutine start
 
    !> Keeps what an increment starts from.
@@ -102,23 +85,24 @@ contains
       if (self%is_on) self%before = simulation%state
    end subroutine begin_increment
 
-   !> Follows an accepted increment; at the end of a step its record receives the bounds, or why
-   !> there are none.
-   subroutine end_increment(self, model, simulation, record, histories)
+   !> Follows an accepted increment; at the end of a step, and always where the divided mesh follows
+   !> the run, its record receives the uncertainties, or why there are none.
+   subroutine end_increment(self, model, simulation, record)
       class(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation        !! the run at its end
       type(increment_record_type), intent(inout) :: record
-      !> (steps) at their ends in the round before, empty in the first; receives the present ones
-      type(quantity_histories_type), intent(inout) :: histories(:)
       real(dp) :: values(size(estimated), size(record%contacts))
-      type(contact_points_type) :: points
-      character(:), allocatable :: no_mesh
-      logical :: slides
+      type(body_maxima_type) :: found
+      logical, allocatable :: near(:)
+      real(dp) :: iteration
       integer :: i
 
+      do i = 1, size(record%contacts)
+         values(:, i) = quantities_of(record%contacts(i))
+      end do
       if (.not. self%is_on) then
-         if (record%last_of_step) call go_without(model, record)
+         if (record%last_of_step) call go_without(values, reason_of_run(model), record)
          return
       end if
       if (record%step /= self%step) then
@@ -126,84 +110,400 @@ contains
          call self%histories%begin_step(size(estimated), size(record%contacts), &
             simulation%loads%corners(model%amplitudes, simulation%control%step_start))
       end if
-      call self%doubled%follow(model, simulation, record)
-      do i = 1, size(record%contacts)
-         call simulation%bodies%view(i, points)
-         associate (contact => record%contacts(i))
-            values(:, i) = quantities_of(contact)
-            self%most_locked(i) = max(self%most_locked(i), locked_in(points, contact, &
-               self%has_triangles(i)))
-            if (regime_of(contact) /= self%regime(i)) call self%histories%begin_anew(i)
-            self%regime(i) = regime_of(contact)
-         end associate
-      end do
       call self%histories%follow(record%time, values)
-      if (.not. record%last_of_step) return
-      allocate (record%errors(size(record%contacts)))
-      do i = 1, size(record%errors)
-         associate (errors => record%errors(i))
-            errors%value = values(:, i)
-            allocate (errors%mesh(size(estimated)), source=ieee_value(1.0_dp, ieee_quiet_nan))
-            allocate (errors%increment(size(estimated)), source=0.0_dp)
-            allocate (errors%iteration(size(estimated)), source=0.0_dp)
-         end associate
-      end do
-      call bound_mesh(self, model, simulation, record, histories(record%step), no_mesh)
-      if (no_mesh /= '') call append(record%notes, 'the errors of the mesh cannot be '// &
-         'estimated: '//no_mesh)
-      histories(record%step) = self%histories
-      call bound_increments(self, simulation, record)
-      call bound_iteration(record)
-      do i = 1, size(record%errors)
-         call simulation%bodies%view(i, points)
-         call sum_up_interface(self%doubled, no_mesh == '', self%is_mixed(i), points, &
-            record%contacts(i), record%errors(i))
-      end do
-      slides = any(record%contacts%slide%point > 0)
-      do i = 1, size(record%body_errors)
-         call sum_up_body(self%doubled, no_mesh == '', is_steady(model, record), slides, &
-            record%body_errors(i))
-      end do
-      if (no_mesh == '' .and. is_steady(model, record) .and. .not. slides) call &
-         self%bodies%bound_checks(model, simulation, self%divided, self%energies, record)
+      if (.not. (self%is_full .or. record%last_of_step)) return
+      call found%find(model, simulation, record)
+      call solve_finer(self, model, simulation, record, found, near)
+      iteration = left_by_iteration(record)
+      call judge_interfaces(self, model, simulation, values, iteration, record)
+      call judge_bodies(self, model, simulation, found, near, iteration, record)
+      call judge_checks(self, model, simulation, found, iteration, record)
+      if (self%is_full) call judge_history(self, iteration, record)
    end subroutine end_increment
 
-   !> The quantities at the end of a step in a run that bounds nothing, and why.
-   subroutine go_without(model, record)
+   !> Solves the finer mesh at the end of the increment.
+   subroutine solve_finer(self, model, simulation, record, found, near)
+      type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
-      integer :: i
+      type(body_maxima_type), intent(in) :: found
+      logical, allocatable, intent(out) :: near(:)     ! (elements) whose stress is known there
+      type(error_type), allocatable :: error
+      logical :: was_lost
 
-      allocate (record%errors(size(record%contacts)), record%body_errors(0))
-      do i = 1, size(record%errors)
-         associate (errors => record%errors(i))
-            errors%value = quantities_of(record%contacts(i))
-            errors%bound = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(estimated))
-            errors%mesh = errors%bound
-            errors%increment = errors%bound
-            errors%iteration = errors%bound
-            errors%no_estimate = merge(no_reason, reason_of_run(model), ieee_is_nan(errors%value))
+      near = spread(.true., 1, size(model%mesh%element_kind))
+      was_lost = allocated(self%lost)
+      if (self%is_full) then
+         if (.not. was_lost) call self%divided%follow(simulation, record, error)
+      else
+         near = elements_about(model%mesh, nodes_looked_at(model, record, found), layers)
+         call self%divided%solve_end(simulation, model, near .or. err_most(model%mesh, record), &
+            near, self%before, error)
+         if (.not. allocated(error) .and. was_lost) deallocate (self%lost)
+      end if
+      if (allocated(error)) self%lost = error%message
+      if (allocated(self%lost) .and. (allocated(error) .or. record%increment == 1)) call append( &
+         record%notes, 'numerical uncertainties cannot be estimated: '//self%lost)
+   end subroutine solve_finer
+
+   !> Nodes at which the last increment alone tells maxima and checks.
+   function nodes_looked_at(model, record, found) result(nodes)
+      type(model_type), intent(in) :: model
+      type(increment_record_type), intent(in) :: record
+      type(body_maxima_type), intent(in) :: found
+      integer, allocatable :: nodes(:)
+      integer :: i, number
+      logical :: is_number
+
+      nodes = pack(found%node, found%node > 0)
+      do i = 1, size(model%verifications)
+         associate (check => model%verifications(i))
+            if (kind_of(check) /= of_nodes .or. .not. is_judged(check, record, model)) cycle
+            call read_integer(check%where, number, is_number)
+            if (is_number) nodes = [nodes, findloc(model%mesh%node_number, number, dim=1)]
          end associate
+      end do
+      nodes = pack(nodes, nodes > 0)
+   end function nodes_looked_at
+
+   !> The elements that hold most of the squared recovered errors of each body.
+   function err_most(mesh, record) result(chosen)
+      type(mesh_type), intent(in) :: mesh
+      type(increment_record_type), intent(in) :: record
+      logical :: chosen(size(mesh%element_kind))
+
+      chosen = .false.
+      call add(record%stress_error)
+      call add(record%heat_flux_error)
+   contains
+      subroutine add(estimate)
+         type(error_record_type), intent(in) :: estimate
+         real(dp) :: error(size(chosen))
+         integer :: b
+
+         error = 0.0_dp
+         call add_errors(mesh, estimate, error)
+         do b = 1, mesh%body_count
+            chosen = chosen .or. largest_part(merge(error, 0.0_dp, mesh%element_body == b), &
+               divided_part)
+         end do
+      end subroutine add
+   end function err_most
+
+   !> The quantities at the end of a step in a run that estimates nothing, and why.
+   subroutine go_without(values, reason, record)
+      real(dp), intent(in) :: values(:, :)                   ! (quantities, interfaces)
+      integer, intent(in) :: reason
+      type(increment_record_type), intent(inout) :: record
+      integer :: i, q
+
+      allocate (record%uncertainties(size(record%contacts)), record%body_uncertainties(0))
+      do i = 1, size(record%contacts)
+         call clear(record%uncertainties(i), values(:, i))
+         do q = 1, size(values, 1)
+            call settle(record%uncertainties(i), q, reason, no_parts())
+         end do
       end do
    end subroutine go_without
 
-   !> All that the bounds take of earlier increments, in either direction.
-   subroutine exchange(self, table)
+   !> Uncertainties of the quantities of interfaces.
+   subroutine judge_interfaces(self, model, simulation, values, iteration, record)
+      type(error_estimator_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      real(dp), intent(in) :: values(:, :)                   ! (quantities, interfaces)
+      real(dp), intent(in) :: iteration                      ! relative
+      type(increment_record_type), intent(inout) :: record
+      real(dp) :: other(size(values, 1), size(values, 2)), fine(size(values, 1)), &
+         scatter(size(values, 1))
+      type(contact_points_type) :: points
+      logical :: holds(reason_count)
+      integer :: i, q
+
+      allocate (record%uncertainties(size(record%contacts)))
+      other = values
+      if (record%last_of_step .and. .not. model%steps(record%step)%is_transient) call &
+         find_other_states(simulation, model, record%step, self%before, other)
+      fine = ieee_value(1.0_dp, ieee_quiet_nan)
+      do i = 1, size(record%contacts)
+         call clear(record%uncertainties(i), values(:, i))
+         call simulation%bodies%view(i, points)
+         scatter = self%histories%scatter(i)
+         if (.not. allocated(self%lost)) fine = quantities_of(self%divided%record%contacts(i))
+         do q = 1, size(values, 1)
+            holds = .false.
+            holds(slides_far) = record%contacts(i)%slide%point > 0
+            holds(not_unique) = abs(other(q, i) - values(q, i)) > same*abs(values(q, i))
+            holds(at_corner) = estimated(q)%name == 'peak_pressure' .and. &
+               peaks_at_corner(points, record%contacts(i))
+            holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. &
+               has_friction(simulation, i)
+            call settle(record%uncertainties(i), q, reason_of(self, holds, fine(q)), &
+               uncertainty_parts(estimated(q), fine(q) - values(q, i), scatter(q), &
+               spacing_at(estimated(q), points, values(q, i)), iteration*values(q, i)))
+            if (holds(not_unique)) call append(record%notes, trim(estimated(q)%name)//' of '// &
+               model%contacts(i)%name//' is '//to_text(values(q, i))//' or '//to_text( &
+               other(q, i))//': the conductance jumps as the gap closes, two contact states '// &
+               'satisfy all conditions, and increments decide which is found')
+         end do
+      end do
+   end subroutine judge_interfaces
+
+   !> Whether the contact points of an interface have friction.
+   pure logical function has_friction(simulation, interface)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: interface
+
+      associate (start => simulation%bodies%points%interface_start, &
+         friction => simulation%bodies%laws%friction)
+         has_friction = any(friction(start(interface):start(interface + 1) - 1)%coefficient > &
+            0.0_dp)
+      end associate
+   end function has_friction
+
+   !> Uncertainties of the maxima of bodies.
+   subroutine judge_bodies(self, model, simulation, found, near, iteration, record)
+      type(error_estimator_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(body_maxima_type), intent(in) :: found
+      logical, intent(in) :: near(:)                         ! (elements)
+      real(dp), intent(in) :: iteration                      ! relative
+      type(increment_record_type), intent(inout) :: record
+      type(body_maxima_type) :: fine
+      logical :: is_larger(size(found%is_singular)), holds(reason_count)
+      real(dp) :: value(size(maxima)), after
+      integer :: b, k, q
+
+      allocate (record%body_uncertainties(model%mesh%body_count))
+      if (.not. allocated(self%lost)) call found%of_divided(self%divided, near, fine)
+      is_larger = found%larger_corners(model%mesh, simulation%recovery%points, record%fields)
+      holds = .false.
+      holds(slides_far) = any(record%contacts%slide%point > 0)
+      do b = 1, model%mesh%body_count
+         associate (own => record%body_uncertainties(b))
+            value = merge(found%value(:, b), ieee_value(1.0_dp, ieee_quiet_nan), &
+               found%node(:, b) > 0)
+            call clear(own, value)
+            own%node = found%node(:, b)
+            own%corners = pack([(k, k=1, size(is_larger))], is_larger .and. &
+               model%mesh%node_body == b)
+            do q = 1, size(maxima)
+               if (own%node(q) == 0) cycle
+               after = ieee_value(1.0_dp, ieee_quiet_nan)
+               if (allocated(fine%node)) after = fine%value(q, b)
+               call settle(own, q, reason_of(self, holds, after), uncertainty_parts(maxima(q), &
+                  after - value(q), 0.0_dp, 0.0_dp, iteration*value(q)))
+            end do
+         end associate
+      end do
+   end subroutine judge_bodies
+
+   !> Uncertainties of what checks judge. The last increment alone tells quantities of interfaces,
+   !> maxima, and values at single nodes.
+   subroutine judge_checks(self, model, simulation, found, iteration, record)
+      type(error_estimator_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(body_maxima_type), intent(in) :: found
+      real(dp), intent(in) :: iteration                      ! relative
+      type(increment_record_type), intent(inout) :: record
+      type(contact_points_type), allocatable :: interfaces(:), fine_interfaces(:)
+      type(point_map_type) :: fine_points
+      type(uncertainty_type) :: checks
+      integer :: i
+
+      call clear(checks, spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(model%verifications)))
+      if (size(model%verifications) > 0) call simulation%bodies%views(interfaces)
+      if (size(model%verifications) > 0 .and. .not. allocated(self%lost)) then
+         call self%divided%interfaces(fine_interfaces)
+         fine_points = self%divided%points()
+      end if
+      do i = 1, size(model%verifications)
+         associate (check => model%verifications(i))
+            if (.not. (is_estimable(check) .and. is_judged(check, record, model))) cycle
+            if (.not. is_copied(check)) call compare(check)
+         end associate
+      end do
+      record%check_uncertainties = checks
+
+   contains
+
+      !> Whether a check has the uncertainty of a quantity of an interface, of the largest pressure
+      !> of the only one, or of a maximum of a body, which it takes.
+      logical function is_copied(check)
+         type(verify_type), intent(in) :: check
+         character(:), allocatable :: quantity, where
+         integer :: k, q
+
+         quantity = to_upper(check%quantity)
+         where = to_upper(check%where)
+         is_copied = .true.
+         q = find_quantity(estimated, quantity)
+         if (quantity == 'PRESSURE' .and. where == 'MAX' .and. size(interfaces) == 1) q = &
+            find_quantity(estimated, 'peak_pressure')
+         do k = 1, merge(size(interfaces), 0, q > 0)
+            if (to_upper(interfaces(k)%name) /= where .and. size(interfaces) > 1) cycle
+            call copy(record%uncertainties(k), q)
+            return
+         end do
+         q = 0
+         if (quantity == 'MISES') q = find_quantity(maxima, 'von_mises')
+         if (quantity == 'NT') q = find_quantity(maxima, 'temperature')
+         if (q > 0 .and. where == 'MAX') then
+            k = maxloc(found%value(q, :), dim=1)
+            if (found%node(q, k) > 0) then
+               call copy(record%body_uncertainties(k), q)
+               return
+            end if
+         end if
+         is_copied = .false.
+      end function is_copied
+
+      subroutine copy(own, q)
+         class(uncertainty_type), intent(in) :: own
+         integer, intent(in) :: q
+
+         checks%value(i) = own%value(q)
+         call settle(checks, i, own%no_estimate(q), [own%change(q), own%scatter(q), &
+            own%iteration(q)])
+      end subroutine copy
+
+      !> Compares what both meshes have.
+      subroutine compare(check)
+         type(verify_type), intent(in) :: check
+         type(quantity_type) :: quantity
+         character(:), allocatable :: reason
+         real(dp), allocatable :: values(:), fine(:)
+         logical :: holds(reason_count), is_node
+         integer :: number
+
+         quantity = verifiable(find_quantity(verifiable, check%quantity))
+         call read_integer(check%where, number, is_node)
+         holds = .false.
+         if (is_node .and. quantity%unit == 'stress') holds(at_corner) = &
+            any(found%is_singular .and. model%mesh%node_number == number)
+         holds(of_step) = .not. (self%is_full .or. quantity%kind == of_nodes .and. is_node)
+         call values_asked_for(check, record, model, interfaces, simulation%recovery%points%node, &
+            values, reason)
+         if (reason /= '') return
+         checks%value(i) = worst(values)
+         fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
+         if (.not. (allocated(self%lost) .or. any(holds))) call values_asked_for(check, &
+            self%divided%record, self%divided%model, fine_interfaces, fine_points%node, fine, &
+            reason)
+         if (reason /= '') fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
+         call settle(checks, i, reason_of(self, holds, worst(fine)), uncertainty_parts(quantity, &
+            worst(fine) - checks%value(i), 0.0_dp, 0.0_dp, iteration*checks%value(i)))
+      end subroutine compare
+
+      !> The value that a check judges.
+      pure real(dp) function worst(values)
+         real(dp), intent(in) :: values(:)
+
+         worst = values(max(1, maxloc(abs(values - model%verifications(i)%value), dim=1)))
+      end function worst
+
+   end subroutine judge_checks
+
+   !> Uncertainties of the quantities of an increment.
+   subroutine judge_history(self, iteration, record)
+      type(error_estimator_type), intent(in) :: self
+      real(dp), intent(in) :: iteration                      ! relative
+      type(increment_record_type), intent(inout) :: record
+      type(uncertainty_type) :: own
+      logical :: holds(reason_count)
+      real(dp) :: after
+      integer :: q
+
+      holds = .false.
+      call clear(own, [(history_value(history_estimated(q)%name, record), &
+         q=1, size(history_estimated))])
+      do q = 1, size(own%value)
+         after = ieee_value(1.0_dp, ieee_quiet_nan)
+         if (.not. allocated(self%lost)) after = history_value(history_estimated(q)%name, &
+            self%divided%record)
+         call settle(own, q, reason_of(self, holds, after), uncertainty_parts( &
+            history_estimated(q), after - own%value(q), 0.0_dp, 0.0_dp, iteration*own%value(q)))
+      end do
+      record%history_uncertainties = own
+   end subroutine judge_history
+
+   !> Why a number has no uncertainty.
+   pure integer function reason_of(self, holds, fine)
+      type(error_estimator_type), intent(in) :: self
+      logical, intent(in) :: holds(reason_count)   ! what is known of it
+      real(dp), intent(in) :: fine                 ! on the finer mesh, or NaN
+      logical :: all_holds(reason_count)
+
+      all_holds = holds
+      all_holds(not_on_finer_mesh) = allocated(self%lost)
+      all_holds(no_finer_value) = ieee_is_nan(fine)
+      reason_of = first_reason(all_holds)
+   end function reason_of
+
+   !> Begins with values alone.
+   pure subroutine clear(own, values)
+      class(uncertainty_type), intent(inout) :: own
+      real(dp), intent(in) :: values(:)
+
+      own%value = values
+      own%total = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(values))
+      own%change = own%total
+      own%scatter = own%total
+      own%iteration = own%total
+      allocate (own%no_estimate(size(values)), source=no_reason)
+   end subroutine clear
+
+   !> Gives a value its uncertainty, or the reason why it has none; one that is not there has none.
+   pure subroutine settle(own, q, reason, parts)
+      class(uncertainty_type), intent(inout) :: own
+      integer, intent(in) :: q
+      integer, intent(in) :: reason          ! no_reason for one that has
+      real(dp), intent(in) :: parts(3)       ! of uncertainty_parts
+
+      if (ieee_is_nan(own%value(q))) return
+      own%no_estimate(q) = reason
+      if (reason /= no_reason) return
+      own%change(q) = parts(1)
+      own%scatter(q) = parts(2)
+      own%iteration(q) = parts(3)
+      own%total(q) = sum(parts)
+   end subroutine settle
+
+   !> What the fixed point has left, relative: its residual, through the gain that is nearest to 1.
+   !> omega - U(omega) = r moves the solution by (1 - U')^-1 r.
+   pure real(dp) function left_by_iteration(record) result(relative)
+      type(increment_record_type), intent(in) :: record
+      real(dp) :: distance
+
+      relative = 0.0_dp
+      if (.not. allocated(record%iterations)) return
+      if (size(record%iterations) == 0 .or. ieee_is_nan(record%coupling_gain)) return
+      distance = min(1.0_dp, abs(1.0_dp - record%coupling_gain))
+      if (.not. ieee_is_nan(record%coupling_gain_max)) distance = min(distance, &
+         abs(1.0_dp - record%coupling_gain_max))
+      relative = history_value('residual', record)/max(tiny(1.0_dp), distance)
+   end function left_by_iteration
+
+   !> All that the estimates take of earlier increments, in either direction.
+   !> Errors: as simulation_type's reduce.
+   subroutine exchange(self, interfaces, table, error)
       class(error_estimator_type), intent(inout) :: self  !! started
+      integer, intent(in) :: interfaces                   !! number of them
       type(state_table_type), intent(inout) :: table
+      type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: step(:)
 
       if (.not. self%is_on) return
       ! One that has followed no increment yet receives the table.
-      if (self%step == 0) call self%histories%begin_step(size(estimated), size(self%most_locked), &
-         [real(dp) ::])
+      if (self%step == 0) call self%histories%begin_step(size(estimated), interfaces, [real(dp) ::])
       step = [self%step]
       call integers(table, 'estimated_step', step)
       self%step = step(1)
-      call reals(table, 'most_locked', self%most_locked)
-      call integers(table, 'contact_regime', self%regime)
       call self%histories%exchange(table)
-      call self%doubled%exchange(table)
+      if (self%is_full .and. .not. allocated(self%lost)) call self%divided%exchange(table, error)
    end subroutine exchange
 
    !> Frees the factors of the finer mesh.
@@ -211,182 +511,21 @@ contains
       class(error_estimator_type), intent(inout) :: self
 
       call self%divided%release()
-      call self%doubled%release()
    end subroutine release
 
-   !> Whether the elements at some surfaces differ in stiffness, or one has none and is rigid.
-   pure logical function differ_in_stiffness(model, surfaces) result(differ)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: surfaces(:)       ! indexes into the mesh's surfaces
-      logical :: at_face(size(model%mesh%element_kind))
-      integer :: e, i, first
+   !> Where the quantity that a check names has its numbers.
+   pure integer function kind_of(check)
+      type(verify_type), intent(in) :: check
 
-      differ = any([(size(model%mesh%surfaces(surfaces(i))%faces, 2), i=1, size(surfaces))] == 0)
-      if (differ) return
-      at_face = elements_at_surfaces(model%mesh, surfaces)
-      first = findloc(at_face, .true., dim=1)
-      do e = first + 1, size(at_face)
-         if (at_face(e)) differ = differ .or. any(abs(moduli(e) - moduli(first)) > &
-            rounding*abs(moduli(first)))
-      end do
+      kind_of = verifiable(find_quantity(verifiable, check%quantity))%kind
+   end function kind_of
 
-   contains
+   !> No parts.
+   pure function no_parts() result(parts)
+      real(dp) :: parts(3)
 
-      pure function moduli(element)
-         integer, intent(in) :: element
-         real(dp) :: moduli(4, 4)
-
-         moduli = model%materials(model%sections( &
-            model%mesh%element_section(element))%material)%elasticity
-      end function moduli
-
-   end function differ_in_stiffness
-
-   !> Whether the fields at the end of a step depend on nothing before it.
-   pure logical function is_steady(model, record)
-      type(model_type), intent(in) :: model
-      type(increment_record_type), intent(in) :: record
-      type(heat_equation_type) :: equation
-
-      associate (step => model%steps(record%step))
-         equation = heat_equation_type(step%scheme)
-         is_steady = equation%is_steady() .or. .not. solves_heat(step%analysis)
-      end associate
-   end function is_steady
-
-   !> Bounds of the errors of the mesh.
-   subroutine bound_mesh(self, model, simulation, record, before, why_not)
-      type(error_estimator_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(simulation_type), intent(in) :: simulation
-      type(increment_record_type), intent(inout) :: record
-      type(quantity_histories_type), intent(in) :: before    ! histories in the round before
-      character(:), allocatable, intent(out) :: why_not      ! why there are none; else ''
-      type(error_type), allocatable :: error
-      real(dp), dimension(size(estimated), size(record%errors)) :: change, spread
-      real(dp) :: of_heat(size(model%mesh%element_kind))
-      logical :: also(size(model%mesh%element_kind))
-      type(contact_points_type) :: points
-      integer :: i
-
-      why_not = ''
-      if (.not. allocated(self%bodies)) allocate (self%bodies)
-      call self%bodies%find(model, simulation, record, also)
-      call self%divided%find_change(simulation, model, also, self%before, change, error)
-      if (allocated(error)) then
-         why_not = error%message
-         return
-      end if
-      call find_other_states(simulation, model, record%step, self%before, spread)
-      of_heat = 0.0_dp
-      call add_errors(model%mesh, record%heat_flux_error, of_heat)
-      self%energies = [sum(squared_errors(model%mesh, record), mask=.not. &
-         self%divided%is_divided), sum(of_heat, mask=.not. self%divided%is_divided)]
-      if (is_steady(model, record)) call self%bodies%bound(model, simulation, self%divided, &
-         self%energies, record)
-      do i = 1, size(record%errors)
-         associate (bounds => record%errors(i)%mesh)
-            call simulation%bodies%view(i, points)
-            bounds = bounds_of_mesh(points, record%contacts(i), &
-               change(:, i), self%histories%scatter(i, before), self%most_locked(i), &
-               self%energies(1), jump_of(i))
-            ! Halved elements show how far another state moves an edge, but not which it is.
-            where (estimated%resolution > 0.0_dp .and. .not. ieee_is_nan(bounds + spread(:, i)))
-               bounds = max(bounds, spread(:, i))
-            else where
-               bounds = bounds + spread(:, i)
-            end where
-            where (.not. ieee_is_nan(bounds)) bounds = max(bounds, &
-               left_by_round*abs(self%histories%change_since(i, before)))
-         end associate
-         if (spread(find_quantity(estimated, 'edge_contact'), i) > 0.0_dp) call append( &
-            record%notes, 'on this mesh another contact state of '//model%contacts(i)%name// &
-            ' satisfies all conditions, with the edge of contact '//to_text(spread( &
-            find_quantity(estimated, 'edge_contact'), i))//' from this one: the conductance '// &
-            'jumps there, and increments decide which is found; the bounds have both')
-      end do
-
-   contains
-
-      !> Jump of the conductance of an interface where heat crosses it and moves the faces.
-      real(dp) function jump_of(interface) result(jump)
-         integer, intent(in) :: interface
-
-         associate (bodies => simulation%bodies, &
-            start => simulation%bodies%points%interface_start)
-            jump = 0.0_dp
-            if (.not. bodies%is_coupled) return
-            if (abs(record%contacts(interface)%heat_rate) > 0.0_dp) jump = maxval(relative_jump( &
-               bodies%laws%conductance(start(interface):start(interface + 1) - 1)))
-         end associate
-      end function jump_of
-
-   end subroutine bound_mesh
-
-   !> Bounds of the errors of the increments, from those of twice the size. Maxima of bodies err by
-   !> as large a part of themselves as force, heat rate and peak pressure of an interface.
-   subroutine bound_increments(self, simulation, record)
-      type(error_estimator_type), intent(in) :: self
-      type(simulation_type), intent(in) :: simulation
-      type(increment_record_type), intent(inout) :: record
-      real(dp) :: doubled(size(estimated), size(record%errors)), part
-      integer :: i, peak, q
-
-      if (.not. self%doubled%is_led) return
-      doubled = ieee_value(1.0_dp, ieee_quiet_nan)
-      if (self%doubled%has_doubled .and. .not. self%doubled%is_lost) then
-         call quantities_of_state(simulation%bodies, self%doubled%state, doubled)
-      end if
-      peak = find_quantity(estimated, 'peak_pressure')
-      part = 0.0_dp
-      do i = 1, size(record%errors)
-         associate (bodies => simulation%bodies, errors => record%errors(i), &
-            start => simulation%bodies%points%interface_start)
-            errors%increment = of_doubled_increments*abs(errors%value - doubled(:, i))
-            if (bodies%interfaces(i)%pairing == pairing_surfaces .and. &
-               any(bodies%laws%friction(start(i):start(i + 1) - 1)%coefficient > 0.0_dp)) then
-               errors%increment(peak) = of_doubled_in_peak*abs(errors%value(peak) - &
-                  doubled(peak, i))
-            end if
-            do q = 1, size(estimated)
-               if (estimated(q)%is_of_friction .or. estimated(q)%resolution > 0.0_dp) cycle
-               if (ieee_is_nan(errors%value(q))) cycle
-               if (abs(errors%value(q)) <= 0.0_dp) cycle
-               if (ieee_is_nan(part + errors%increment(q))) then
-                  part = part + errors%increment(q)
-               else
-                  part = max(part, merge(1.0_dp, errors%increment(q)/ &
-                     max(abs(errors%value(q)), errors%increment(q), tiny(part)), &
-                     errors%increment(q) >= abs(errors%value(q))))
-               end if
-            end do
-         end associate
-      end do
-      do i = 1, size(record%body_errors)
-         record%body_errors(i)%increment = part*abs(record%body_errors(i)%value)
-      end do
-   end subroutine bound_increments
-
-   !> Bounds of the errors of the fixed point: its residual, through the gain that is nearest to 1.
-   subroutine bound_iteration(record)
-      type(increment_record_type), intent(inout) :: record
-      real(dp) :: distance, relative
-      integer :: i
-
-      if (.not. allocated(record%iterations)) return
-      if (size(record%iterations) == 0) return
-      if (ieee_is_nan(record%coupling_gain)) return
-      distance = min(1.0_dp, abs(1.0_dp - record%coupling_gain))
-      if (.not. ieee_is_nan(record%coupling_gain_max)) distance = min(distance, &
-         abs(1.0_dp - record%coupling_gain_max))
-      relative = history_value('residual', record)/max(tiny(1.0_dp), distance)
-      do i = 1, size(record%errors)
-         record%errors(i)%iteration = relative*abs(record%errors(i)%value)
-      end do
-      do i = 1, size(record%body_errors)
-         record%body_errors(i)%iteration = relative*abs(record%body_errors(i)%value)
-      end do
-   end subroutine bound_iteration
+      parts = ieee_value(1.0_dp, ieee_quiet_nan)
+   end function no_parts
 
    !> Squared error of each element: stress and heat flux of each body count by their relative
    !> errors.

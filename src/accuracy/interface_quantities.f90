@@ -3,7 +3,7 @@ module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
-   use contact_system, only: contact_open, contact_slip
+   use contact_system, only: contact_open
    use increment_records, only: measure_contact
    use heat_equation, only: heat_across
    use kinds, only: dp
@@ -13,25 +13,10 @@ module interface_quantities
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: closed_length, contact_width, edge_spacing, is_end_of_face, &
-      peak_is_at_end, peaks_at_corner, point_before, quantities_of, quantities_of_state, &
-      regime_of, resolved_length, rises_to_end, turns_at_peak
-
-   !> Regimes of a face with several contact states: a part of it is closed, or all of it.
-   integer, parameter :: partly_closed = -1, closed = -2
+   public :: closed_length, contact_width, contacts_of_state, is_end_of_face, peak_is_at_end, &
+      peaks_at_corner, point_before, quantities_of, quantities_of_state, rises_to_end, spacing_at
 
 contains
-
-   !> The contact regime of a face: its contact state where it has a single one.
-   pure integer function regime_of(contact) result(regime)
-      type(contact_record_type), intent(in) :: contact    !! its state
-
-      associate (states => contact%contact_state)
-         regime = partly_closed
-         if (all(states /= contact_open)) regime = closed
-         if (all(states == states(1))) regime = states(1)
-      end associate
-   end function regime_of
 
    !> The estimated quantities of an interface.
    pure function quantities_of(contact) result(values)
@@ -49,25 +34,39 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: state
       real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
+      type(contact_record_type), allocatable :: contacts(:)
+      integer :: i
+
+      call contacts_of_state(bodies, state, contacts)
+      do i = 1, size(contacts)
+         values(:, i) = quantities_of(contacts(i))
+      end do
+   end subroutine quantities_of_state
+
+   !> The interfaces in a state, without slip, temperatures, conductance and heat flux.
+   subroutine contacts_of_state(bodies, state, contacts)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(solution_state_type), intent(in) :: state
+      type(contact_record_type), allocatable, intent(out) :: contacts(:)
       type(contact_points_type) :: points
-      type(contact_record_type) :: record   ! without slip, temperatures, conductance, heat flux
       integer :: first, i, last
 
+      allocate (contacts(size(bodies%points%interface_start) - 1))
       associate (start => bodies%points%interface_start, contact => state%contact)
-         do i = 1, size(values, 2)
+         do i = 1, size(contacts)
             first = start(i)
             last = start(i + 1) - 1
             call bodies%view(i, points)
-            record%contact_state = contact%contact_state(first:last)
-            record%gap = contact%gap(first:last)
-            call measure_contact(points, bodies%laws%friction(first), record%contact_state /= &
-               contact_open, contact%force(first:last), contact%shear_force(first:last), record)
-            record%heat_rate = sum(heat_across(points%weight, &
+            contacts(i)%contact_state = contact%contact_state(first:last)
+            contacts(i)%gap = contact%gap(first:last)
+            call measure_contact(points, bodies%laws%friction(first), &
+               contacts(i)%contact_state /= contact_open, contact%force(first:last), &
+               contact%shear_force(first:last), contacts(i))
+            contacts(i)%heat_rate = sum(heat_across(points%weight, &
                state%flux_conductance(first:last), state%jump(first:last)))
-            values(:, i) = quantities_of(record)
          end do
       end associate
-   end subroutine quantities_of_state
+   end subroutine contacts_of_state
 
    !> Width of all zones of contact, from edge to edge as the summary has it. Contact points whose
    !> zones have no width, as one that is closed alone may, have their tributary length.
@@ -130,15 +129,18 @@ contains
       end associate
    end function edge_spacing
 
-   !> How far an edge is known on a mesh; 0 at the end of the face [length].
-   pure real(dp) function resolved_length(quantity, points, edge) result(length)
-      type(quantity_type), intent(in) :: quantity      !! an edge, or another one: 0
+   !> The spacing that an edge is known to a part of: of the contact points about it for contact, of
+   !> the nodes for stick; 0 at the end of the face and for what is no edge [length].
+   pure real(dp) function spacing_at(quantity, points, edge) result(spacing)
+      type(quantity_type), intent(in) :: quantity
       type(contact_points_type), intent(in) :: points  !! the contact points of the interface
       real(dp), intent(in) :: edge                     !! as arc length, or NaN [length]
 
-      length = quantity%resolution*edge_spacing(points, edge)
-      if (quantity%name == 'edge_stick') length = length/points%node_spacings
-   end function resolved_length
+      spacing = 0.0_dp
+      if (quantity%resolution <= 0.0_dp) return
+      spacing = edge_spacing(points, edge)
+      if (quantity%name == 'edge_stick') spacing = spacing/points%node_spacings
+   end function spacing_at
 
    !> The contact point before an edge, of those that have a next one.
    pure integer function point_before(s, edge)
@@ -178,33 +180,6 @@ contains
 
       peaks_at_corner = any(points%at_corner .and. peak_is_at_end(points, contact))
    end function peaks_at_corner
-
-   !> Whether friction turns round at the largest pressure: contact points beside it slip in
-   !> opposite directions, or one does beside an end that supports hold. What sticks between them is
-   !> narrower than the spacing. Up to there the pressure between bodies of different stiffness
-   !> rises as the logarithm of the distance, because shear jumps (J. Dundurs, J. Appl. Mech. 36
-   !> (1969) 650-652).
-   pure logical function turns_at_peak(points, contact) result(turns)
-      type(contact_points_type), intent(in) :: points     !! contact points of the interface
-      type(contact_record_type), intent(in) :: contact    !! its state
-      integer, allocatable :: beside(:)
-      integer :: k
-
-      turns = allocated(contact%shear) .and. size(contact%pressure) > 2 .and. &
-         any(contact%pressure > 0.0_dp)
-      if (.not. turns) return
-      k = maxloc(contact%pressure, dim=1)
-      beside = points%beside(k)
-      turns = size(beside) > 0 .and. all(contact%contact_state(beside) == contact_slip)
-      if (.not. turns) return
-      associate (shear => contact%shear(beside))
-         if (size(beside) == 2) then
-            turns = shear(1)*shear(2) < 0.0_dp
-         else
-            turns = abs(shear(1)) > 0.0_dp .and. abs(contact%shear(k)) <= 0.0_dp
-         end if
-      end associate
-   end function turns_at_peak
 
    !> Whether the pressure is largest at an end of a piece and rises to it beyond the line through
    !> the two contact points before, as where it has no limit: by more than pressures of corners and

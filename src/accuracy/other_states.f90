@@ -3,11 +3,10 @@
 !> and cold: both are solutions on the mesh of the run, and its increments decide which one it
 !> finds. The exact solution has one edge; so what these states differ by is an error of the mesh.
 module other_states
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_quantities, only: estimated
    use contact_system, only: contact_open
    use controls, only: start_closed, start_open, start_type
-   use doubled_increments, only: implicit_state, implicit_step
+   use companion_states, only: implicit_state, implicit_step
    use errors, only: error_type
    use heat_reduction, only: heat_reduction_type
    use interface_quantities, only: quantities_of_state
@@ -24,27 +23,27 @@ module other_states
 
 contains
 
-   !> How far the quantities of other states are from those of the run: of states from OPEN and from
-   !> CLOSED that differ from its own at contact points beside edges alone. What differs more is
+   !> The quantities of another state, of those from OPEN and from CLOSED that differ from that of the
+   !> run at contact points beside edges alone: those farthest from its own. What differs more is
    !> another branch, no error of this one.
-   subroutine find_other_states(simulation, model, step, before, spread)
+   subroutine find_other_states(simulation, model, step, before, farthest)
       type(simulation_type), intent(in) :: simulation        !! the run at the end of an increment
       type(model_type), intent(in) :: model
       integer, intent(in) :: step                            !! index of its step
       type(solution_state_type), intent(in) :: before        !! state at the start of the increment
-      real(dp), intent(out) :: spread(:, :)                  !! (quantities, interfaces)
+      !> (quantities, interfaces) those of the run in, and out where there is no other
+      real(dp), intent(inout) :: farthest(:, :)
       integer, parameter :: kinds(2) = [start_open, start_closed]
       type(error_type), allocatable :: error
       type(heat_reduction_type) :: heat
       type(solution_state_type) :: state
       type(step_type) :: from
-      real(dp), dimension(size(estimated), size(spread, 2)) :: own, other
+      real(dp), dimension(size(estimated), size(farthest, 2)) :: own, other
       integer :: i
 
-      spread = 0.0_dp
+      own = farthest
       associate (bodies => simulation%bodies)
          if (.not. bodies%is_coupled .or. .not. any(law_jumps(bodies%laws%conductance))) return
-         call quantities_of_state(bodies, simulation%state, own)
          do i = 1, size(kinds)
             from = implicit_step(model%steps(step))
             from%start = start_type(kind=kinds(i))
@@ -54,7 +53,7 @@ contains
             if (.not. is_beside(state%contact%contact_state, &
                simulation%state%contact%contact_state, piece_starts(bodies))) cycle
             call quantities_of_state(bodies, state, other)
-            where (.not. ieee_is_nan(other - own)) spread = max(spread, abs(other - own))
+            where (abs(other - own) > abs(farthest - own)) farthest = other
          end do
       end associate
       call heat%release()

@@ -20,10 +20,8 @@ module quantity_histories
       real(dp), allocatable :: values(:, :, :)
    contains
       procedure :: begin_step
-      procedure :: begin_anew
       procedure :: follow
       procedure :: scatter
-      procedure :: change_since
       procedure :: exchange
    end type quantity_histories_type
 
@@ -39,14 +37,6 @@ contains
       self%values = ieee_value(1.0_dp, ieee_quiet_nan)
       self%corners = corners
    end subroutine begin_step
-
-   !> Forgets the values of an interface: those that follow are of another history.
-   pure subroutine begin_anew(self, interface)
-      class(quantity_histories_type), intent(inout) :: self
-      integer, intent(in) :: interface
-
-      self%values(:, :, interface) = ieee_value(1.0_dp, ieee_quiet_nan)
-   end subroutine begin_anew
 
    !> Takes the values at the end of an increment.
    pure subroutine follow(self, time, values)
@@ -74,60 +64,18 @@ contains
       self%values = reshape(values, shape(self%values))
    end subroutine exchange
 
-   !> How much the quantities of an interface scatter; NaN where they have too few values. Where the
-   !> step was solved on another mesh too, no more than what the two differ by: a history that bends
-   !> by itself scatters on both alike.
-   pure function scatter(self, interface, other)
+   !> How much the quantities of an interface scatter; 0 where they have too few values.
+   pure function scatter(self, interface)
       class(quantity_histories_type), intent(in) :: self
       integer, intent(in) :: interface
-      type(quantity_histories_type), intent(in) :: other   !! on the other mesh; empty without one
       real(dp) :: scatter(size(self%values, 2))
-      real(dp) :: difference(kept, size(self%values, 2)), of_both, time(kept)
       integer :: q
 
-      if (allocated(other%values)) call compare(self, other, interface, time, difference)
       do q = 1, size(scatter)
          scatter(q) = scatter_of(self%time, self%values(:, q, interface), self%corners)
-         if (.not. allocated(other%values) .or. ieee_is_nan(scatter(q))) cycle
-         of_both = scatter_of(time, difference(:, q), self%corners)
-         if (.not. ieee_is_nan(of_both)) scatter(q) = min(scatter(q), of_both)
+         if (ieee_is_nan(scatter(q))) scatter(q) = 0.0_dp
       end do
    end function scatter
-
-   !> Differences of an interface's quantities at the end from those on another mesh; 0 where
-   !> one of them has no value.
-   pure function change_since(self, interface, other) result(change)
-      class(quantity_histories_type), intent(in) :: self
-      integer, intent(in) :: interface
-      type(quantity_histories_type), intent(in) :: other   !! on the other mesh; empty without one
-      real(dp) :: change(size(self%values, 2))
-
-      change = 0.0_dp
-      if (.not. allocated(other%values)) return
-      change = self%values(kept, :, interface) - other%values(kept, :, interface)
-      where (ieee_is_nan(change)) change = 0.0_dp
-   end function change_since
-
-   !> Difference of two histories at the last instants that both have.
-   pure subroutine compare(self, other, interface, time, difference)
-      type(quantity_histories_type), intent(in) :: self, other
-      integer, intent(in) :: interface
-      real(dp), intent(out) :: time(:), difference(:, :)   ! as of the histories
-      real(dp) :: same
-      integer :: j, k, n
-
-      same = same_time*(self%time(kept) - self%time(kept - 1))
-      time = self%time
-      difference = ieee_value(1.0_dp, ieee_quiet_nan)
-      n = kept
-      do k = kept, 1, -1
-         j = minloc(abs(other%time - self%time(k)), dim=1)
-         if (abs(other%time(j) - self%time(k)) > same) cycle
-         time(n) = self%time(k)
-         difference(n, :) = self%values(k, :, interface) - other%values(j, :, interface)
-         n = n - 1
-      end do
-   end subroutine compare
 
    !> How much the last values scatter about a smooth history. Increments so short that an edge of
    !> contact passes a node only in several of them tell it over every second one.

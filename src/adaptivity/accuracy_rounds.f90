@@ -1,22 +1,22 @@
 !> The rounds of a requested accuracy: what each found at the ends of its steps.
 !>
-!> The bounds are those of the error estimator. Where it knows nothing of the mesh, every round
-!> divides both faces (`adaptive_rounds`), and the larger one of the last two changes from round to
-!> round is the bound: one change can be small by chance. A pressure that has no limit has no bound
-!> whatever the changes are, nor has one where friction turns round; where it is at a corner, no
-!> round is spent on it.
+!> The uncertainties are those of the error estimator. Where the last increment alone tells none,
+!> every round divides both faces and halves the increments (`adaptive_rounds`), and the larger one of
+!> the last two changes from round to round tells it, by the same rule: one change can be small by
+!> chance. A pressure that has no limit has none whatever the changes are; where it is at a corner,
+!> no round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
-   use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end
+   use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use kinds, only: dp
    use no_estimates, only: at_corner, grows, no_reason, remains
    use quantity_types, only: find_quantity, quantity_type
-   use records, only: contact_record_type, increment_record_type, interface_errors_type
+   use records, only: contact_record_type, increment_record_type, uncertainty_type
    use text, only: to_text
-   use quantity_histories, only: quantity_histories_type
+   use uncertainty_rule, only: uncertainty_parts
    implicit none
    private
    public :: accuracy_rounds_type, accuracy_round_type, finding_type
@@ -42,11 +42,11 @@ module accuracy_rounds
       logical :: is_at_end = .false.       !! whether it is a pressure at an end of the interface
       real(dp) :: value = 0.0_dp           !! of the quantity
       real(dp) :: change = 0.0_dp          !! what the round changed it by
-      real(dp) :: mesh = 0.0_dp            !! bound of the error of the mesh; NaN: uncertain
-      real(dp) :: increment = 0.0_dp       !! of increments and iteration; NaN: uncertain
-      real(dp) :: bound = 0.0_dp           !! of the whole error; NaN: uncertain
+      real(dp) :: uncertainty = 0.0_dp     !! NaN: not known
+      real(dp) :: spacing = 0.0_dp         !! about an edge [length]
+      logical :: follows_path = .false.    !! whether increments count as well
       real(dp) :: allowed = 0.0_dp         !! what the target allows
-      integer :: no_estimate = no_reason   !! why there is no bound, of no_estimates
+      integer :: no_estimate = no_reason   !! why there is none, of no_estimates
       character(:), allocatable :: instead !! what there is where it has no value or no edge
    contains
       procedure :: is_met
@@ -73,9 +73,6 @@ module accuracy_rounds
       type(demand_type), allocatable :: demands(:)
       type(accuracy_round_type), allocatable :: rounds(:)    !! the last is the present one
       real(dp), allocatable :: largest(:)                    !! (demands) largest scale so far
-      !> (steps) the quantities at the last increments of each in the last round, as the error
-      !> estimator wrote them
-      type(quantity_histories_type), allocatable :: histories(:)
    contains
       procedure :: begin_round
       procedure :: follow
@@ -96,7 +93,6 @@ contains
       type(accuracy_round_type), allocatable :: rounds(:)
       integer :: i, k, n
 
-      if (.not. allocated(self%histories)) allocate (self%histories(steps))
       self%is_on = allocated(request%targets)
       if (.not. self%is_on) return
       if (.not. allocated(self%demands)) then
@@ -141,12 +137,14 @@ contains
                contact_width(points, contact)
             if (ieee_is_nan(scale)) scale = 0.0_dp
             self%largest(d) = max(self%largest(d), scale)
-            if (.not. allocated(record%errors)) cycle
+            if (.not. record%last_of_step) cycle
             scale = max(scale, early*self%largest(d), beside_others*maxval(self%largest, &
                mask=self%demands%quantity == self%demands(d)%quantity))
             associate (finding => self%rounds(n)%findings(d, record%step))
                finding = found(self%demands(d), points, &
-                  record%errors(self%demands(d)%interface), scale)
+                  record%uncertainties(self%demands(d)%interface), scale)
+               finding%follows_path = ieee_is_nan(finding%uncertainty) .or. &
+                  allocated(record%history_uncertainties)
                finding%instead = '0 at the end of each step'
                if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) then
                   finding%instead = 'no heat'
@@ -158,12 +156,12 @@ contains
                      remains(finding%no_estimate)) finding%no_estimate = grows
                end if
             end associate
-            call add_change(self%rounds, d, record%step)
+            call add_change(self%rounds, quantity, d, record%step)
          end associate
       end do
    end subroutine follow
 
-   !> Gives the end of a step the bounds that its targets are judged by.
+   !> Gives the end of a step the uncertainties that its targets are judged by.
    subroutine settle(self, record)
       class(accuracy_rounds_type), intent(in) :: self
       type(increment_record_type), intent(inout) :: record
@@ -171,21 +169,20 @@ contains
 
       do d = 1, size(self%demands)
          associate (finding => self%rounds(size(self%rounds))%findings(d, record%step), &
-            errors => record%errors(self%demands(d)%interface), q => self%demands(d)%quantity)
+            errors => record%uncertainties(self%demands(d)%interface), q => self%demands(d)%quantity)
             if (.not. finding%is_there) cycle
-            errors%mesh(q) = finding%mesh
-            errors%bound(q) = finding%bound
+            errors%total(q) = finding%uncertainty
             errors%no_estimate(q) = finding%no_estimate
          end associate
       end do
    end subroutine settle
 
-   !> The bounds of one quantity at the end of a step. Where an edge is the end of the interface
+   !> The uncertainty of one quantity at the end of a step. Where an edge is the end of the interface
    !> there is nothing to judge.
    function found(demand, points, errors, scale) result(finding)
       type(demand_type), intent(in) :: demand
       type(contact_points_type), intent(in) :: points
-      type(interface_errors_type), intent(in) :: errors
+      type(uncertainty_type), intent(in) :: errors
       real(dp), intent(in) :: scale
       type(finding_type) :: finding
 
@@ -195,17 +192,18 @@ contains
          finding%is_there = .not. ieee_is_nan(finding%value) .and. scale > 0.0_dp
          if (.not. finding%is_there) return
          finding%is_there = .not. is_end_of_face(estimated(q), points, finding%value)
-         finding%mesh = errors%mesh(q)
-         finding%increment = errors%increment(q) + errors%iteration(q)
-         finding%bound = errors%bound(q)
+         finding%uncertainty = errors%total(q)
+         finding%spacing = spacing_at(estimated(q), points, finding%value)
          finding%no_estimate = errors%no_estimate(q)
       end associate
    end function found
 
    !> Lets the changes from the rounds before count where nothing else does.
-   subroutine add_change(rounds, d, step)
+   subroutine add_change(rounds, quantity, d, step)
       type(accuracy_round_type), intent(inout) :: rounds(:)
+      type(quantity_type), intent(in) :: quantity
       integer, intent(in) :: d, step
+      real(dp) :: parts(3)
       integer :: n
 
       n = size(rounds)
@@ -214,9 +212,12 @@ contains
          if (.not. (now%is_there .and. before%is_there)) return
          now%change = abs(now%value - before%value)
          if (remains(now%no_estimate)) return
-         if (ieee_is_nan(now%mesh) .and. n > 2) now%mesh = max(now%change, before%change)
-         now%bound = now%mesh + now%increment
-         if (.not. ieee_is_nan(now%bound)) now%no_estimate = no_reason
+         if (.not. ieee_is_nan(now%uncertainty)) return
+         parts = uncertainty_parts(quantity, max(now%change, before%change), 0.0_dp, now%spacing, &
+            0.0_dp)
+         ! The change leads to the finer mesh, whose error is so many times smaller.
+         now%uncertainty = parts(1)/2.0_dp**quantity%order + parts(2)
+         now%no_estimate = no_reason
       end associate
    end subroutine add_change
 
@@ -229,20 +230,20 @@ contains
       integer :: i, n
 
       n = size(rounds)
-      has_grown = n > 2 .and. ieee_is_nan(rounds(n)%findings(d, step)%mesh)
+      has_grown = n > 2 .and. ieee_is_nan(rounds(n)%findings(d, step)%uncertainty)
       if (.not. has_grown) return
       growth = [(rounds(n - 2 + i)%findings(d, step)%value - &
          rounds(n - 3 + i)%findings(d, step)%value, i=1, 2)]
       has_grown = growth(1) > 0.0_dp .and. growth(2) >= growth(1)
    end function has_grown
 
-   !> Whether a bound is inside its target; an uncertain one is not.
+   !> Whether an uncertainty is inside its target; one that is not known is not.
    elemental logical function is_met(self)
       class(finding_type), intent(in) :: self
 
       is_met = .not. self%is_there
-      if (is_met .or. ieee_is_nan(self%bound)) return
-      is_met = self%bound <= self%allowed
+      if (is_met .or. ieee_is_nan(self%uncertainty)) return
+      is_met = self%uncertainty <= self%allowed
    end function is_met
 
    !> Whether the last round meets all targets; there is one.
@@ -274,7 +275,7 @@ contains
       end do
    end function worst_step
 
-   !> Largest bound of a demand over what its target allows; 0 for none, huge where it is unknown.
+   !> Largest uncertainty of a demand over what its target allows; 0 for none, huge where it is unknown.
    pure real(dp) function excess(self, d)
       class(accuracy_round_type), intent(in) :: self
       integer, intent(in) :: d                    !! the demand
@@ -285,12 +286,12 @@ contains
       if (step > 0) excess = over_target(self%findings(d, step))
    end function excess
 
-   !> A bound over what its target allows; huge where it is unknown.
+   !> An uncertainty over what its target allows; huge where it is unknown.
    pure real(dp) function over_target(finding)
       type(finding_type), intent(in) :: finding
 
       over_target = huge(1.0_dp)
-      if (.not. ieee_is_nan(finding%bound)) over_target = finding%bound/finding%allowed
+      if (.not. ieee_is_nan(finding%uncertainty)) over_target = finding%uncertainty/finding%allowed
    end function over_target
 
    !> Concludes a round: whether another one follows, and why not.

@@ -20,12 +20,12 @@ module adaptive_rounds
    use errors, only: error_type
    use growing_modes, only: analyse_stability
    use increments, only: advance
-   use interface_quantities, only: closed_length, point_before, resolved_length
+   use interface_quantities, only: closed_length, point_before, spacing_at
    use kinds, only: dp
    use local_refinement, only: elements_at_surfaces, largest_part
    use mesh, only: mesh_type
    use model, only: model_type
-   use no_estimates, only: at_corner, turns_round
+   use no_estimates, only: at_corner
    use quantity_types, only: quantity_type
    use records, only: contact_record_type, increment_record_type
    use restarts, only: keep_restart
@@ -67,11 +67,10 @@ module adaptive_rounds
    end interface
 
    real(dp), parameter :: marked = 0.8_dp       !! part of the squared error that is marked
-   real(dp), parameter :: far = 16.0_dp         !! bound over target that takes two divisions
+   real(dp), parameter :: far = 16.0_dp  !! uncertainty over target that takes two divisions
    real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
    real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
    integer, parameter :: most_levels = 2        !! divisions at an edge in one round
-   integer, parameter :: most_halvings = 2      !! of the increments in one round
 
    !> Demands at the ends of the steps of a round.
    type :: round_indicators_type
@@ -112,25 +111,27 @@ contains
       type(round_indicators_type) :: indicators
 
       allocate (estimator)
-      call estimator%start(model, simulation)
-      if (present(restart)) call estimator%exchange(restart)
+      call estimator%start(model)
+      if (present(restart) .and. .not. allocated(error)) call estimator%exchange( &
+         size(model%contacts), restart, error)
       call self%accuracy%begin_round(model%accuracy, size(model%contacts), size(model%steps))
       call indicators%start(model)
       do while (.not. (allocated(error) .or. simulation%finished(model)))
          call estimator%begin_increment(simulation)
          call advance(simulation, model, record, error)
          if (.not. allocated(error)) then
-            call estimator%end_increment(model, simulation, record, self%accuracy%histories)
+            call estimator%end_increment(model, simulation, record)
             if (self%accuracy%is_on) then
                call simulation%bodies%views(interfaces)
                call self%accuracy%follow(interfaces, record)
                if (record%last_of_step) call indicators%take(model, interfaces, self%accuracy, &
                   record)
-               if (allocated(record%errors)) call self%accuracy%settle(record)
+               if (record%last_of_step) call self%accuracy%settle(record)
             end if
             call analyse_stability(model, simulation, record)
             call keep_restart(model, simulation, record)
-            if (allocated(record%restart)) call estimator%exchange(record%restart)
+            if (allocated(record%restart)) call estimator%exchange(size(model%contacts), &
+               record%restart, error)
          end if
          call taker%take(simulation, record, error)
       end do
@@ -195,25 +196,14 @@ contains
       do d = 1, size(rounds%demands)
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
          if (finding%is_met() .or. finding%no_estimate == at_corner) cycle
-         ! Increments are halved where their part of the bound is the larger one, or leaves the
-         ! mesh less than half of the target.
-         if (ieee_is_nan(finding%increment)) then
-            self%halvings = max(self%halvings, 1)
-         else if (finding%increment > 0.5_dp*finding%allowed) then
-            self%halvings = max(self%halvings, min(most_halvings, &
-               ceiling(log(2.0_dp*finding%increment/finding%allowed)/log(2.0_dp))))
-         end if
+         ! What follows the path takes increments half as long as well.
+         if (finding%follows_path) self%halvings = 1
          levels = 1
-         if (.not. ieee_is_nan(finding%mesh)) then
-            ! Not where the mesh leaves the increments half of the target.
-            if (finding%mesh <= 0.5_dp*finding%allowed) cycle
-            if (finding%mesh > far*finding%allowed) levels = 2
-         end if
+         if (finding%uncertainty > far*finding%allowed) levels = 2
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity, &
             of_elements => self%division%levels)
-            ! Where no error of the mesh is known, the change by sides of half the size tells it,
-            ! but not where friction turns round.
-            if (ieee_is_nan(record%errors(i)%mesh(q)) .and. finding%no_estimate /= turns_round) then
+            ! Where the last increment alone tells no error, the change by sides of half the size does.
+            if (ieee_is_nan(record%uncertainties(i)%total(q))) then
                where (elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
                   model%contacts(i)%master])) of_elements = max(of_elements, 1)
             end if
@@ -225,7 +215,8 @@ contains
             if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
                [edges, record%contacts(i)%edges_stick]
             ! How often the sides at an edge must be divided for its resolution.
-            length = resolved_length(estimated(q), interfaces(i), record%errors(i)%value(q))
+            length = estimated(q)%resolution*spacing_at(estimated(q), interfaces(i), &
+               record%uncertainties(i)%value(q))
             of_edges = 0
             if (length > 0.0_dp) of_edges = min(most_levels, ceiling(log(length/ &
                (part*finding%allowed))/log(2.0_dp)))

@@ -10,7 +10,7 @@ module memory_needs
    use element_kinds, only: element_node_count, linear_kind
    use kinds, only: dp
    use materials, only: heat_capacity
-   use model, only: model_type
+   use model, only: model_type, uncertainty_full, uncertainty_last
    use ordering, only: adjacency, first_rows, profile_order
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use tail_choice, only: has_sparse_tail
@@ -22,7 +22,7 @@ module memory_needs
    real(dp), parameter :: real_bytes = 8.0_dp          !! of a number
    real(dp), parameter :: base = 36.0e6_dp             !! of the program and its libraries [byte]
    real(dp), parameter :: per_entry = 33.0_dp          !! of an entry of element matrices [byte]
-   real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one, for the mesh of the bounds [byte]
+   real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one, for the finer mesh [byte]
    real(dp), parameter :: mumps_factor = 1.25_dp       !! MUMPS's memory in that of its factors
    real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]
    real(dp), parameter :: field_values = 25.0_dp       !! of a node and written increment that wait
@@ -34,8 +34,21 @@ module memory_needs
 
 contains
 
-   !> The largest memory that a run holds at a time, estimated on the mesh before it is refined.
+   !> The largest memory that a run holds at a time, estimated on the mesh before it is refined: with
+   !> ERRORS=FULL that of two runs.
    function memory_needed(model, levels, order) result(bytes)
+      type(model_type), intent(in) :: model   !! the model, unrefined and with all nodes
+      integer, intent(in) :: levels           !! refinements that are to come
+      integer, intent(in) :: order            !! 1 where midside nodes are to be dropped, else 2
+      real(dp) :: bytes                       !! [byte]
+
+      bytes = memory_of_run(model, levels, order)
+      if (model%uncertainty == uncertainty_full) bytes = bytes + memory_of_run(model, levels + 1, &
+         order) - base
+   end function memory_needed
+
+   !> The largest memory of one run, with the ends of steps on a finer mesh.
+   function memory_of_run(model, levels, order) result(bytes)
       type(model_type), intent(in) :: model   !! the model, unrefined and with all nodes
       integer, intent(in) :: levels           !! refinements that are to come
       integer, intent(in) :: order            !! 1 where midside nodes are to be dropped, else 2
@@ -43,7 +56,7 @@ contains
       real(dp) :: entries, factors, nodes, points, written
       integer, allocatable :: kinds(:)
       integer :: i, solver
-      logical :: bounds_errors, heat, mechanics
+      logical :: has_finer_mesh, heat, mechanics
 
       heat = any(solves_heat(model%steps%analysis))
       mechanics = any(solves_mechanics(model%steps%analysis))
@@ -64,9 +77,9 @@ contains
          0.0_dp)) bytes = bytes + real_bytes*motion_responses*nodes*points
       if (makes_friction_heat(model%interactions, model%contacts)) bytes = bytes + &
          real_bytes*friction_responses*nodes*points
-      ! The bounds have room for both fields.
-      bounds_errors = model%estimates_errors
-      if (bounds_errors) bytes = bytes + per_fine_entry*entries_of(kinds, .true., .true.)* &
+      ! The finer mesh has room for both fields.
+      has_finer_mesh = model%uncertainty == uncertainty_last
+      if (has_finer_mesh) bytes = bytes + per_fine_entry*entries_of(kinds, .true., .true.)* &
          4.0_dp**levels
       solver = model%solver
       if (solver == solver_by_size) solver = default_solver(merge(2, 1, mechanics)*nodes)
@@ -77,9 +90,8 @@ contains
             levels)
       end if
       bytes = bytes + real_bytes*factors
-      ! The bounds factor a mesh with divided elements.
-      if (bounds_errors) bytes = bytes + real_bytes*factors
-   end function memory_needed
+      if (has_finer_mesh) bytes = bytes + real_bytes*factors
+   end function memory_of_run
 
    !> Entries of the matrices of all elements.
    pure real(dp) function entries_of(kinds, heat, mechanics)

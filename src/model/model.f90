@@ -14,12 +14,16 @@ module model
    use mesh, only: mesh_type
    use refined_regions, only: refined_region_type
    use steps, only: step_type
-   use text, only: string_type
+   use text, only: string_type, to_upper
    use transforms, only: partner_type, transform_type
    implicit none
    private
    public :: model_type, physical_constants_type, verify_type, unit_labels_type
-   public :: follows_temperatures
+   public :: follows_temperatures, uncertainty_named
+
+   ! ERRORS= of *OPTIONS: no uncertainties; those of the last increment of each step; of all.
+   integer, parameter, public :: uncertainty_no = 0, uncertainty_last = 1, uncertainty_full = 2
+   character(*), parameter, public :: uncertainty_words = 'NO/LAST/FULL/YES'
 
    !> Labels of the deck's units (*OPTIONS, UNITS=); empty when not given.
    type :: unit_labels_type
@@ -84,7 +88,7 @@ module model
       type(physical_constants_type) :: constants                 !! *PHYSICAL CONSTANTS
       integer :: solver = solver_skyline                         !! one of the solver_* constants
       integer :: tail = tail_by_size                             !! one of the tail_* constants
-      logical :: estimates_errors = .true.                       !! ERRORS= of *OPTIONS
+      integer :: uncertainty = uncertainty_last                  !! one of the uncertainty_* constants
       type(accuracy_request_type) :: accuracy                    !! *ACCURACY
       real(dp) :: memory_needed = 0.0_dp                         !! estimate for a run [byte]
       integer :: written_levels = 0                              !! *REFINE, LEVELS=
@@ -101,6 +105,22 @@ module model
    end type model_type
 
 contains
+
+   !> The constant that one of the uncertainty_words means, in any case; YES is LAST; -1 for none.
+   pure integer function uncertainty_named(word) result(uncertainty)
+      character(*), intent(in) :: word
+
+      select case (to_upper(word))
+      case ('NO')
+         uncertainty = uncertainty_no
+      case ('LAST', 'YES')
+         uncertainty = uncertainty_last
+      case ('FULL')
+         uncertainty = uncertainty_full
+      case default
+         uncertainty = -1
+      end select
+   end function uncertainty_named
 
    !> Whether properties of any body follow its temperatures.
    pure logical function follows_temperatures(model)

@@ -56,12 +56,15 @@ module quantity_types
       logical :: is_geometry = .false.         !! that of the undeformed mesh
       logical :: is_on_faces = .false.         !! also a field over the nodes of both faces
       logical :: is_published = .true.         !! in the result file and in *VERIFY
-      logical :: is_estimated = .false.        !! its errors are bounded
+      logical :: is_estimated = .false.        !! it has an uncertainty, of an interface or body
       logical :: is_traded = .false.           !! rows of a trade are judged by it
       logical :: is_of_friction = .false.      !! 0 without friction
+      !> Power of the spacing with which errors of the mesh are taken to fall (uncertainty_rule)
+      real(dp) :: order = 0.8_dp
       !> Of an edge of a zone: how far it is known on a mesh, in spacings about it, of the contact
-      !> points for contact, of the nodes for stick (docs/accuracy.md); 0 for what is no edge.
+      !> points for contact, of the nodes for stick (uncertainty_rule); 0 for what is no edge.
       real(dp) :: resolution = 0.0_dp
+      logical :: follows_path = .false.        !! with friction its errors build up along the path
       ! In the result file, as attributes of its dataset.
       character(120) :: description = ''       !! what it is, with its sign and codes
       character(80) :: components = ''         !! their names, where `values` have such

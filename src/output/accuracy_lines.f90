@@ -20,7 +20,7 @@ module accuracy_lines
    public :: told_of_rounds, write_accuracy
 
    character(*), parameter :: group = '/accuracy'
-   integer, parameter :: columns = 4   !! step, value, bound, target
+   integer, parameter :: columns = 4   !! step, value, uncertainty, target
 
    integer, parameter :: name_width = 30   !! least columns of interface and quantity
    integer, parameter :: most_named = 3    !! targets in one line
@@ -60,7 +60,7 @@ contains
       words%missed = missed_words(accuracy, interfaces)
       if (accuracy%goes_on) words%later_round = size(accuracy%rounds) + 1
       call append(words%rounds, '   round   CPU seconds    unknowns    elements  increments  '// &
-         'largest bound/target')
+         'largest uncertainty/target')
       do i = 1, size(accuracy%rounds)
          call append(words%rounds, round_words(i, accuracy%rounds(i)))
       end do
@@ -129,7 +129,7 @@ contains
       end associate
    end function demand_name
 
-   !> The bound at the end of the step that is furthest from a target; the summary tells the values
+   !> The uncertainty at the end of the step that is furthest from a target; the summary tells the values
    !> of the last step.
    function target_words(accuracy, d, labels) result(words)
       type(accuracy_rounds_type), intent(in) :: accuracy
@@ -147,20 +147,20 @@ contains
          if (step == 0) return
          finding = last%findings(d, step)
          words = trim(merge('met:    ', 'not met:', finding%is_met()))
-         if (ieee_is_nan(finding%bound)) then
+         if (ieee_is_nan(finding%uncertainty)) then
             words = words//' no estimate'
          else
-            words = words//' bound '//amount(finding%bound)
+            words = words//' uncertainty '//amount(finding%uncertainty)
             if (demand%is_relative) words = words//' of '// &
                with_unit(to_text(finding%allowed/demand%target))
          end if
          words = words//', target '//amount(finding%allowed)
          if (step < size(last%findings, 2)) then
             words = words//', step '//to_text(step)//' with '
-            if (ieee_is_nan(finding%bound)) then
+            if (ieee_is_nan(finding%uncertainty)) then
                words = words//with_unit(to_text(finding%value))
             else
-               words = words//with_unit(to_text(finding%value)//' +- '//few_digits(finding%bound))
+               words = words//with_unit(to_text(finding%value)//' +- '//few_digits(finding%uncertainty))
             end if
          else if (step > 1) then
             words = words//', step '//to_text(step)
@@ -174,7 +174,7 @@ contains
          end if
       end associate
    contains
-      !> The bound or what is allowed, as a part of the value's scale where the target is one; more
+      !> The uncertainty or what is allowed, as a part of the value's scale where the target is one; more
       !> digits where only these show that the target is missed.
       function amount(number)
          real(dp), intent(in) :: number
@@ -195,8 +195,8 @@ contains
          real(dp), intent(in) :: factor
 
          shown_digits = 2
-         if (.not. ieee_is_nan(finding%bound)) shown_digits = digits_above( &
-            factor*finding%bound, factor*finding%allowed)
+         if (.not. ieee_is_nan(finding%uncertainty)) shown_digits = digits_above( &
+            factor*finding%uncertainty, factor*finding%allowed)
       end function shown_digits
 
       function with_unit(number)
@@ -208,17 +208,13 @@ contains
       end function with_unit
    end function target_words
 
-   !> The larger part of a bound, or why there is none.
+   !> Why there is no uncertainty.
    function reason(finding)
       type(finding_type), intent(in) :: finding
       character(:), allocatable :: reason
 
-      reason = ' (mostly of the mesh)'
-      if (finding%no_estimate /= no_reason) then
-         reason = ': '//words_of_reason(finding%no_estimate)
-      else if (finding%increment > finding%mesh) then
-         reason = ' (mostly of the increments)'
-      end if
+      reason = ''
+      if (finding%no_estimate /= no_reason) reason = ': '//words_of_reason(finding%no_estimate)
    end function reason
 
    function round_words(number, round) result(words)
@@ -264,18 +260,19 @@ contains
       end associate
       call file%set(group, 'reached', merge(1, 0, accuracy%is_reached()))
       call file%set(group, 'later_round_begun', merge(1, 0, accuracy%goes_on))
-      call file%create_group(group//'/bounds')
+      call file%create_group(group//'/uncertainty')
+      call file%link(group//'/uncertainty', group//'/bounds')
       do i = 1, size(interfaces)
          if (.not. any(accuracy%demands%interface == i)) cycle
-         call file%create_group(group//'/bounds/'//interfaces(i)%name)
+         call file%create_group(group//'/uncertainty/'//interfaces(i)%name)
          do d = 1, size(accuracy%demands)
             if (accuracy%demands(d)%interface == i) call write_demand(file, accuracy, d, &
-               group//'/bounds/'//interfaces(i)%name)
+               group//'/uncertainty/'//interfaces(i)%name)
          end do
       end do
    end subroutine write_accuracy
 
-   !> A row for each round: step, value, bound and what the target allows, at the end of the step
+   !> A row for each round: step, value, uncertainty and what the target allows, at the end of the step
    !> that is furthest from the target; zeros where no step has the quantity.
    subroutine write_demand(file, accuracy, d, path)
       type(hdf5_writer_type), intent(inout) :: file
@@ -292,14 +289,14 @@ contains
          step = accuracy%rounds(i)%worst_step(d)
          if (step == 0) cycle
          associate (finding => accuracy%rounds(i)%findings(d, step))
-            rows(:, i) = [real(step, dp), finding%value, finding%bound, finding%allowed]
+            rows(:, i) = [real(step, dp), finding%value, finding%uncertainty, finding%allowed]
          end associate
       end do
       quantity = estimated(accuracy%demands(d)%quantity)
       dataset = growing_dataset(path//'/'//trim(quantity%name), as_real, columns, 1, 1, &
          'rounds of the requested accuracy: '//trim(quantity%description), &
          quantity%unit)
-      dataset%components = 'step value bound target'
+      dataset%components = 'step value uncertainty target'
       call write_once(file, dataset, [rows])
    end subroutine write_demand
 

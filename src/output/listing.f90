@@ -10,13 +10,15 @@ module listing
    use file_calls, only: check_in_place
    use listing_head, only: checks, ending, print_model, summary_block
    use listing_increments, only: print_attempts, print_balances, print_body_errors, &
-      print_increment, print_interface, print_interface_errors, print_interfaces, print_maxima
+      print_history_uncertainties, print_increment, print_interface, print_interfaces, &
+      print_maxima, print_uncertainties
    use listing_tables, only: print_contact_table, print_iterations, print_requested, print_verdicts
    use listing_text, only: page_type, page_width, to_right
    use materials, only: follows_temperature
    use mesh_bodies, only: body_name
    use model, only: follows_temperatures, model_type
    use model_words, only: has_many
+   use no_estimates, only: no_reason, reason_of_run
    use open_files, only: empty_file, lock_file, unlock_file, write_to_file
    use records, only: increment_record_type
    use run_sizes, only: run_size_type
@@ -154,13 +156,15 @@ contains
       call print_balances(self%page, record, model%steps(record%step)%analysis)
       call print_body_errors(self%page, record)
       call print_warnings(self, record)
-      if (allocated(record%errors) .and. model%estimates_errors) then
+      if (allocated(record%uncertainties) .and. reason_of_run(model) == no_reason) then
          do i = 1, size(interfaces)
-            call print_interface_errors(self%page, interfaces(i), record%errors(i))
+            call print_uncertainties(self%page, interfaces(i), record%uncertainties(i))
          end do
-         do i = 1, size(record%body_errors)
-            call print_maxima(self%page, model%mesh, i, record%body_errors(i))
+         do i = 1, size(record%body_uncertainties)
+            call print_maxima(self%page, model%mesh, i, record%body_uncertainties(i))
          end do
+         if (allocated(record%history_uncertainties)) call print_history_uncertainties(self%page, &
+            record%history_uncertainties)
       end if
       call print_requested(self%page, record, model)
       if (has_tables) then

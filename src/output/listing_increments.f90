@@ -1,11 +1,11 @@
 !> The block of an accepted increment in the listing: convergence, interfaces, balances, and at the
-!> end of a step the errors of bodies in the energy norm and the bounds of interfaces' quantities.
+!> end of a step the errors of bodies in the energy norm and the uncertainties of quantities.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated
    use field_quantities, only: maxima
-   use increment_quantities, only: history_value, part_values, stability_words
+   use increment_quantities, only: history_estimated, history_value, part_values, stability_words
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, in_columns, page_type, to_right, zone_counts
@@ -15,8 +15,8 @@ module listing_increments
       needs_heat, needs_mechanics, &
       needs_branch, needs_nothing, needs_storage, &
       of_bodies, of_history, of_interface, quantity_type
-   use records, only: attempt_record_type, body_errors_type, contact_record_type, &
-      increment_record_type, interface_errors_type
+   use records, only: attempt_record_type, body_uncertainty_type, contact_record_type, &
+      increment_record_type, uncertainty_type
    use reported_quantities, only: quantities
    use steps, only: solves_heat, solves_mechanics
    use summary, only: corner_words, largest_at, place_words, words_of
@@ -24,12 +24,12 @@ module listing_increments
    implicit none
    private
    public :: print_increment, print_attempts, print_interface, print_interfaces, print_balances
-   public :: print_body_errors, print_interface_errors, print_maxima
+   public :: print_body_errors, print_history_uncertainties, print_maxima, print_uncertainties
 
-   character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'increments', &
+   character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'scatter', &
       'iteration']
-   character(*), parameter :: bounds_head = '         value        bound          %        mesh'// &
-      '    increments     iteration  largest part'
+   character(*), parameter :: uncertainty_head = '         value  uncertainty          %        mesh'// &
+      '       scatter     iteration  largest part'
 
 contains
 
@@ -228,33 +228,48 @@ contains
       end do
    end subroutine print_body_errors
 
-   !> Prints the bounds of an interface. What has no value, or no part in the deck, is left out, and
+   !> Prints the uncertainties of an interface. What has no value, or no part in the deck, is left out, and
    !> so are edges at the end of the face.
-   subroutine print_interface_errors(page, points, errors)
+   subroutine print_uncertainties(page, points, errors)
       type(page_type), intent(inout) :: page               !! of the listing
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
-      type(interface_errors_type), intent(in) :: errors
+      type(uncertainty_type), intent(in) :: errors
       type(string_type) :: names(size(estimated))
       integer :: q
 
       do q = 1, size(estimated)
-         if (is_worth_telling(q, errors%value(q), errors%bound(q)) .and. &
+         if (is_worth_telling(q, errors%value(q), errors%total(q)) .and. &
             .not. is_end_of_face(estimated(q), points, errors%value(q))) then
             names(q)%value = words_of(estimated(q)%name)
          else
             names(q)%value = ''
          end if
       end do
-      call print_bounds(page, points%name, maxval([(len(words_of(estimated(q)%name)), q=1, &
+      call print_table(page, points%name, maxval([(len(words_of(estimated(q)%name)), q=1, &
          size(estimated))]), names, errors)
-   end subroutine print_interface_errors
+   end subroutine print_uncertainties
 
-   !> Prints the bounds of the maxima of a body, where they are, and the corners that are left out.
+   !> Prints those of the quantities of an increment.
+   subroutine print_history_uncertainties(page, errors)
+      type(page_type), intent(inout) :: page               !! of the listing
+      type(uncertainty_type), intent(in) :: errors
+      type(string_type) :: names(size(history_estimated))
+      integer :: q
+
+      do q = 1, size(names)
+         names(q)%value = ''
+         if (abs(errors%value(q)) > 0.0_dp) names(q)%value = trim(history_estimated(q)%name)
+      end do
+      if (any([(names(q)%value /= '', q=1, size(names))])) call print_table(page, &
+         'THE INCREMENT', maxval(len_trim(history_estimated%name)), names, errors)
+   end subroutine print_history_uncertainties
+
+   !> Prints the uncertainties of the maxima of a body, where they are, and the corners that are left out.
    subroutine print_maxima(page, mesh, body, errors)
       type(page_type), intent(inout) :: page               !! of the listing
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: body
-      type(body_errors_type), intent(in) :: errors
+      type(body_uncertainty_type), intent(in) :: errors
       type(string_type) :: names(size(maxima))
       integer :: q
 
@@ -262,7 +277,7 @@ contains
          names(q)%value = ''
          if (.not. ieee_is_nan(errors%value(q))) names(q)%value = 'largest '//trim(maxima(q)%label)
       end do
-      if (any(errors%node > 0)) call print_bounds(page, 'BODY '//to_text(body), &
+      if (any(errors%node > 0)) call print_table(page, 'BODY '//to_text(body), &
          len('largest ') + maxval(len_trim(maxima%label)), names, errors)
       do q = 1, size(maxima)
          if (errors%node(q) > 0) call page%wrapped('    ', names(q)%value//' at '// &
@@ -271,13 +286,13 @@ contains
       if (size(errors%corners) > 0) call page%wrapped('    ', corner_words(mesh, errors))
    end subroutine print_maxima
 
-   !> Prints bounds with their parts, and why there are none.
-   subroutine print_bounds(page, title, width, names, errors)
+   !> Prints uncertainties with their parts, and why there are none.
+   subroutine print_table(page, title, width, names, errors)
       type(page_type), intent(inout) :: page
       character(*), intent(in) :: title                    ! what they are of
       integer, intent(in) :: width                         ! of the names
       type(string_type), intent(in) :: names(:)            ! of the quantities; empty: not told
-      class(interface_errors_type), intent(in) :: errors
+      class(uncertainty_type), intent(in) :: errors
       type(string_type), allocatable :: rows(:)
       character(width) :: name
       real(dp) :: part
@@ -285,21 +300,21 @@ contains
 
       allocate (rows(0))
       name = ''
-      call append(rows, '    '//name//bounds_head)
+      call append(rows, '    '//name//uncertainty_head)
       do q = 1, size(names)
-         associate (value => errors%value(q), bound => errors%bound(q))
+         associate (value => errors%value(q), total => errors%total(q))
             if (names(q)%value == '') cycle
             name = names(q)%value
             part = ieee_value(part, ieee_quiet_nan)
-            if (abs(value) > 0.0_dp) part = 100.0_dp*bound/abs(value)
+            if (abs(value) > 0.0_dp) part = 100.0_dp*total/abs(value)
             call append(rows, trim('    '//name//column(value, 14, 6)// &
-               cell(bound, 13, 'no estimate')//cell(part, 11, '-')// &
-               cell(errors%mesh(q), 12, '-')//cell(errors%increment(q), 14, '-')// &
+               cell(total, 13, 'no estimate')//cell(part, 11, '-')// &
+               cell(errors%change(q), 12, '-')//cell(errors%scatter(q), 14, '-')// &
                cell(errors%iteration(q), 14, '-')//'    '//largest_part(errors, q)))
          end associate
       end do
-      call page%table('   BOUNDS OF THE ERRORS OF '//title//': how far values may be off to '// &
-         'either side, with the parts of each bound', rows)
+      call page%table('   NUMERICAL UNCERTAINTY (95 %) OF '//title//': how far values may be off '// &
+         'to either side, with its parts', rows)
       do q = 1, size(names)
          associate (why => errors%no_estimate(q))
             if (why == no_reason .or. names(q)%value == '') cycle
@@ -307,18 +322,18 @@ contains
             call page%wrapped('    ', 'no estimate: '//words_of_reason(why))
          end associate
       end do
-   end subroutine print_bounds
+   end subroutine print_table
 
    !> Whether a quantity has a value and a part in the deck; that of friction is 0 without it.
-   pure logical function is_worth_telling(q, value, bound)
+   pure logical function is_worth_telling(q, value, total)
       integer, intent(in) :: q
-      real(dp), intent(in) :: value, bound
+      real(dp), intent(in) :: value, total
 
       is_worth_telling = .not. ieee_is_nan(value)
       if (.not. is_worth_telling) return
       is_worth_telling = abs(value) > 0.0_dp
-      if (is_worth_telling .or. estimated(q)%is_of_friction .or. ieee_is_nan(bound)) return
-      is_worth_telling = bound > 0.0_dp
+      if (is_worth_telling .or. estimated(q)%is_of_friction .or. ieee_is_nan(total)) return
+      is_worth_telling = total > 0.0_dp
    end function is_worth_telling
 
    !> A number in a column, or a word set to the right where there is none.
@@ -332,15 +347,15 @@ contains
       if (.not. ieee_is_nan(value)) string = column(value, width, 2)
    end function cell
 
-   !> Which part of a bound is the largest.
+   !> Which part of an uncertainty is the largest.
    pure function largest_part(errors, q) result(name)
-      class(interface_errors_type), intent(in) :: errors
+      class(uncertainty_type), intent(in) :: errors
       integer, intent(in) :: q
       character(10) :: name
       real(dp) :: parts(3)
       integer :: k
 
-      parts = [errors%mesh(q), errors%increment(q), errors%iteration(q)]
+      parts = [errors%change(q), errors%scatter(q), errors%iteration(q)]
       name = ''
       if (any(ieee_is_nan(parts))) return
       k = maxloc(parts, dim=1)

@@ -18,7 +18,7 @@ module listing_tables
    use solution_report, only: iteration_record_type
    use text, only: or_blank, string_type, to_text
    use transforms, only: axes_at
-   use verification, only: bound_words, outcome_type
+   use verification, only: uncertainty_words, outcome_type
    implicit none
    private
    public :: print_contact_table, print_iterations, print_requested, print_verdicts
@@ -124,8 +124,8 @@ contains
          merge(' REL', ' ABS', check%relative)//merge(' PASS', ' FAIL', outcome%passed))
       if (or_blank(check%source) /= '') call page%line('        source: '//check%source)
       if (outcome%reason /= '') call page%line('        failed: '//outcome%reason)
-      if (bound_words(outcome) /= '') call page%line('        found:  '// &
-         to_text(outcome%found)//bound_words(outcome))
+      if (uncertainty_words(outcome) /= '') call page%line('        found:  '// &
+         to_text(outcome%found)//uncertainty_words(outcome))
    end subroutine print_verdict
 
    !> Prints the tables that are due at an increment.

@@ -1,4 +1,4 @@
-!> Groups `/history`, `/convergence`, `/contact/<name>` and `/errors` of the result file. Their
+!> Groups `/history`, `/convergence`, `/contact/<name>` and `/uncertainty` of the result file. Their
 !> datasets grow row by row.
 module result_tables
    use contact_points, only: contact_points_type
@@ -8,15 +8,15 @@ module result_tables
    use increment_quantities, only: part_values, history_value, pass_value
    use kinds, only: dp
    use quantity_types, only: of_bodies, of_history, of_sections, quantity_type
-   use records, only: contact_record_type, increment_record_type, interface_errors_type
+   use records, only: contact_record_type, increment_record_type, uncertainty_type
    use reported_quantities, only: geometry
    use solution_report, only: iteration_record_type
    implicit none
    private
-   public :: result_table_type, bounded, write_geometry
+   public :: result_table_type, with_uncertainty, write_geometry
 
    !> A group with one dataset for each quantity: `/history` and `/contact/<name>` with one row an
-   !> increment, `/convergence` with one row a pass, `/errors` and `/errors/<name>` with one row a
+   !> increment, `/convergence` with one row a pass, `/uncertainty` and `/uncertainty/<name>` with one row a
    !> step.
    type :: result_table_type
       character(:), allocatable :: group                           !! its path
@@ -25,8 +25,8 @@ module result_tables
    contains
       procedure :: start => start_table
       procedure :: rows
-      generic :: append => append_increment, append_passes, append_contact, append_errors
-      procedure, private :: append_increment, append_passes, append_contact, append_errors
+      generic :: append => append_increment, append_passes, append_contact, append_uncertainties
+      procedure, private :: append_increment, append_passes, append_contact, append_uncertainties
    end type result_table_type
 
 contains
@@ -58,7 +58,7 @@ contains
 
    !> Adds an increment.
    subroutine append_increment(self, record)
-      class(result_table_type), intent(inout) :: self     !! `/history`, or the times of `/errors`
+      class(result_table_type), intent(inout) :: self     !! `/history`, or the times of `/uncertainty`
       type(increment_record_type), intent(in) :: record
       integer :: i
 
@@ -94,41 +94,41 @@ contains
       end do
    end subroutine append_contact
 
-   !> Adds the bounds of an interface or body at the end of a step.
-   subroutine append_errors(self, errors)
-      class(result_table_type), intent(inout) :: self     !! `/errors/<name>`
-      class(interface_errors_type), intent(in) :: errors
+   !> Adds the uncertainties of an interface, a body or the increment.
+   subroutine append_uncertainties(self, errors)
+      class(result_table_type), intent(inout) :: self     !! `/uncertainty/<name>`
+      class(uncertainty_type), intent(in) :: errors
       integer :: i
 
       do i = 1, size(errors%value)
-         call self%sets(i)%append([errors%value(i), errors%bound(i), errors%mesh(i), &
-            errors%increment(i), errors%iteration(i)])
+         call self%sets(i)%append([errors%value(i), errors%total(i), errors%change(i), &
+            errors%scatter(i), errors%iteration(i)])
       end do
       call self%sets(size(self%sets))%append(real(errors%no_estimate, dp))
-   end subroutine append_errors
+   end subroutine append_uncertainties
 
-   !> Quantities with estimated errors, as they are in `/errors/<name>`, and why there are none.
-   pure function bounded(estimated) result(quantities)
+   !> Quantities with uncertainties, as they are in `/uncertainty/<name>`, and why there are none.
+   pure function with_uncertainty(estimated) result(quantities)
       type(quantity_type), intent(in) :: estimated(:)
       type(quantity_type) :: quantities(size(estimated) + 1), reason
       integer :: i
 
       reason = quantity_type('no_estimate', of_history, '-', is_integer=.true., &
-         description='reason for which a quantity has no bound, a row of /errors/reasons from 0')
+         description='reason for which a quantity has none, a row of /uncertainty/reasons from 0')
       reason%components = ''
       do i = 1, size(estimated)
          quantities(i) = estimated(i)
          quantities(i)%values = 5
-         quantities(i)%components = 'value bound mesh increments iteration'
-         quantities(i)%description = 'value and the bound of its error, with its parts: '// &
+         quantities(i)%components = 'value uncertainty change scatter iteration'
+         quantities(i)%description = 'value and its numerical uncertainty (95 %), with its parts: '// &
             trim(estimated(i)%description)
          reason%components = trim(reason%components)//' '//estimated(i)%name
       end do
       reason%components = adjustl(reason%components)
       reason%values = size(estimated)
       quantities(size(quantities)) = reason
-      quantities%kind = of_history   ! every table has one row a step, whatever it is of
-   end function bounded
+      quantities%kind = of_history   ! every table has one row at a time, whatever it is of
+   end function with_uncertainty
 
    !> Writes the geometry of contact points, those of some interfaces one behind the other.
    subroutine write_geometry(file, group, interfaces, node_number)

@@ -16,12 +16,14 @@ module results
    use file_calls, only: identity_of, remove_file, rename_file, try_file
    use growing_datasets, only: bytes_in, flush_sets
    use materials, only: of_expansion
-   use result_tables, only: bounded, result_table_type, write_geometry
+   use increment_quantities, only: history_estimated
+   use result_tables, only: result_table_type, with_uncertainty, write_geometry
    use equations, only: section_nodes
    use hdf5_writer, only: end_hdf5, hdf5_writer_type, start_hdf5
    use kinds, only: dp, long
-   use model, only: model_type
-   use no_estimates, only: no_reason, reason_count, reason_inside_step, words_of_reason
+   use model, only: model_type, uncertainty_full
+   use no_estimates, only: no_reason, reason_count, reason_inside_step, reason_of_run, &
+      words_of_reason
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
@@ -61,7 +63,8 @@ module results
       type(field_results_type) :: fields                      !! `/VTKHDF`
       type(restart_results_type) :: restarts                  !! `/restart`
       !> `/history`, `/convergence`, `/stability`, `/contact/<name>` of each interface, then, where
-      !> errors are estimated, `/errors` and `/errors/<name>` of each interface and body
+      !> uncertainties are estimated, `/uncertainty` and `/uncertainty/<name>` of each interface,
+      !> each body and, with ERRORS=FULL, the increment
       type(result_table_type), allocatable :: tables(:)
       type(working_file_type) :: contact_file                 !! `NAME.contact.vtkhdf`
       type(contact_grid_type) :: contact_grid                 !! its contents
@@ -156,7 +159,8 @@ contains
       self%has_contact = n > 0
       if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
          [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected)
-      allocate (self%tables(4 + 2*n + merge(model%mesh%body_count, 0, model%estimates_errors)))
+      allocate (self%tables(4 + 2*n + merge(model%mesh%body_count, 0, reason_of_run(model) == &
+         no_reason) + merge(1, 0, is_full(model))))
       associate (tables => self%tables, steps => size(model%steps))
          of_stability = datasets(of_history, has)
          of_history_alone = pack(of_stability, of_stability%needs /= needs_stability)
@@ -173,14 +177,17 @@ contains
                [datasets(of_contact_points, has), datasets(of_interface, has)], &
                size(interfaces(i)%slave), expected)
          end do
-         call tables(4 + n)%start('/errors', [step_time], 0, steps)
+         call tables(4 + n)%start('/uncertainty', [step_time], 0, steps)
          do i = 1, n
-            call tables(4 + n + i)%start('/errors/'//interfaces(i)%name, bounded(estimated), 0, &
-               steps)
+            call tables(4 + n + i)%start('/uncertainty/'//interfaces(i)%name, &
+               with_uncertainty(estimated), 0, steps)
          end do
-         do i = 1, size(tables) - (4 + 2*n)
-            call tables(4 + 2*n + i)%start('/errors/body '//to_text(i), bounded(maxima), 0, steps)
+         do i = 1, merge(model%mesh%body_count, 0, reason_of_run(model) == no_reason)
+            call tables(4 + 2*n + i)%start('/uncertainty/body '//to_text(i), &
+               with_uncertainty(maxima), 0, steps)
          end do
+         if (is_full(model)) call tables(size(tables))%start('/uncertainty/increment', &
+            with_uncertainty(history_estimated), 0, steps)
       end associate
    end subroutine open_results
 
@@ -216,7 +223,7 @@ contains
          end do
          call self%fields%go_on(file, rows(2))
          call self%restarts%go_on(file, restart, counts)
-         call file%remove('/errors/reasons')
+         call file%remove('/uncertainty/reasons')
          call write_reasons(file, model)
          call file%remove('/deck')
          call file%write('/deck', self%cards, 'card images as read')
@@ -261,15 +268,17 @@ contains
          call self%tables(3 + i)%append(record%contacts(i))
       end do
       if (self%has_contact) call self%contact_grid%append(record)
-      if (allocated(record%errors)) then
+      if (allocated(record%uncertainties)) then
          n = size(interfaces)
          call self%tables(4 + n)%append(record)
          do i = 1, n
-            call self%tables(4 + n + i)%append(record%errors(i))
+            call self%tables(4 + n + i)%append(record%uncertainties(i))
          end do
-         do i = 1, size(record%body_errors)
-            call self%tables(4 + 2*n + i)%append(record%body_errors(i))
+         do i = 1, size(record%body_uncertainties)
+            call self%tables(4 + 2*n + i)%append(record%body_uncertainties(i))
          end do
+         if (allocated(record%history_uncertainties)) call self%tables(size(self%tables))% &
+            append(record%history_uncertainties)
       end if
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
       if (present(restart)) then
@@ -464,12 +473,13 @@ contains
             end associate
          end do
          call write_reasons(file, model)
+         call file%link('/uncertainty', '/errors')
          call file%create_group('/run')
          call file%write('/deck', self%cards, 'card images as read')
       end associate
    end subroutine write_heads
 
-   !> Writes the words of the reasons for which there are no bounds, and the one that holds at
+   !> Writes the words of the reasons for which there are no uncertainties, and the one that holds at
    !> increments that end no step.
    subroutine write_reasons(file, model)
       type(hdf5_writer_type), intent(inout) :: file
@@ -480,9 +490,16 @@ contains
       do i = no_reason, reason_count
          reasons(i)%value = words_of_reason(i)
       end do
-      call file%write('/errors/reasons', reasons, &
-         'words of the reasons for which there is no bound, from 0 on')
-      call file%set('/errors', 'inside_step', words_of_reason(reason_inside_step(model)))
+      call file%write('/uncertainty/reasons', reasons, &
+         'words of the reasons for which there is no uncertainty, from 0 on')
+      call file%set('/uncertainty', 'inside_step', words_of_reason(reason_inside_step(model)))
    end subroutine write_reasons
+
+   !> Whether uncertainties are those of the whole run.
+   pure logical function is_full(model)
+      type(model_type), intent(in) :: model
+
+      is_full = reason_of_run(model) == no_reason .and. model%uncertainty == uncertainty_full
+   end function is_full
 
 end module results

@@ -1,5 +1,5 @@
 !> Results of a run in a few lines: the quantities of every interface at the last accepted
-!> increment, with the bounds of their errors where these are estimated.
+!> increment, with their numerical uncertainties.
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
@@ -12,10 +12,10 @@ module summary
    use mesh, only: mesh_type
    use model, only: model_type
    use model_words, only: has_many
-   use no_estimates, only: mark_of, no_reason, reason_inside_step
+   use no_estimates, only: mark_of, no_reason, reason_inside_step, reason_of_run
    use quantity_types, only: needs_heat, quantity_type
-   use records, only: body_errors_type, contact_record_type, increment_record_type, &
-      interface_errors_type
+   use records, only: body_uncertainty_type, contact_record_type, increment_record_type, &
+      uncertainty_type
    use text, only: append, few_digits, or_blank, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
@@ -26,7 +26,7 @@ module summary
    integer, parameter :: most_corners = 3   !! that are named
    integer, parameter :: name_width = 17    !! columns of the name of a quantity
    integer, parameter :: value_width = 13   !! of its value
-   integer, parameter :: bound_width = 25   !! and of its bound
+   integer, parameter :: uncertainty_width = 25   !! and of its uncertainty
    integer, parameter :: field_width = 20   !! of the name of a field's range
    integer, parameter :: step_width = 400   !! longest line of a step
    integer, parameter :: step_column = 15   !! columns of each of its numbers
@@ -47,8 +47,8 @@ module summary
       real(dp) :: time = 0.0_dp                                    !! total time [time]
       real(dp) :: load = 0.0_dp                                    !! value on the load axis
       type(contact_record_type), allocatable, public :: contacts(:)   !! (interfaces)
-      type(interface_errors_type), allocatable :: errors(:)        !! (interfaces) or unallocated
-      type(body_errors_type), allocatable :: body_errors(:)        !! (bodies) or unallocated
+      type(uncertainty_type), allocatable :: errors(:)        !! (interfaces) or unallocated
+      type(body_uncertainty_type), allocatable :: body_errors(:)        !! (bodies) or unallocated
       !> Without an interface: smallest and largest temperature, heat in and out
       real(dp), allocatable :: heat(:)
       !> Likewise: the largest magnitude of a displacement [length]
@@ -92,9 +92,9 @@ contains
          self%folds = [self%folds, record%load_factor]
       end if
       if (allocated(self%errors)) deallocate (self%errors)
-      if (allocated(record%errors)) self%errors = record%errors
+      if (allocated(record%uncertainties)) self%errors = record%uncertainties
       if (allocated(self%body_errors)) deallocate (self%body_errors)
-      if (allocated(record%body_errors)) self%body_errors = record%body_errors
+      if (allocated(record%body_uncertainties)) self%body_errors = record%body_uncertainties
       if (allocated(self%heat)) deallocate (self%heat)
       if (allocated(self%displacement)) deallocate (self%displacement)
       associate (fields => record%fields)
@@ -154,7 +154,7 @@ contains
          if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
          if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
          ! Some of a body's lines are wrapped.
-         if (model%estimates_errors) most_lines = most_lines + &
+         if (reason_of_run(model) == no_reason) most_lines = most_lines + &
             merge(1, bodies, has_many(bodies))*2*(1 + size(maxima))
       end associate
    end function most_lines
@@ -201,7 +201,7 @@ contains
    !> The maxima of a body.
    subroutine add_maxima(model, errors, body, lines)
       type(model_type), intent(in) :: model
-      type(body_errors_type), intent(in) :: errors
+      type(body_uncertainty_type), intent(in) :: errors
       integer, intent(in) :: body
       type(string_type), allocatable, intent(inout) :: lines(:)
       integer :: q
@@ -210,7 +210,7 @@ contains
       call append(lines, 'largest in body '//to_text(body))
       do q = 1, size(maxima)
          if (.not. ieee_is_nan(errors%value(q))) call append(lines, &
-            summary_line(trim(maxima(q)%label), errors%value(q), bound_words(errors, q), &
+            summary_line(trim(maxima(q)%label), errors%value(q), uncertainty_words(errors, q), &
             unit_label(maxima(q)%unit, model%units), place_words(model%mesh, errors%node(q))))
       end do
       if (size(errors%corners) > 0) call append(lines, '  '//corner_words(model%mesh, errors))
@@ -219,7 +219,7 @@ contains
    !> The largest maxima of many bodies, and how many have singular corners.
    subroutine add_largest_maxima(model, errors, lines)
       type(model_type), intent(in) :: model
-      type(body_errors_type), intent(in) :: errors(:)      ! of all bodies
+      type(body_uncertainty_type), intent(in) :: errors(:)      ! of all bodies
       type(string_type), allocatable, intent(inout) :: lines(:)
       real(dp) :: values(size(errors))
       integer :: b, q
@@ -229,12 +229,12 @@ contains
          values = [(errors(b)%value(q), b=1, size(errors))]
          b = maxloc(values, dim=1, mask=.not. ieee_is_nan(values))
          if (b > 0) call append(lines, summary_line(trim(maxima(q)%label), values(b), &
-            bound_words(errors(b), q), unit_label(maxima(q)%unit, model%units), 'body '// &
+            uncertainty_words(errors(b), q), unit_label(maxima(q)%unit, model%units), 'body '// &
             to_text(b)//', '//place_words(model%mesh, errors(b)%node(q))))
       end do
       associate (cornered => count([(size(errors(b)%corners) > 0, b=1, size(errors))]))
          if (cornered > 0) call append(lines, '  '//to_text(cornered)//' of them with singular '// &
-            'corners, where stress has no bound; the listing names them')
+            'corners, where stress has no estimate; the listing names them')
       end associate
    end subroutine add_largest_maxima
 
@@ -251,14 +251,14 @@ contains
    !> The singular corners round which stress is larger; nothing without any.
    pure function corner_words(mesh, errors) result(words)
       type(mesh_type), intent(in) :: mesh
-      type(body_errors_type), intent(in) :: errors
+      type(body_uncertainty_type), intent(in) :: errors
       character(:), allocatable :: words
       integer :: i
 
       words = ''
       if (size(errors%corners) == 0) return
       words = 'singular corner, round which stress is larger, may have no limit and has no '// &
-         'bound: '
+         'estimate: '
       do i = 1, min(size(errors%corners), most_corners)
          if (i > 1) words = words//', '
          words = words//place_words(mesh, errors%corners(i))
@@ -267,9 +267,9 @@ contains
          to_text(size(errors%corners) - most_corners)//' more'
    end function corner_words
 
-   !> A line of the summary: a quantity, its value, its bound, its unit, and where or how that is.
-   pure function summary_line(name, number, bound, unit, words) result(line)
-      character(*), intent(in) :: name, bound, unit, words
+   !> A line of the summary: a quantity, its value, its uncertainty, its unit, and where or how that is.
+   pure function summary_line(name, number, uncertainty, unit, words) result(line)
+      character(*), intent(in) :: name, uncertainty, unit, words
       real(dp), intent(in) :: number
       character(:), allocatable :: line
       character(max(name_width, len(name))) :: label
@@ -277,7 +277,7 @@ contains
 
       label = name
       value = to_text(number)
-      line = trim('  '//label//adjustr(value)//bound//' '//unit)
+      line = trim('  '//label//adjustr(value)//uncertainty//' '//unit)
       if (words /= '') line = line//', '//words
    end function summary_line
 
@@ -330,7 +330,7 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(string_type), allocatable, intent(inout) :: lines(:)
-      character(:), allocatable :: bound
+      character(:), allocatable :: uncertainty
       real(dp) :: values(1)
       integer :: closed(size(interfaces)), i, points(size(interfaces)), q
 
@@ -346,9 +346,9 @@ contains
          if (i == 0) cycle
          if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
          values = contact_values(estimated(q)%name, self%contacts(i))
-         bound = mark_of(reason_inside_step(model))
-         if (allocated(self%errors)) bound = bound_words(self%errors(i), q)
-         call append(lines, summary_line(words_of(estimated(q)%name), values(1), bound, &
+         uncertainty = mark_of(reason_inside_step(model))
+         if (allocated(self%errors)) uncertainty = uncertainty_words(self%errors(i), q)
+         call append(lines, summary_line(words_of(estimated(q)%name), values(1), uncertainty, &
             unit_label(estimated(q)%unit, model%units), interfaces(i)%name))
       end do
    end subroutine add_largest
@@ -359,7 +359,7 @@ contains
       type(contact_points_type), intent(in) :: points
       integer, intent(in) :: i                       ! number of the interface
       type(string_type), allocatable, intent(inout) :: lines(:)
-      character(:), allocatable :: bound, line, zone
+      character(:), allocatable :: uncertainty, line, zone
       character(name_width) :: name
       real(dp) :: values(1)
       integer :: q
@@ -374,14 +374,14 @@ contains
             cycle
          end if
          if (is_end_of_face(estimated(q), points, values(1))) then
-            bound = repeat(' ', bound_width)
+            uncertainty = repeat(' ', uncertainty_width)
             zone = end_words(estimated(q)%name, self%contacts(i))
          else if (allocated(self%errors)) then
-            bound = bound_words(self%errors(i), q)
+            uncertainty = uncertainty_words(self%errors(i), q)
          else
-            bound = mark_of(reason_inside_step(model))
+            uncertainty = mark_of(reason_inside_step(model))
          end if
-         line = summary_line(name, values(1), bound, unit_label(estimated(q)%unit, model%units), &
+         line = summary_line(name, values(1), uncertainty, unit_label(estimated(q)%unit, model%units), &
             zone)
          if (allocated(self%errors) .and. estimated(q)%name == 'peak_pressure') then
             if (self%errors(i)%no_estimate(q) == no_reason .and. rises_to_end(points, &
@@ -463,24 +463,24 @@ contains
       end do
    end function words_of
 
-   !> The bound of an error with two digits, and in per cent, or why there is none.
-   pure function bound_words(errors, q) result(words)
-      class(interface_errors_type), intent(in) :: errors
+   !> An uncertainty with two digits, and in per cent, or why there is none.
+   pure function uncertainty_words(errors, q) result(words)
+      class(uncertainty_type), intent(in) :: errors
       integer, intent(in) :: q                       ! the quantity
       character(:), allocatable :: words
-      character(bound_width) :: column
+      character(uncertainty_width) :: column
       character(9) :: number
 
-      associate (bound => errors%bound(q), value => errors%value(q), why => errors%no_estimate(q))
+      associate (total => errors%total(q), value => errors%value(q), why => errors%no_estimate(q))
          if (why /= no_reason) then
             words = mark_of(why)
             return
          end if
-         number = few_digits(bound)
+         number = few_digits(total)
          column = ' +- '//number
-         if (abs(value) > 0.0_dp) column = ' +- '//number//'('//percent(bound/abs(value))//')'
+         if (abs(value) > 0.0_dp) column = ' +- '//number//'('//percent(total/abs(value))//')'
       end associate
       words = column
-   end function bound_words
+   end function uncertainty_words
 
 end module summary

@@ -17,18 +17,20 @@ module contact_quantities
       head='force', is_estimated=.true., is_traded=.true., &
       description='sum of the normal contact forces; compression is positive'), &
       quantity_type('shear_force', of_interface, 'stress length^2', label='shear force', &
-      is_estimated=.true., is_of_friction=.true., &
+      is_estimated=.true., is_of_friction=.true., follows_path=.true., &
       description='sum of the shear forces on the slave towards growing s'), &
       quantity_type('heat_rate', of_interface, 'power', needs_heat, label='heat rate', &
       head='heat', is_estimated=.true., is_traded=.true., &
       description='heat that crosses from slave to master'), &
       quantity_type('peak_pressure', of_interface, 'stress', head='peak', is_estimated=.true., &
-      is_traded=.true., is_published=.false., description='largest contact pressure'), &
+      is_traded=.true., is_published=.false., follows_path=.true., &
+      description='largest contact pressure'), &
       quantity_type('edge_contact', of_interface, 'length', label='edge of contact s =', &
-      head='contact', is_estimated=.true., is_traded=.true., resolution=0.04_dp, &
+      head='contact', is_estimated=.true., is_traded=.true., order=1.6_dp, resolution=0.05_dp, &
       description='outer edge of the contact zone with the largest s; NaN: none'), &
       quantity_type('edge_stick', of_interface, 'length', label='of stick s =', head='stick', &
-      is_estimated=.true., is_traded=.true., resolution=1.0_dp, &
+      is_estimated=.true., is_traded=.true., order=1.6_dp, resolution=0.5_dp, &
+      follows_path=.true., &
       description='outer edge of the widest stick zone; NaN: none'), &
       quantity_type('edges_contact', of_interface, 'length', values=edges_kept, &
       description='s of all edges of contact, ascending, padded with NaN'), &
@@ -69,7 +71,7 @@ module contact_quantities
       quantity_type('heat_flux', of_contact_points, 'power/length^2', needs_heat, head='q', &
       width=11, is_on_faces=.true., description='heat flux from slave to master')]
 
-   !> Those with an estimated error; components of interface_errors_type are in this order.
+   !> Those with an uncertainty; components of uncertainty_type are in this order.
    type(quantity_type), parameter :: estimated(*) = pack(contact_table, contact_table%is_estimated)
 
 contains

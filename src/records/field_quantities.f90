@@ -48,7 +48,7 @@ module field_quantities
       quantity_type('heat_flux_error', of_elements, 'power/length^2', needs_heat, &
       description='estimated error of the heat flux by the mesh, rms in the element')]
 
-   !> The maxima of a body; components of body_errors_type are in this order.
+   !> The maxima of a body; components of body_uncertainty_type are in this order.
    type(quantity_type), parameter :: maxima(*) = [ &
       quantity_type('von_mises', of_bodies, 'stress', needs_mechanics, label='von Mises stress', &
       description='largest equivalent stress of von Mises away from singular corners'), &

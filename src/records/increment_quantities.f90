@@ -11,7 +11,7 @@ module increment_quantities
    use text, only: counted, few_digits
    implicit none
    private
-   public :: increment_table, history_value, part_values, pass_value, stability_words
+   public :: increment_table, history_estimated, history_value, part_values, pass_value, stability_words
 
    type(quantity_type), parameter :: increment_table(*) = [ &
       quantity_type('time', of_history, 'time', &
@@ -24,15 +24,20 @@ module increment_quantities
       quantity_type('residual', of_history, '-', is_published=.false.), &
       quantity_type('residual_floor', of_history, '-', is_published=.false.), &
       quantity_type('heat_in', of_history, 'power', needs_heat, label='heat in', &
+      is_estimated=.true., &
       description='sum of the net heat rates of loads and supports that are positive'), &
       quantity_type('heat_out', of_history, 'power', needs_heat, label='out', &
+      is_estimated=.true., &
       description='sum of those that are negative, as a magnitude'), &
       quantity_type('heat_stored', of_history, 'power', needs_storage, label='stored', &
+      is_estimated=.true., &
       description='heat that bodies store: in and friction less out and dilatation'), &
       quantity_type('heat_dilatation', of_history, 'power', needs_dilatation, label='dilatation', &
+      is_estimated=.true., &
       description='heat that strains take up, the term with T0 beta of (1.2)'), &
       quantity_type('heat_friction', of_history, 'power', needs_friction_heat, &
-      label='heat of friction', description='heat that friction makes'), &
+      label='heat of friction', is_estimated=.true., &
+      description='heat that friction makes'), &
       quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance', &
       description='imbalance of the heat balance that the scheme solves, over the largest rate'), &
       quantity_type('heat_imbalance_pointwise', of_history, '-', needs_heat, &
@@ -84,6 +89,10 @@ module increment_quantities
       is_integer=.true., description='contact points whose contact state changed'), &
       quantity_type('cut_backs', of_passes, '-', head='cut-backs', width=11, is_integer=.true., &
       description='cut-backs of the increment before the iteration')]
+
+   !> Those with an uncertainty.
+   type(quantity_type), parameter :: history_estimated(*) = pack(increment_table, &
+      increment_table%is_estimated)
 
 contains
 

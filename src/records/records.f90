@@ -10,30 +10,29 @@ module records
    implicit none
    private
    public :: element_points_record_type
-   public :: increment_record_type, contact_record_type, body_errors_type
+   public :: increment_record_type, contact_record_type, body_uncertainty_type
    public :: field_record_type, attempt_record_type
    public :: add_attempts, note_failure
-   public :: interface_errors_type, stability_record_type
+   public :: uncertainty_type, stability_record_type
 
+   !> Numerical uncertainties (95 %) of numbers: how far each may be off to either side. NaN where
+   !> there is none. Arrays over the quantities of an interface that have one (`estimated` of
+   !> contact_quantities), over those of *VERIFY cards, or over those of an increment.
+   type :: uncertainty_type
+      real(dp), allocatable :: value(:)        !! of the quantities; NaN where there is none
+      real(dp), allocatable :: total(:)        !! the uncertainties: the sum of the next three
+      real(dp), allocatable :: change(:)       !! by the change on a finer mesh
+      real(dp), allocatable :: scatter(:)      !! by scatter over increments and places between nodes
+      real(dp), allocatable :: iteration(:)    !! by what the fixed point has left
+      integer, allocatable :: no_estimate(:)   !! why there is none, a reason of no_estimates
+   end type uncertainty_type
 
-   !> Bounds of the errors of an interface: how far its quantities may be off to either side. NaN
-   !> where none can be given. Arrays over the quantities with a bound (`estimated` of
-   !> contact_quantities).
-   type :: interface_errors_type
-      real(dp), allocatable :: value(:)        !! the quantities as computed
-      real(dp), allocatable :: bound(:)        !! of the whole error: the sum of the next three
-      real(dp), allocatable :: mesh(:)         !! of the error of the mesh
-      real(dp), allocatable :: increment(:)    !! of the error of the size of the increments
-      real(dp), allocatable :: iteration(:)    !! of the error of the fixed point
-      integer, allocatable :: no_estimate(:)   !! why there is no bound, a reason of no_estimates
-   end type interface_errors_type
-
-   !> Bounds of the errors of the maxima of a body; arrays over `maxima` of field_quantities.
-   type, extends(interface_errors_type) :: body_errors_type
+   !> Those of the maxima of a body; arrays over `maxima` of field_quantities.
+   type, extends(uncertainty_type) :: body_uncertainty_type
       integer, allocatable :: node(:)          !! where they are, 0 where there is none
       !> Nodes at which stress may have no limit and round which it is larger
       integer, allocatable :: corners(:)
-   end type body_errors_type
+   end type body_uncertainty_type
 
    !> State of one contact interface; arrays over its contact points, in the order of
    !> contact_points_type.
@@ -147,11 +146,12 @@ module records
       logical :: has_new_operators = .false. !! whether they were formed again
       type(attempt_record_type), allocatable :: failed(:)       !! these; unallocated for none
       type(field_record_type) :: fields = field_record_type()   !! fields
-      !> (interfaces) at the end of a step; else unallocated
-      type(interface_errors_type), allocatable :: errors(:)
-      type(body_errors_type), allocatable :: body_errors(:)   !! (bodies) likewise
-      !> (checks of *VERIFY) bounds of what those of nodes judge, else NaN; unallocated: none
-      real(dp), allocatable :: check_bounds(:)
+      !> (interfaces) at the end of a step, with ERRORS=FULL of any increment; else unallocated
+      type(uncertainty_type), allocatable :: uncertainties(:)
+      type(body_uncertainty_type), allocatable :: body_uncertainties(:)   !! (bodies) likewise
+      type(uncertainty_type), allocatable :: check_uncertainties     !! *VERIFY cards, likewise
+      !> With ERRORS=FULL of `history_estimated` of increment_quantities; else unallocated
+      type(uncertainty_type), allocatable :: history_uncertainties
       !> Unallocated where the stress is.
       type(error_record_type) :: stress_error = error_record_type()
       !> Unallocated where the heat flux is.

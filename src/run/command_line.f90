@@ -3,6 +3,7 @@ module command_line
    use accuracy_targets, only: accuracy_target_type, read_request
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp
+   use model, only: uncertainty_named
    use spelling, only: nearest_known
    use text, only: append, read_integer, read_real, split_words, string_type
    implicit none
@@ -19,7 +20,9 @@ module command_line
    ! For messages on misspelt words.
    character(*), parameter :: known_commands = 'run/check/trade/help'
    character(*), parameter :: known_options = '--out/--jobs/--width/--set/--limit/--accuracy/'// &
-      '--restart/--resume/--quiet/--help/--version'
+      '--errors/--restart/--resume/--quiet/--help/--version'
+
+   character(4), parameter :: errors_words(0:2) = ['no  ', 'last', 'full']   !! of --errors
 
    !> Command, decks and options.
    type :: command_type
@@ -35,16 +38,17 @@ module command_line
       real(dp) :: limit = 0.0_dp
       type(accuracy_target_type), allocatable :: targets(:)   !! --accuracy; unallocated: none
       character(:), allocatable :: accuracy           !! the same as given; empty: none
+      integer :: uncertainty = -1                     !! --errors, of uncertainty_named; -1: none
       character(:), allocatable :: restart            !! --restart, path of a result; empty: none
       real(dp), allocatable :: restart_time           !! its time, where one is given [time]
       logical :: resumes = .false.                    !! --resume
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(41) = [character(88) :: &
+   character(*), parameter :: usage(43) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
       '                           [--quiet] [--accuracy P%] [--limit SECONDS] [--resume]', &
-      '                           [--restart RESULT[@TIME]]', &
+      '                           [--errors last|full|no] [--restart RESULT[@TIME]]', &
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
       '                          [--limit SECONDS] [--jobs N]', &
@@ -62,10 +66,12 @@ module command_line
       '  --width N          allow N columns in a card (256)', &
       '  --set NAME=VALUE   override the value of a *PARAMETER of the deck', &
       '  --quiet            print errors and warnings only', &
-      '  --accuracy P%      run: refine the mesh and shorten the increments until the error', &
-      '                     bounds of force, heat rate, peak pressure, edge of contact', &
+      '  --accuracy P%      run: refine the mesh and shorten the increments until the', &
+      '                     uncertainties of force, heat rate, peak pressure, edge of contact', &
       '                     are within P per cent; replaces *ACCURACY; with names only', &
       '                     those: force=1%,heat=2% (also pressure, edge, shear, stick)', &
+      '  --errors last      run: numerical uncertainties at the ends of steps (last), of all', &
+      '                     numbers at all times (full), or none (no); as *OPTIONS, ERRORS=', &
       '  --restart RESULT   go on from the last state that *RESTART, WRITE kept in this result,', &
       '                     or with RESULT@TIME from that at a time', &
       '  --resume           run: skip decks whose results are finished; go on with others from', &
@@ -171,7 +177,7 @@ contains
       case ('--help', '-h')
          command%action = command_help
          return
-      case ('--out', '--width', '--set', '--jobs', '--limit', '--accuracy', '--restart')
+      case ('--out', '--width', '--set', '--jobs', '--limit', '--accuracy', '--errors', '--restart')
          value = ''
          if (i <= command_argument_count()) value = argument(i)
          if (len_trim(value) == 0) then
@@ -193,7 +199,8 @@ contains
       end select
       if (command%action == command_check .and. word == '--out' .or. &
          command%action == command_check .and. word == '--jobs' .or. &
-         command%action /= command_run .and. word == '--accuracy' .or. &
+         command%action /= command_run .and. any(word == [character(10) :: '--accuracy', &
+         '--errors']) .or. &
          command%action == command_trade .and. word == '--restart' .or. &
          command%action == command_check .and. word == '--limit') then
          call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
@@ -236,6 +243,10 @@ contains
             'option --accuracy needs a percentage above 0% and below 100%, such as 1%, or '// &
             'those of quantities, each once, such as force=1%,heat=2% (force, heat, pressure, '// &
             'edge, shear, stick), not '//value)
+      case ('--errors')
+         command%uncertainty = uncertainty_named(value)
+         if (command%uncertainty < 0) call set_error(error, status_deck, 'option --errors needs '// &
+            'last, full or no, not '//value)
       case ('--limit')
          call read_real(value(:len(value) - merge(1, 0, index(value, 's') == len(value))), &
             command%limit, valid)
@@ -293,6 +304,8 @@ contains
          words = words//' --set '//command%settings(i)%value
       end do
       if (command%accuracy /= '') words = words//' --accuracy '//command%accuracy
+      if (command%uncertainty >= 0) words = words//' --errors '// &
+         trim(errors_words(command%uncertainty))
       words = trim(adjustl(words))
    end function settings_in_words
 

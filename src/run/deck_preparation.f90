@@ -17,15 +17,15 @@ module deck_preparation
    use load_histories, only: load_history_type
    use loads, only: loads_type
    use messages, only: print_error, print_line
-   use model, only: model_type
-   use no_estimates, only: no_reason, reason_of_deck, words_of_reason
+   use model, only: model_type, uncertainty_last
+   use no_estimates, only: of_branches, of_path, reason_of_run
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use held_points, only: first_redundant
    use progress, only: progress_type
    use reported_quantities, only: verifiable
    use steps, only: solves_heat, solves_mechanics
    use simulation, only: simulation_type
-   use text, only: string_type, to_text
+   use text, only: append, string_type, to_text
    use unconstrained_bodies, only: unconstrained_in_step, undetermined_in_step
    use variations, only: variation_type, vary
    implicit none
@@ -129,14 +129,24 @@ contains
          (allocated(command%targets) .or. allocated(deck%model%accuracy%targets))) call &
          deck%report%error(deck%cards%last, '--limit ends the rounds of a requested accuracy, '// &
          'and none is requested; add --accuracy or *ACCURACY, or leave it out')
+      if (command%uncertainty >= 0) deck%model%uncertainty = command%uncertainty
+      if (allocated(command%targets)) deck%model%uncertainty = max(deck%model%uncertainty, &
+         uncertainty_last)
+      select case (reason_of_run(deck%model))
+      case (of_path)
+         call append(deck%model%notes, 'no numerical uncertainties: where heat is stored, '// &
+            'properties follow temperatures or sections have a pre-tension, errors build up '// &
+            'along the path, which ERRORS=FULL follows once more')
+      case (of_branches)
+         call append(deck%model%notes, 'no numerical uncertainties of branches')
+      case default   ! none, or asked for none
+      end select
       if (.not. allocated(command%targets)) return
       deck%model%steps%restart_frequency = 0
       ! Targets of --accuracy replace those of the deck.
-      if (reason_of_deck(deck%model) /= no_reason) call deck%report%error(deck%cards%last, &
-         'a requested accuracy needs bounds of errors, which do not know '// &
-         words_of_reason(reason_of_deck(deck%model))// &
-         '; refine by *REFINE and, where heat is stored, LOCAL ERROR=')
-      deck%model%estimates_errors = .true.
+      if (reason_of_run(deck%model) == of_branches) call deck%report%error(deck%cards%last, &
+         'a requested accuracy needs numerical uncertainties, which branches of *CONTINUATION '// &
+         'do not have; refine by *REFINE')
       deck%model%accuracy%targets = command%targets
       if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &
          'the deck has no *CONTACT PAIR: there is no quantity whose accuracy could be requested')

@@ -1,6 +1,7 @@
 !> Errors and warnings on the interfaces of a deck once they are made, and on *VERIFY cards at
 !> positions that only contact points can tell.
 module interface_reports
+   use checked_values, only: is_on_interface
    use conductance_laws, only: law_none
    use connections, only: match_surfaces, match_tie
    use contact_points, only: contact_points_type
@@ -17,7 +18,6 @@ module interface_reports
    use steps, only: solves_heat, solves_mechanics
    use temperature_laws, only: largest_jump, law_at, radiates
    use text, only: append, read_real, string_type, to_text, to_upper
-   use verification, only: is_on_interface
    implicit none
    private
    public :: make_interfaces, make_ties, first_repeated, check_arc_lengths

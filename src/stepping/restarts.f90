@@ -16,7 +16,7 @@ module restarts
    use steps, only: solves_heat
    implicit none
    private
-   public :: keep_restart, go_on
+   public :: keep_restart, go_on, bring_to, exchange_run
 
 contains
 
@@ -29,8 +29,7 @@ contains
       if (.not. is_nth(model%steps(record%step)%restart_frequency, record)) return
       allocate (record%restart)
       call record%restart%begin()
-      call exchange(simulation, record%restart)
-      if (allocated(simulation%known)) deallocate (simulation%known)
+      call exchange_run(simulation, record%restart)
    end subroutine keep_restart
 
    !> Brings a run to where a table was kept.
@@ -40,9 +39,20 @@ contains
       type(simulation_type), intent(inout) :: simulation     !! a fresh run, started and assembled
       type(state_table_type), intent(inout) :: table
       type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: step(:)
 
       call table%begin_restoring()
+      call bring_to(model, simulation, table, error)
+   end subroutine go_on
+
+   !> Brings a run to where its arrays in a table were kept.
+   !> Errors: as simulation_type's reduce.
+   subroutine bring_to(model, simulation, table, error)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(inout) :: simulation     !! a fresh run, started
+      type(state_table_type), intent(inout) :: table         !! which is restoring
+      type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: step(:)
+
       call integers(table, 'step', step)
       do
          call simulation%reduce(model, error)
@@ -51,7 +61,7 @@ contains
          call simulation%enter_step(model)
       end do
       if (allocated(error)) return
-      call exchange(simulation, table)
+      call exchange_run(simulation, table)
       associate (loads => simulation%loads, state => simulation%state, &
          control => simulation%control)
          call loads%move_to(control%instant_at(model, control%step_time), model)
@@ -64,10 +74,10 @@ contains
          call simulation%bodies%move_operators(model, state%operators_at, state%tangent)
       end associate
       call simulation%reduce(model, error)
-   end subroutine go_on
+   end subroutine bring_to
 
-   !> All of a run, in either direction.
-   subroutine exchange(simulation, table)
+   !> All of a run, in either direction; it forgets the loads that it has solved.
+   subroutine exchange_run(simulation, table)
       type(simulation_type), intent(inout) :: simulation     !! in the step of the table
       type(state_table_type), intent(inout) :: table
       integer, allocatable :: step(:)
@@ -84,6 +94,7 @@ contains
       call reals(table, 'told', told)
       simulation%pivot_told = told(1)
       simulation%runaway_time = told(2)
-   end subroutine exchange
+      if (allocated(simulation%known)) deallocate (simulation%known)
+   end subroutine exchange_run
 
 end module restarts

@@ -20,7 +20,7 @@ module deck_trade
    use interruption, only: caught_signal
    use kinds, only: dp
    use messages, only: print_error, print_line
-   use model, only: model_type
+   use model, only: model_type, uncertainty_last, uncertainty_no
    use order_reduction, only: side_corners
    use processes, only: child_type, pause_briefly, reason_of, report_type, &
       set_reason, share_numbers, task_type
@@ -360,10 +360,10 @@ contains
       call prepare_deck(self%path, self%command, self%deck, model, simulation, error, &
          rounds%variation)
       if (allocated(error)) return
-      model%estimates_errors = self%accuracy > 0.0_dp
+      model%uncertainty = merge(uncertainty_last, uncertainty_no, self%accuracy > 0.0_dp)
       model%steps%restart_frequency = 0
       if (allocated(model%accuracy%targets)) deallocate (model%accuracy%targets)
-      if (model%estimates_errors) model%accuracy%targets = whole_request(self%accuracy)
+      if (self%accuracy > 0.0_dp) model%accuracy%targets = whole_request(self%accuracy)
       call index%build(model%mesh%node_number)
       self%found%nodes = [(index%find(self%nodes(i)), i=1, size(self%nodes))]
       self%found%figures(:, 2) = 0.0_dp

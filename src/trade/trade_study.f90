@@ -11,7 +11,6 @@ module trade_study
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use model, only: model_type
-   use no_estimates, only: no_reason, reason_of_deck
    use reported_quantities, only: traded
    use steps, only: analysis_coupled, solves_heat
    use text, only: percent, rounded, string_type, to_text
@@ -254,7 +253,8 @@ contains
       varied = written
       varied%solver = merge(solver_mumps, solver_skyline, model%solver == solver_skyline)
       call add(merge('MUMPS  ', 'SKYLINE', model%solver == solver_skyline))
-      if (size(model%contacts) == 0 .or. reason_of_deck(model) /= no_reason) return
+      if (size(model%contacts) == 0 .or. any(model%steps%continuation%is_on)) &
+         return
       do i = 1, target_count
          call add('--accuracy '//percent(targets(i)), targets(i))
       end do

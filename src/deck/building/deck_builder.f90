@@ -31,7 +31,6 @@ module deck_builder
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
    use model, only: model_type
-   use no_estimates, only: no_reason, reason_of_deck, words_of_reason
    use quantity_types, only: quantity_type
    use order_reduction, only: side_corners
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
@@ -53,7 +52,7 @@ contains
       type(model_type), intent(out), target :: model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
       type(deck_type) :: deck
-      integer :: i, why
+      integer :: i
 
       if (size(cards%keywords) == 0) return
       deck%deck_report_type = report
@@ -86,11 +85,6 @@ contains
       call build_couplings(deck)
       call build_pre_tensions(deck)
       call build_steps(deck)
-      why = reason_of_deck(model)
-      if (why /= no_reason .and. model%estimates_errors) then
-         call deck%note('no bounds of errors: they do not know '//words_of_reason(why))
-         model%estimates_errors = .false.
-      end if
       call build_verifications(deck)
       call build_accuracy(estimated, deck)
       if (allocated(model%accuracy%targets) .and. any(model%steps%restart_frequency > 0)) then

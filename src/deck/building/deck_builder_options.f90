@@ -6,6 +6,7 @@ module deck_builder_options
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
+   use model, only: uncertainty_named, uncertainty_words
    use refined_regions, only: refined_region_type
    use steps, only: dof_temperature
    use text, only: read_integer, to_text, to_upper
@@ -97,8 +98,8 @@ contains
             'be 1 (elements without midside nodes) or 2 (elements as they are)')
          if (deck%order /= 1) deck%order = 2
       end if
-      if (card%has('ERRORS')) deck%model%estimates_errors = choice(card, 'ERRORS', 'YES/NO', deck, &
-         'YES') == 'YES'
+      if (card%has('ERRORS')) deck%model%uncertainty = uncertainty_named(choice(card, 'ERRORS', &
+         uncertainty_words, deck, 'LAST'))
       if (card%has('UNITS')) call build_units(card, deck)
       if (.not. card%has('LOAD')) return
       deck%load_set = to_upper(card%text('LOAD'))

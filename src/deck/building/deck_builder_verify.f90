@@ -1,4 +1,4 @@
-!> *VERIFY -> checks of the results, *ACCURACY -> targets of the errors.
+!> *VERIFY -> checks of the results, *ACCURACY -> targets of the uncertainties.
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
    use card_parameters, only: needed_choice, take_parameter
@@ -12,8 +12,7 @@ module deck_builder_verify
    use deck_structure, only: cards_of, data_count
    use kinds, only: dp
    use load_requests, only: target_type
-   use model, only: verify_type
-   use no_estimates, only: no_reason, reason_of_deck, words_of_reason
+   use model, only: uncertainty_no, verify_type
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_contact_points, &
       of_history, of_interface, of_nodes, of_sections, quantity_type
    use spelling, only: known_choices, nearest_known
@@ -267,25 +266,23 @@ contains
 
    !> Reads the targets of all cards.
    subroutine build_accuracy(estimated, deck)
-      type(quantity_type), intent(in) :: estimated(:)      !! quantities whose errors are estimated
+      type(quantity_type), intent(in) :: estimated(:)      !! quantities with an uncertainty
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
-      integer :: k, j, why
+      integer :: k, j
 
       places = cards_of(deck%cards, 'ACCURACY')
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
             if (k == 1) then
                allocate (deck%model%accuracy%targets(0))
-               why = reason_of_deck(deck%model)
                if (size(deck%model%contacts) == 0) call deck%missing(card%place, 'the deck has '// &
                   'no *CONTACT PAIR: there is no quantity that *ACCURACY could name')
-               if (why /= no_reason) then
-                  call deck%error(card%place, '*ACCURACY needs bounds of errors, which do not '// &
-                     'know '//words_of_reason(why)//'; refine by *REFINE and, where heat is '// &
-                     'stored, LOCAL ERROR=')
-               else if (.not. deck%model%estimates_errors) then
-                  call deck%error(card%place, '*ACCURACY needs estimated errors; leave '// &
+               if (any(deck%model%steps%continuation%is_on)) then
+                  call deck%error(card%place, '*ACCURACY needs numerical uncertainties, which '// &
+                     'branches of *CONTINUATION do not have; refine by *REFINE')
+               else if (deck%model%uncertainty == uncertainty_no) then
+                  call deck%error(card%place, '*ACCURACY needs numerical uncertainties; leave '// &
                      'ERRORS=NO out of *OPTIONS')
                end if
             end if

@@ -1,0 +1,42 @@
+!> The numerical uncertainty (95 %) of a number: one rule for all of them.
+!>
+!> A number is computed on a mesh and on a finer one of half the spacing, in a complete finer run
+!> with increments half as long as well. An error that falls with the power p of the spacing is
+!> 2^p/(2^p - 1) times the change between both, of which a safety factor makes the uncertainty
+!> (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009): F = 3/(2^p - 1). As the edge
+!> of contact passes nodes, errors change their sign, and a change may be small by chance: so the
+!> scatter over increments is added, and of an edge a part of the spacing about it.
+!>
+!> Powers (`order`) and parts of the spacing (`resolution`) are in the tables of quantities:
+!>
+!>   0.8 and 0     numbers: 1 is what fields with edges have; F = 4 in place of 3 holds heat rates
+!>                 between mortar points as well
+!>   1.6 and 0.05  edges of contact, whose error on half the spacing is far smaller
+!>   1.6 and 0.5   edges of stick, which are known between two nodes only
+!>
+!> docs/accuracy.md says on which decks they were chosen and which judge them.
+module uncertainty_rule
+   use kinds, only: dp
+   use quantity_types, only: quantity_type
+   implicit none
+   private
+   public :: uncertainty_parts
+
+   real(dp), parameter :: safety = 3.0_dp   !! of the whole change, for p = 1
+
+contains
+
+   !> The parts of an uncertainty: of change, scatter and iteration; their sum is the uncertainty.
+   pure function uncertainty_parts(quantity, change, scatter, spacing, iteration) result(parts)
+      type(quantity_type), intent(in) :: quantity
+      real(dp), intent(in) :: change      !! by the finer mesh, and by shorter increments
+      real(dp), intent(in) :: scatter     !! over increments, 0 where it is not known
+      real(dp), intent(in) :: spacing     !! of nodes or contact points about an edge [length]
+      real(dp), intent(in) :: iteration   !! what the fixed point has left
+      real(dp) :: parts(3)                !! not negative; NaN where the change is
+
+      parts = [safety/(2.0_dp**quantity%order - 1.0_dp)*abs(change), abs(scatter) + &
+         quantity%resolution*spacing, abs(iteration)]
+   end function uncertainty_parts
+
+end module uncertainty_rule
