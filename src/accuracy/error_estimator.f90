@@ -107,8 +107,7 @@ contains
       end if
       if (record%step /= self%step) then
          self%step = record%step
-         call self%histories%begin_step(size(estimated), size(record%contacts), &
-            simulation%loads%corners(model%amplitudes, simulation%control%step_start))
+         call self%histories%begin_step(size(estimated), size(record%contacts))
       end if
       call self%histories%follow(record%time, values)
       if (.not. (self%is_full .or. record%last_of_step)) return
@@ -498,7 +497,7 @@ contains
 
       if (.not. self%is_on) return
       ! One that has followed no increment yet receives the table.
-      if (self%step == 0) call self%histories%begin_step(size(estimated), interfaces, [real(dp) ::])
+      if (self%step == 0) call self%histories%begin_step(size(estimated), interfaces)
       step = [self%step]
       call integers(table, 'estimated_step', step)
       self%step = step(1)

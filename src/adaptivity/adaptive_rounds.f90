@@ -199,7 +199,8 @@ contains
          ! What follows the path takes increments half as long as well.
          if (finding%follows_path) self%halvings = 1
          levels = 1
-         if (finding%uncertainty > far*finding%allowed) levels = 2
+         if (.not. ieee_is_nan(finding%uncertainty)) levels = merge(2, 1, finding%uncertainty > &
+            far*finding%allowed)
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity, &
             of_elements => self%division%levels)
             ! Where the last increment alone tells no error, the change by sides of half the size does.

@@ -31,7 +31,6 @@ module loads
       procedure :: prepare
       procedure :: begin_step
       procedure :: move_to
-      procedure :: corners
       procedure :: nodal_forces
       procedure :: present_gaps
       procedure :: heat_load
@@ -212,23 +211,6 @@ contains
       call self%applied%exchange(table, 'load')
       call self%interference%exchange(table, 'interference')
    end subroutine exchange
-
-   !> Instants at which amplitudes that loads follow may turn, as total time.
-   pure function corners(self, amplitudes, step_start) result(instants)
-      class(loads_type), intent(in) :: self
-      type(amplitude_type), intent(in) :: amplitudes(:)   !! load curves
-      real(dp), intent(in) :: step_start                  !! total time [time]
-      real(dp), allocatable :: instants(:)
-      integer :: i
-
-      allocate (instants(0))
-      do i = 1, size(amplitudes)
-         if (.not. (self%displacement%follows(i) .or. self%temperature%follows(i) .or. &
-            self%applied%follows(i) .or. self%interference%follows(i))) cycle
-         instants = [instants, amplitudes(i)%times + merge(0.0_dp, step_start, &
-            amplitudes(i)%total_time)]
-      end do
-   end function corners
 
    !> Present values of the loads; of those that do not act zero.
    pure function present_values(self) result(values)
