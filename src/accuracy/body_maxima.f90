@@ -7,6 +7,7 @@ module body_maxima
    use field_quantities, only: maxima, point_values
    use field_recovery, only: point_map_type
    use kinds, only: dp
+   use local_refinement, only: elements_about
    use mesh, only: mesh_type
    use model, only: model_type
    use records, only: field_record_type, increment_record_type
@@ -15,7 +16,7 @@ module body_maxima
    use singular_corners, only: find_singular_corners
    implicit none
    private
-   public :: body_maxima_type, elements_about
+   public :: body_maxima_type
 
    integer, parameter :: of_stress = 1, of_temperature = 2   !! as in maxima
 
@@ -47,7 +48,7 @@ contains
       if (allocated(record%fields%stress)) then
          call find_singular_corners(model, simulation, record, self%is_singular)
          self%counts(of_stress, :) = .not. elements_about(model%mesh, &
-            pack([(i, i=1, size(self%is_singular))], self%is_singular), 1)
+            pack([(i, i=1, size(self%is_singular))], self%is_singular))
       end if
       call find_places(self, model%mesh, simulation%recovery%points, record%fields)
    end subroutine find
@@ -124,30 +125,5 @@ contains
       self%value(q, body) = values(k)
       self%node(q, body) = nodes(k)
    end subroutine take
-
-   !> The elements at some nodes, and in further layers those beside them.
-   pure function elements_about(mesh, nodes, layers) result(is_near)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: nodes(:)
-      integer, intent(in) :: layers
-      logical :: is_near(size(mesh%element_kind))
-      logical :: is_reached(size(mesh%node_number))
-      integer :: e, layer
-
-      is_reached = .false.
-      is_reached(nodes) = .true.
-      do layer = 1, layers
-         do e = 1, size(is_near)
-            associate (own => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
-               is_near(e) = any(is_reached(own))
-            end associate
-         end do
-         do e = 1, size(is_near)
-            associate (own => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
-               if (is_near(e)) is_reached(own) = .true.
-            end associate
-         end do
-      end do
-   end function elements_about
 
 end module body_maxima

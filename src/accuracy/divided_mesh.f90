@@ -20,7 +20,8 @@ module divided_mesh
    use interface_quantities, only: contacts_of_state
    use kinds, only: dp
    use load_histories, only: end_of_step
-   use local_refinement, only: choose_neighbours, elements_at_surfaces, largest_part
+   use local_refinement, only: choose_neighbours, elements_about, elements_at_surfaces, &
+      largest_part
    use mesh_division, only: divide, division_type, refined_members
    use model, only: model_type, uncertainty_no
    use records, only: field_record_type, increment_record_type
@@ -35,7 +36,6 @@ module divided_mesh
    private
    public :: divided_mesh_type
 
-   integer, parameter :: margin = 1   !! sides beyond those that count whose elements are divided
    !> Part of the heat that crosses all contact points which the elements divided for it carry
    real(dp), parameter :: of_heat = 0.99_dp
 
@@ -275,43 +275,29 @@ contains
       allocate (self%run)
    end subroutine divide_elements
 
-   !> Elements at the contact points that count, with those next to them on the faces, and at ties;
-   !> all of the faces where none counts.
+   !> Elements at the contact points that count, and at ties; all of the faces where none counts.
    pure function elements_at_contact(model, points, counts) result(chosen)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points
       logical, intent(in) :: counts(:)                    ! (m) closed, or with much heat
       logical :: chosen(size(model%mesh%element_number))
-      logical :: at_face(size(chosen)), is_near(size(model%mesh%node_number))
-      integer :: beyond, e, k
+      integer :: k
 
-      at_face = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
-      is_near = .false.
-      do k = 1, size(counts)
-         if (counts(k)) is_near(points%nodes_of(k)) = .true.
-      end do
-      if (.not. any(counts)) is_near = .true.
-      do beyond = 0, margin
-         do e = 1, size(chosen)
-            chosen(e) = at_face(e) .and. any(is_near(nodes_of(e)))
-         end do
-         do e = 1, size(chosen)
-            if (chosen(e)) is_near(nodes_of(e)) = .true.
-         end do
-      end do
+      chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
+      if (any(counts)) chosen = chosen .and. elements_about(model%mesh, nodes_at(pack([(k, k=1, size(counts))], &
+         counts)))
       if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
          [model%ties%faces%slave, model%ties%faces%master])
 
    contains
 
-      pure function nodes_of(element) result(nodes)
-         integer, intent(in) :: element
+      pure function nodes_at(closed) result(nodes)
+         integer, intent(in) :: closed(:)
          integer, allocatable :: nodes(:)
+         integer :: i
 
-         associate (mesh => model%mesh)
-            nodes = mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element)
-         end associate
-      end function nodes_of
+         nodes = [(points%nodes_of(closed(i)), i=1, size(closed))]
+      end function nodes_at
 
    end function elements_at_contact
 

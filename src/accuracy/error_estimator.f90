@@ -3,7 +3,7 @@
 !> One rule makes them of what changes there. Where fields err most, recovery finds.
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use body_maxima, only: body_maxima_type, elements_about
+   use body_maxima, only: body_maxima_type
    use checked_values, only: is_estimable, values_asked_for
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
@@ -16,7 +16,7 @@ module error_estimator
    use increment_quantities, only: history_estimated, history_value
    use interface_quantities, only: peaks_at_corner, quantities_of, spacing_at
    use kinds, only: dp
-   use local_refinement, only: largest_part
+   use local_refinement, only: elements_about, largest_part
    use mesh, only: mesh_type
    use model, only: model_type, uncertainty_full, verify_type
    use no_estimates, only: at_corner, first_reason, no_finer_value, no_reason, not_on_finer_mesh, &
@@ -38,7 +38,6 @@ module error_estimator
    !> Part of the squared recovered error of stress and of flux, in every body, that the elements
    !> have which are divided.
    real(dp), parameter :: divided_part = 0.95_dp
-   integer, parameter :: layers = 2    !! of elements that are divided round a node
 
    !> Relative difference of quantities that the fixed point leaves
    real(dp), parameter :: same = 1.0e-5_dp
@@ -136,7 +135,7 @@ contains
       if (self%is_full) then
          if (.not. was_lost) call self%divided%follow(simulation, record, error)
       else
-         near = elements_about(model%mesh, nodes_looked_at(model, record, found), layers)
+         near = elements_about(model%mesh, nodes_looked_at(model, record, found))
          call self%divided%solve_end(simulation, model, near .or. err_most(model%mesh, record), &
             near, self%before, error)
          if (.not. allocated(error) .and. was_lost) deallocate (self%lost)

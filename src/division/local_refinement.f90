@@ -19,7 +19,7 @@ module local_refinement
    use surface_chains, only: align_chain, chain_faces, facing_chain, surface_chain_type
    implicit none
    private
-   public :: elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours, &
+   public :: elements_about, elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours, &
       hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, place_hanging, &
       distance_of_lines, largest_part
 
@@ -93,6 +93,21 @@ contains
          at_surface(mesh%surfaces(surfaces(i))%faces(1, :)) = .true.
       end do
    end function elements_at_surfaces
+
+   !> The elements at some nodes.
+   pure function elements_about(mesh, nodes) result(is_near)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: nodes(:)                  !! indexes
+      logical :: is_near(size(mesh%element_kind))
+      logical :: is_one(size(mesh%node_number))
+      integer :: e
+
+      is_one = .false.
+      is_one(nodes) = .true.
+      do e = 1, size(is_near)
+         is_near(e) = any(is_one(mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e)))
+      end do
+   end function elements_about
 
    !> Elements with a corner near one of some points, measured by their own size.
    pure function elements_at_points(mesh, points) result(at_point)
