@@ -8,7 +8,7 @@ from .result import words_of
 from .style import plt
 from .tables import stack_tables
 
-SMALLEST = 1e-3  # of a target: uncertainties below it are marked at the foot, missing ones at the top
+SMALLEST = 1e-3  # of a target: smaller ones are marked at the foot, missing ones at the top
 
 
 def draw(result, options):
@@ -86,7 +86,7 @@ def target_words(allowed, unit):
 
 
 def targets(result, rounds):
-    """Yield name, rows (step, value, uncertainty, target) and unit of each quantity that is there."""
+    """Yield name, rows (step, value, uncertainty, target) and unit of each quantity there."""
     for contact in result.contacts():
         for quantity, rows in rounds["uncertainty"].get(contact.name, {}).items():
             if np.any(rows[:, 0] > 0):

@@ -68,7 +68,8 @@ def words_of(name):
 def uncertainty_of(group):
     """Return the uncertainties in a file or in its /accuracy, under their former names in files of
     earlier versions; None where there are none."""
-    return next((group[name] for name in ("uncertainty", "errors", "bounds") if name in group), None)
+    names = ("uncertainty", "errors", "bounds")
+    return next((group[name] for name in names if name in group), None)
 
 
 @dataclass
@@ -291,8 +292,9 @@ class Result:
 
     @cached_property
     def accuracy(self):
-        """Attributes and datasets of /accuracy by name, one value a round, and `uncertainty`: {contact:
-        {quantity: rows (step, value, uncertainty, target)}}; None where no accuracy was requested."""
+        """Attributes and datasets of /accuracy by name, one value a round, and `uncertainty`:
+        {contact: {quantity: rows (step, value, uncertainty, target)}}; None where no accuracy was
+        requested."""
         group = self.file.get("accuracy")
         if group is None:
             return None
@@ -307,8 +309,7 @@ class Result:
 
     @cached_property
     def judged(self):
-        """Which increments have the accuracy that was requested: those with uncertainties; all where
-        none was requested."""
+        """Which increments have uncertainties; all where no accuracy was requested."""
         if self.accuracy is None:
             return np.ones(self.increments, dtype=bool)
         known = uncertainty_of(self.file)
@@ -330,10 +331,10 @@ class Result:
         return {key: numbers(group, key, like=(count,)) for key in ANALYSIS}
 
     def uncertainties(self, name):
-        """Return of every quantity with an uncertainty, of a contact, a body or the increment, by its
-        key: unit, names of the columns, their rows at all increments (value, uncertainty, parts), and
-        in words why the last one has none. NaN at increments without a row: by default only ends of
-        steps have one."""
+        """Return of every quantity with an uncertainty, of a contact, a body or the increment, by
+        its key: unit, names of the columns, their rows at all increments (value, uncertainty,
+        parts), and in words why the last one has none. Increments may have no row but NaN: by
+        default ends of steps alone have one."""
         found = uncertainty_of(self.file)
         if found is None or name not in found:
             return {}
@@ -346,11 +347,13 @@ class Result:
             reasons = numbers(group, "no_estimate", like=(len(times), len(names)))[rows[-1]]
             why = {key: text(found["reasons"][k]) for key, k in zip(names, reasons)}
         inside = text(found.attrs.get("inside_step", "")) if rows[-1] < 0 else ""
-        return {key: (text(group[key].attrs.get("unit", "")),
-                      text(group[key].attrs.get("components", "")).split(),
-                      np.vstack([numbers(group, key, like=(len(times), 5)), np.full(5, np.nan)])[rows],
-                      why.get(key, inside))
-                for key in group if key != "no_estimate"}
+        known = {}
+        for key in sorted(set(group) - {"no_estimate"}):
+            attributes = group[key].attrs
+            values = np.vstack([numbers(group, key, like=(len(times), 5)), np.full(5, np.nan)])
+            known[key] = (text(attributes.get("unit", "")), text(attributes.get("components", "")).split(),
+                          values[rows], why.get(key, inside))
+        return known
 
     @property
     def maxima(self):

@@ -144,8 +144,8 @@ def hottest(contact):
 def totals(result, contact):
     """Return the quantities of a contact over the increments; its edges are drawn elsewhere."""
     known = result.uncertainties(contact.name)
-    return [{"key": key, "label": words_of(key), "unit": contact.unit(key), "values": listed(values),
-             "uncertainty": uncertainty(known, key)}
+    return [{"key": key, "label": words_of(key), "unit": contact.unit(key),
+             "values": listed(values), "uncertainty": uncertainty(known, key)}
             for key, values in contact.totals().items() if not key.startswith("edge_")]
 
 
@@ -168,7 +168,8 @@ def histories(result):
         of = f" of {contact.name}" if len(contacts) > 1 else ""
         crossing = contact.data.get("conductance", 0.0) * contact["weight"]
         peaks["heat"] = max(peaks.get("heat", 0.0), hottest(contact) * largest(crossing))
-        found += [each | {"label": each["label"].capitalize() + of} for each in totals(result, contact)]
+        found += [each | {"label": each["label"].capitalize() + of}
+                  for each in totals(result, contact)]
     for key, values in result.history.items():
         if key not in ("time", "load") and values.ndim == 1 and not key.endswith("_imbalance"):
             unit = plain(result.units.names.get("power", "")) if key in HEAT else ""

@@ -42,7 +42,7 @@ function show(value, digits = 5) {
       String(Number(value.toPrecision(digits)));
    return words.replaceAll('-', '−');
 }
-const within = (each, k) => Number.isFinite(each.uncertainty[k]) ? ` ± ${show(each.uncertainty[k], 2)}` : '';
+const within = ({uncertainty}, k) => Number.isFinite(uncertainty[k]) ? ` ± ${show(uncertainty[k], 2)}` : '';
 const withUnit = (words, unit) => unit ? `${words} (${unit})` : words;
 const unit = name => data.units[name] || '';
 

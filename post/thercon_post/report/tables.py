@@ -76,8 +76,8 @@ LARGEST = {"von_mises": "largest von Mises stress", "temperature": "largest temp
 
 
 def uncertainties(result):
-    """Return the quantities of every interface, the largest values of every body and the heat of the
-    model at the last increment, with their numerical uncertainties."""
+    """Return what has numerical uncertainties at the last increment: the quantities of every
+    interface, the largest values of every body and the heat of the model."""
     said, found = "at the last increment", []
     for contact in contacts_of(result):
         rows, known = [], result.uncertainties(contact.name)
@@ -86,7 +86,8 @@ def uncertainties(result):
             if np.isnan(value) or (key == "shear_force" and not value):
                 continue
             cells = uncertainty_cells(*known[key][2:], contact.unit(key)) if key in known else None
-            if key.startswith("edge_") and value in [contact["s"][piece][-1] for piece in contact.pieces]:
+            ends = [contact["s"][piece][-1] for piece in contact.pieces]
+            if key.startswith("edge_") and value in ends:
                 cells = ["none: end of the face", contact.unit(key), *NO_PARTS]
             rows.append([words_of(key) + (", s" if key.startswith("edge_") else ""), number(value),
                          *(cells or ["no estimate", contact.unit(key), *NO_PARTS])])
@@ -95,8 +96,9 @@ def uncertainties(result):
     others = {f"{name.capitalize()} {largest}": known for name, known in result.maxima.items()}
     others[f"Heat of the model {said}"] = result.uncertainties("increment")
     for caption, known in others.items():
-        rows = [[LARGEST.get(key, words_of(key)), number(each[-1, 0]), *uncertainty_cells(each, why, unit)]
-                for key, (unit, _, each, why) in known.items() if np.isfinite(each[-1, 0]) and each[-1, 0]]
+        rows = [[LARGEST.get(key, words_of(key)), number(each[-1, 0]),
+                 *uncertainty_cells(each, why, unit)]
+                for key, (unit, _, each, why) in known.items() if np.nan_to_num(each[-1, 0])]
         if rows:
             found.append(uncertainty_table(caption, known, rows))
     return joined(found)
@@ -108,7 +110,8 @@ NO_PARTS = "–", "–", "–"
 def uncertainty_table(caption, known, rows):
     """Return a table of values and their uncertainties, with the parts that the file names."""
     _, columns, *_ = next(iter(known.values()), ("", ["", "", "change", "scatter", "iteration"]))
-    head = ["quantity", "value", "uncertainty (95 %)", "unit", *(f"by {part}" for part in columns[2:])]
+    parts = [f"by {part}" for part in columns[2:]]
+    head = ["quantity", "value", "uncertainty (95 %)", "unit", *parts]
     return table(caption, head, rows, (1, 2, 4, 5, 6))
 
 
@@ -172,8 +175,8 @@ def rounds(result, listing):
     said = listing.accuracy if listing else []
     rows = [[name, words, *target_cells(each, unit, remark(said, f"{name} {words}"))]
             for name, words, unit, each in named]
-    return joined([told, table("Uncertainties (95 %) of each round against their targets", head, rows,
-                               range(2, len(found) + 3))])
+    return joined([told, table("Uncertainties (95 %) of each round against their targets", head,
+                               rows, range(2, len(found) + 3))])
 
 
 def remark(said, target):
@@ -186,16 +189,16 @@ def remark(said, target):
 
 def target_cells(rows, unit, remark):
     """Return the uncertainties of all rounds, target, unit and verdict of the last one."""
-    step, _, uncertainty, allowed = rows[-1]
-    digits = 2  # or as many as show that the uncertainty is above the target
-    while digits < 6 and uncertainty > allowed and number(uncertainty, digits) == number(allowed, digits):
+    step, _, found, allowed = rows[-1]
+    digits = 2  # or as many as show that it is above the target
+    while found > allowed and digits < 6 and number(found, digits) == number(allowed, digits):
         digits += 1
     cells = ["–" if each[0] == 0 else "no estimate" if np.isnan(each[2]) else number(each[2], digits)
              for each in rows]
     if step == 0:
         return [*cells, "–", unit, f"nothing to judge{remark}"]
-    verdict = "met" if uncertainty <= allowed else "not met"
-    look = "pass" if uncertainty <= allowed else "fail"
+    verdict = "met" if found <= allowed else "not met"
+    look = "pass" if found <= allowed else "fail"
     told = html('<span class="{}">{}</span>{}', look, verdict, remark)
     return [*cells, number(allowed, digits), unit, told]
 
