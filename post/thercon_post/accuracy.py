@@ -1,4 +1,4 @@
-"""A requested accuracy: the bound of each target's error, over it, against the cost of the rounds."""
+"""A requested accuracy: the uncertainty over each target, against the cost of the rounds."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from .result import words_of
 from .style import plt
 from .tables import stack_tables
 
-SMALLEST = 1e-3  # of a target: bounds below it are marked at the foot, missing ones at the top
+SMALLEST = 1e-3  # of a target: smaller ones are marked at the foot, missing ones at the top
 
 
 def draw(result, options):
@@ -26,16 +26,16 @@ def draw(result, options):
     )
     tables, marks = [], {}
     for number, (name, rows, unit) in enumerate(series):
-        value, bound, allowed = rows[:, 1], rows[:, 2], rows[:, 3]
+        value, uncertainty, allowed = rows[:, 1], rows[:, 2], rows[:, 3]
         is_there = rows[:, 0] > 0
-        ratio = np.divide(bound, allowed, out=np.full(len(cost), np.nan), where=is_there)
-        is_missing = is_there & np.isnan(bound)
+        ratio = np.divide(uncertainty, allowed, out=np.full(len(cost), np.nan), where=is_there)
+        is_missing = is_there & np.isnan(uncertainty)
         label = f"{name}, target {target_words(allowed[is_there][-1], unit)}"
         label += missing_words(is_missing)
         marks |= draw_target(axes, cost, ratio, is_missing, number, label)
         table = {"target": np.full(len(cost), name, dtype=object), "cpu_seconds": cost}
-        table |= {"unknowns": rounds["unknowns"], "value": value, "bound": bound}
-        tables.append(table | {"allowed": allowed})
+        table |= {"unknowns": rounds["unknowns"], "value": value}
+        tables.append(table | {"uncertainty": uncertainty, "allowed": allowed})
     axes.axhline(1.0, color=style.GREY, lw=0.8, ls="--", label="target")
     for words, mark in marks.items():
         axes.plot([], [], mark, color=style.GREY, ms=4, mfc="none", label=words)
@@ -45,7 +45,7 @@ def draw(result, options):
     for axis in (axes.xaxis, axes.yaxis):
         style.log_ticks(axis, *sorted(axis.get_view_interval()))
     axes.set_xlabel("CPU time of all rounds, s")
-    axes.set_ylabel("bound of the error / target")
+    axes.set_ylabel("uncertainty (95 %) / target")
     figure.legend(**style.BELOW, ncols=2, fontsize=7)
     name = style.file_name(result, "accuracy")
     return style.write(figure, stack_tables(tables), options, name)
@@ -72,7 +72,7 @@ def draw_target(axes, cost, ratio, is_missing, number, label):
 
 
 def missing_words(is_missing):
-    """Return in which rounds there is no bound, in words."""
+    """Return in which rounds there is no estimate, in words."""
     if not is_missing.any():
         return ""
     if is_missing.all():
@@ -86,8 +86,8 @@ def target_words(allowed, unit):
 
 
 def targets(result, rounds):
-    """Yield name, rows (step, value, bound, target) and unit of each quantity that is there."""
+    """Yield name, rows (step, value, uncertainty, target) and unit of each quantity there."""
     for contact in result.contacts():
-        for quantity, rows in rounds["bounds"].get(contact.name, {}).items():
+        for quantity, rows in rounds["uncertainty"].get(contact.name, {}).items():
             if np.any(rows[:, 0] > 0):
                 yield f"{style.plain(contact.name)} {style.plain(words_of(quantity))}", rows, contact.unit(quantity)

@@ -53,7 +53,7 @@ def parser():
         "fields": ("temperature and stress on the deformed mesh", None),
         "courses": ("pressure, gap, temperatures and heat over time", None),
         "branch": ("a quantity over the load factor of *CONTINUATION, unstable parts dashed", None),
-        "accuracy": ("bounds of a requested accuracy against the cost of its rounds", None),
+        "accuracy": ("uncertainties of a requested accuracy against the cost of its rounds", None),
     }
     added = {}
     for name, (help_, epilog) in one.items():

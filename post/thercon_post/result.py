@@ -65,6 +65,13 @@ def words_of(name):
     return re.sub("^edge_", "edge of ", name).replace("_", " ")
 
 
+def uncertainty_of(group):
+    """Return the uncertainties in a file or in its /accuracy, under their former names in files of
+    earlier versions; None where there are none."""
+    names = ("uncertainty", "errors", "bounds")
+    return next((group[name] for name in names if name in group), None)
+
+
 @dataclass
 class Contact:
     """One contact pair of the deck: arrays over its m contact points, states over n increments."""
@@ -285,26 +292,29 @@ class Result:
 
     @cached_property
     def accuracy(self):
-        """Attributes and datasets of /accuracy by name, one value a round, and `bounds`: {contact:
-        {quantity: rows (step, value, bound, target)}}; None where no accuracy was requested."""
+        """Attributes and datasets of /accuracy by name, one value a round, and `uncertainty`:
+        {contact: {quantity: rows (step, value, uncertainty, target)}}; None where no accuracy was
+        requested."""
         group = self.file.get("accuracy")
         if group is None:
             return None
         rounds = len(numbers(group, "cpu_seconds", like=(None,)))
-        need(group, rounds > 0 and "bounds" in group, "there are no rounds")
+        judged = uncertainty_of(group)
+        need(group, rounds > 0 and judged is not None, "there are no rounds")
         found = {key: numbers(group, key, like=(rounds,)) for key in ROUND}
         found |= {key: bool(group.attrs.get(key)) for key in ("reached", "later_round_begun")}
-        found["bounds"] = {name: {key: numbers(group[f"bounds/{name}"], key, like=(rounds, 4))
-                                  for key in group[f"bounds/{name}"]} for name in group["bounds"]}
+        found["uncertainty"] = {name: {key: numbers(judged[name], key, like=(rounds, 4))
+                                       for key in judged[name]} for name in judged}
         return found
 
     @cached_property
     def judged(self):
-        """Which increments have the accuracy that was requested: those at the ends of steps, with
-        bounds; all where none was requested."""
+        """Which increments have uncertainties; all where no accuracy was requested."""
         if self.accuracy is None:
             return np.ones(self.increments, dtype=bool)
-        return np.isin(self.history["time"], numbers(self.file, "errors/time", like=(None,)))
+        known = uncertainty_of(self.file)
+        need(self.file, known is not None, "there are no uncertainties")
+        return np.isin(self.history["time"], numbers(known, "time", like=(None,)))
 
     @cached_property
     def load_factors(self):
@@ -320,32 +330,35 @@ class Result:
         count = len(numbers(group, "time", like=(None,), finite=True))
         return {key: numbers(group, key, like=(count,)) for key in ANALYSIS}
 
-    def errors_of(self, name):
-        """Return of every quantity of a contact or body with a bound, by its key: unit, value and
-        bound with its parts at the last increment, and in words why there is none. NaN and a reason
-        where the increment ends no step; nothing where the file has none."""
-        group = self.file.get(f"errors/{name}")
-        if group is None:
+    def uncertainties(self, name):
+        """Return of every quantity with an uncertainty, of a contact, a body or the increment, by
+        its key: unit, names of the columns, their rows at all increments (value, uncertainty,
+        parts), and in words why the last one has none. Increments may have no row but NaN: by
+        default ends of steps alone have one."""
+        found = uncertainty_of(self.file)
+        if found is None or name not in found:
             return {}
-        steps = self.file["errors"]
-        times = numbers(steps, "time", like=(None,))
-        rows = {key: numbers(group, key, like=(len(times), 5)) for key in group
-                if key != "no_estimate"}
-        units = {key: text(group[key].attrs.get("unit", "")) for key in rows}
-        if not len(times) or times[-1] != self.history["time"][-1]:
-            why = text(steps.attrs.get("inside_step", ""))
-            return {key: (units[key], np.full(5, np.nan), why) for key in rows}
+        times, group = numbers(found, "time", like=(None,)), found[name]
+        row_at = {time: row for row, time in enumerate(times)}
+        rows = [row_at.get(time, -1) for time in self.history["time"]]
         why = {}
-        if "no_estimate" in group:  # not in files of earlier versions
+        if rows[-1] >= 0 and "no_estimate" in group:  # not in files of earlier versions
             names = text(group["no_estimate"].attrs["components"]).split()
-            reasons = numbers(group, "no_estimate", like=(len(times), len(names)))[-1]
-            why = {key: text(steps["reasons"][k]) for key, k in zip(names, reasons)}
-        return {key: (units[key], each[-1], why.get(key, "")) for key, each in rows.items()}
+            reasons = numbers(group, "no_estimate", like=(len(times), len(names)))[rows[-1]]
+            why = {key: text(found["reasons"][k]) for key, k in zip(names, reasons)}
+        inside = text(found.attrs.get("inside_step", "")) if rows[-1] < 0 else ""
+        known = {}
+        for key in sorted(set(group) - {"no_estimate"}):
+            attributes = group[key].attrs
+            values = np.vstack([numbers(group, key, like=(len(times), 5)), np.full(5, np.nan)])
+            known[key] = (text(attributes.get("unit", "")), text(attributes.get("components", "")).split(),
+                          values[rows], why.get(key, inside))
+        return known
 
     @property
     def maxima(self):
-        """Return what `errors_of` says of each body, by their names."""
-        return {name: self.errors_of(name) for name in self.file.get("errors", {})
+        """Return what `uncertainties` says of each body, by their names."""
+        return {name: self.uncertainties(name) for name in uncertainty_of(self.file) or {}
                 if name.startswith("body ")}
 
     @cached_property

@@ -15,7 +15,7 @@ TEXT = """
 errors. Instructions are those of callgrind on the program as users have it, and the same from run
 to run, but for writing: how often results are published goes by elapsed time, and a busy machine
 publishes more often. Estimates of errors include the increments that they solve themselves;
-[accuracy.md](accuracy.md#cost-of-the-bounds) has their cost relative to the rest of a run.
+[accuracy.md](accuracy.md) has their cost relative to the rest of a run.
 """
 OUTPUT = {path.stem for path in (SOURCES / "output").glob("*.f90")}
 ESTIMATES = {path.stem for path in (SOURCES / "accuracy").glob("*.f90")}

@@ -14,8 +14,9 @@ from instructions import profile
 TITLE = "Analysis of stability"
 TEXT = """
 What an analysis by [\\*STABILITY](deck.md#stability) at the end of a step takes, by callgrind, and
-what ten increments of the run take on the average, without bounds of errors and without writing;
-bounds and writing double what an increment of the cylinder takes. Bodies have the heat capacity of steel.
+what ten increments of the run take on the average, with `ERRORS=NO` and without writing;
+uncertainties and writing double what an increment of the cylinder takes. Bodies have the heat
+capacity of steel.
 """
 # Deck, and what its last step says of increments.
 CASES = {

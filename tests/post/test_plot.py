@@ -1424,7 +1424,7 @@ def test_what_is_no_trade_is_refused(fail, result, tmp_path):
 
 
 def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_path):
-    """Bounds over targets, at the CPU seconds of all rounds so far."""
+    """Uncertainties over targets, at the CPU seconds of all rounds so far."""
     assert "no accuracy was requested" in fail("accuracy", result)
     asked = tmp_path / "asked.vtkhdf"
     asked.write_bytes(result.read_bytes())
@@ -1432,20 +1432,20 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
         group = file.create_group("accuracy")
         group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
         group["elements"], group["increments"] = [10, 40], [15, 15]
-        group["bounds/CYLINDER/normal_force"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.05, 0.1]]
-        group["bounds/CYLINDER/heat_rate"] = np.zeros((2, 4))
+        group["uncertainty/CYLINDER/normal_force"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.05, 0.1]]
+        group["uncertainty/CYLINDER/heat_rate"] = np.zeros((2, 4))
     (figure,) = kept("accuracy", asked)
     (line, limit) = figure.axes[0].get_lines()
     np.testing.assert_allclose(line.get_xdata(), [0.1, 0.4])
     np.testing.assert_allclose(line.get_ydata(), [4.0, 0.5])
     assert list(limit.get_ydata()) == [1.0, 1.0]
     with h5py.File(asked, "a") as file:
-        file["accuracy/bounds/CYLINDER/normal_force"][...] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 1e-9, 0.1]]
+        file["accuracy/uncertainty/CYLINDER/normal_force"][...] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 1e-9, 0.1]]
     (figure,) = kept("accuracy", asked)
     (_, foot, top, *_) = figure.axes[0].get_lines()
     assert (foot.get_marker(), list(foot.get_xdata())) == ("v", [0.4])
     assert (top.get_marker(), list(top.get_xdata())) == ("^", [0.1])
-    # At the frame, wherever the bounds of others lie.
+    # At the frame, wherever the uncertainties of others lie.
     height = figure.axes[0].transAxes.inverted().transform(
         top.get_transform().transform([[0.1, top.get_ydata()[0]]]))[0, 1]
     assert height == pytest.approx(1.0)
@@ -1453,23 +1453,23 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
         "CYLINDER normal force, target 0.1 (no estimate in round 1)", "target", "below the scale",
         "no estimate"]
     with h5py.File(asked, "a") as file:
-        file["accuracy/bounds/CYLINDER/normal_force"][...] = [[1, 5.0, 0.4, 0.1], [0, 0.0, 0.0, 0.0]]
+        file["accuracy/uncertainty/CYLINDER/normal_force"][...] = [[1, 5.0, 0.4, 0.1], [0, 0.0, 0.0, 0.0]]
     (figure,) = kept("accuracy", asked)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         "CYLINDER normal force, target 0.1", "target"]
 
 
-@pytest.mark.parametrize(("bounds", "line", "marker"), [
+@pytest.mark.parametrize(("uncertainties", "line", "marker"), [
     ((4.0, 0.5), "-", "o"), ((np.nan, 0.5), "None", "o"), ((1e-9, 1e-9), "None", "v"),
     ((np.nan, np.nan), "None", "^"), ((np.nan, 1e-9), "None", "v"),
 ])
-def test_the_legend_of_an_accuracy_shows_what_is_drawn(kept, result, bounds, line, marker):
+def test_the_legend_of_an_accuracy_shows_what_is_drawn(kept, result, uncertainties, line, marker):
     with h5py.File(result, "a") as file:
         group = file.create_group("accuracy")
         group["cpu_seconds"], group["unknowns"] = [0.1, 0.3], [100, 900]
         group["elements"], group["increments"] = [10, 40], [15, 15]
-        rows = [[1, 1e4, 340.0 * bound, 340.0] for bound in bounds]
-        group["bounds/CYLINDER/normal_force"] = rows
+        rows = [[1, 1e4, 340.0 * each, 340.0] for each in uncertainties]
+        group["uncertainty/CYLINDER/normal_force"] = rows
     (figure,) = kept("accuracy", result)
     handle = figure.legends[0].legend_handles[0]
     assert (handle.get_linestyle(), handle.get_marker()) == (line, marker)

@@ -89,11 +89,11 @@ def test_the_page_is_one_well_formed_file_that_asks_for_nothing(cylinder):
 def test_the_tables_hold_summary_checks_and_deck(cylinder):
     text = (cylinder / "cylinder.html").read_text()
     with h5py.File(cylinder / "cylinder.vtkhdf") as file:
-        value, bound, *_ = file["errors/FACE/normal_force"][-1]
+        value, uncertainty, *_ = file["uncertainty/FACE/normal_force"][-1]
     row = re.search(r'<th scope="row">normal force</th>(.*?)</tr>', text).group(1)
     cells = re.findall(r"<td[^>]*>(.*?)</td>", row)
     assert cells[0] == f"{value:.6g}"
-    assert cells[1].startswith(f"± {bound:.2g} (") and cells[2] == "MPa cm²"
+    assert cells[1].startswith(f"± {uncertainty:.2g} (") and cells[2] == "MPa cm²"
     assert text.count('class="pass"') == 37 and text.count('class="fail"') == 1
     assert text.index('class="fail"') < text.index('class="pass"')
     assert "ANALYTIC: a &amp; b" in text and "37 passed, 1 failed" in text
@@ -122,7 +122,7 @@ def test_the_slider_moves_every_picture_and_the_console_stays_empty(cylinder, br
         seen.append(browser.run(look))
     for place, found in zip((-1, -2, 2), seen):
         assert f"temperature of TOP {load[place]:g} °C" in found["now"]
-        assert f"normal force {force[place]:.5g} MPa cm²" in found["totals"].replace("−", "-")
+        assert f"normal force {force[place]:.5g} MPa cm²" in re.sub(" ± [^ ]+", "", found["totals"])
         assert f"largest {mises[place].max():.5g} at node" in found["range"] and found["drawn"]
         assert f"{force[place]:.5g}" in found["history"]
     for key in ("now", "totals", "range", "pixels", "tractions", "flux", "zones", "history"):
@@ -466,19 +466,19 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
         group["elements"], group["increments"] = [10, 40], [15, 30]
         group.attrs["reached"], group.attrs["later_round_begun"] = 0, 1
         file["run"].attrs["seconds_iterate"] = 12.5
-        bounds = group.create_group("bounds/CYLINDER")
-        bounds["normal_force"] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 0.25, 0.1]]
-        bounds["peak_pressure"] = [[1, 5000.0, 1320.0, 0.1], [1, 5.1, 0.1, 0.1]]
-        bounds["heat_rate"] = np.zeros((2, 4))
-        file["errors/time"] = [900.0]
+        judged = group.create_group("uncertainty/CYLINDER")
+        judged["normal_force"] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 0.25, 0.1]]
+        judged["peak_pressure"] = [[1, 5000.0, 1320.0, 0.1], [1, 5.1, 0.1, 0.1]]
+        judged["heat_rate"] = np.zeros((2, 4))
+        file["uncertainty/time"] = [900.0]
 
     text = synthetic(ask).read_text()
     assert "<dd>not reached after 2 rounds; round 3 was begun</dd>" in text
     rounds = re.search("<caption>Rounds of the requested accuracy.*?</table>", text)[0]
     assert re.findall(r"<td[^>]*>(.*?)</td>", rounds) == \
         ["100", "10", "15", "0.12", "900", "40", "30", "0.30"]
-    bounds = re.search("<caption>Error bounds of each round.*?</table>", text)[0]
-    rows = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in bounds.split("</tr>")[1:-1]]
+    judged = re.search("<caption>Uncertainties .95 %. of each round.*?</table>", text)[0]
+    rows = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in judged.split("</tr>")[1:-1]]
     assert [row[0] for row in rows] == ["heat rate", "normal force", "peak pressure"]
     assert rows[0][1:3] == ["–", "–"] and rows[0][-1].startswith("nothing to judge")
     assert rows[1][1:4] == ["no estimate", "0.25", "0.1"] and ">not met<" in rows[1][-1]
@@ -487,14 +487,14 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
     assert "Rounds of the" not in synthetic().read_text()
 
 
-def test_increments_that_no_bound_judges_say_so(synthetic, browser, tmp_path):
+def test_increments_without_an_uncertainty_say_so(synthetic, browser, tmp_path):
     """On the page and in pictures: a requested accuracy looks at the ends of steps."""
     def ask(file):
         group = file.create_group("accuracy")
         for key in ("cpu_seconds", "unknowns", "elements", "increments"):
             group[key] = [1]
-        group.create_group("bounds")
-        file["errors/time"] = [900.0]
+        group.create_group("uncertainty")
+        file["uncertainty/time"] = [900.0]
 
     browser.open(synthetic(ask))
     note = "return document.getElementById('unjudged').textContent"
@@ -549,13 +549,12 @@ def test_a_target_that_is_missed_by_little_shows_it():
 @pytest.mark.parametrize(("said", "shown"), [
     ("no estimate, target 5 %, step 1 with 6.5 MPa: peak grows with the mesh",
      ", step 1 with 6.5 MPa: peak grows with the mesh"),
-    ("bound 7 % of 5 MPa cm^2, target 5 %, step 2 (mostly of the mesh); the peak is at an end of the face",
-     ", step 2 (mostly of the mesh); the peak is at an end of the face"),
-    ("bound 0.2 MPa cm^2, target 0.1 MPa cm^2 (mostly of the increments)", " (mostly of the increments)"),
-    ("no estimate, target 5 %: single increment", ": single increment")])
+    ("uncertainty 7 % of 5 MPa cm^2, target 5 %, step 2; the peak is at an end of the face",
+     ", step 2; the peak is at an end of the face"),
+    ("no estimate, target 5 %: not unique", ": not unique")])
 def test_step_and_reason_stand_beside_a_target_that_is_missed(said, shown):
-    lines = ["requested accuracy not reached after 4 rounds", "A heat rate                    met: bound 2 %",
-             "AA peak pressure               not met: bound 9 %, target 5 % (another)",
+    lines = ["requested accuracy not reached after 4 rounds", "A heat rate                    met: uncertainty 2 %",
+             "AA peak pressure               not met: uncertainty 9 %, target 5 % (another)",
              f"A peak pressure                not met: {said}"]
     assert remark(lines, "A peak pressure") == shown
     assert remark(lines, "A heat rate") == remark([], "A peak pressure") == ""
@@ -571,17 +570,90 @@ def page_of_example(folder, name, *options, status=0):
     return (folder / f"{name}.html").read_text()
 
 
-def test_an_edge_at_the_end_of_the_face_has_no_bound(tmp_path):
+def test_an_edge_at_the_end_of_the_face_has_no_uncertainty(tmp_path):
     text = page_of_example(tmp_path, "press_fit")
     row = re.search(r'<th scope="row">edge of contact, s</th>(.*?)</tr>', text)[1]
     assert re.findall(r"<td[^>]*>(.*?)</td>", row) == ["10", "none: end of the face", "mm", "–", "–", "–"]
     assert re.search(r'<th scope="row">peak pressure</th>.*?<td[^>]*>± ', text)
 
 
+@pytest.fixture(scope="module", params=["LAST", "FULL"])
+def uncertain(request, tmp_path_factory):
+    """Return a result of four increments, for whose last one or for all of which there are
+    uncertainties, as the second value says."""
+    deck = write_deck(tmp_path_factory.mktemp("uncertain") / "cylinder.inp",
+                      [f"*OPTIONS, ERRORS={request.param}"])
+    cards, _ = deck.read_text().replace("\n20., 900.", "\n225., 900.").split("\n*VERIFY", 1)
+    deck.write_text(cards + "\n")
+    status, said = run(deck)
+    assert status == 0, said
+    return deck.with_suffix(".vtkhdf"), request.param == "FULL"
+
+
+def test_every_increment_shows_its_own_uncertainties(uncertain, browser):
+    path, is_full = uncertain
+    with h5py.File(path) as file:
+        rows = file["uncertainty/FACE/normal_force"][()]
+        times = file["uncertainty/time"][()].tolist()
+        heat = file["uncertainty/increment/heat_in"][()] if is_full else None
+        every = file["history/time"][()].tolist()
+    assert times == (every if is_full else every[-1:])
+    assert main([str(path), "--out", str(path.parent)]) == 0
+    browser.open(path.with_suffix(".html"))
+    for key, time in (("end", every[-1]), ("left", every[-2]), ("home", every[0])):
+        browser.press("#load", key)
+        totals, *charts = browser.run("""const of = id => document.getElementById(id);
+            const charts = [...document.querySelectorAll('#histories figure')];
+            return [of('totals').textContent, ...charts.map(box => [box.textContent,
+                (box.querySelector('.uncertainty') || {getAttribute: () => ''}).getAttribute('d')])]""")
+        found = re.search(r"normal force ([\d.]+)(?: ± ([\d.]+))? MPa", totals)
+        drawn = next(each for each in charts if "Normal force:" in each[0])
+        assert drawn[1].count("M") == len(times)
+        if time in times:
+            expected = rows[times.index(time), :2]
+            assert float(found[1]) == float(f"{expected[0]:.5g}")
+            assert float(found[2]) == float(f"{expected[1]:.2g}")
+            assert f" ± {found[2]} MPa" in drawn[0]
+        else:
+            assert found[2] is None and "±" not in drawn[0]
+        if is_full:
+            value, off = heat[times.index(time), :2]
+            words, bars = next(each for each in charts if "Heat in:" in each[0])
+            told = re.search(r"Heat in: ([\d.]+) ± ([\d.]+) W", words)
+            assert float(told[1]) == float(f"{value:.5g}") and float(told[2]) == float(f"{off:.2g}")
+            assert bars.count("M") == len(times)
+
+
+def test_results_of_earlier_versions_have_their_uncertainties(uncertain, tmp_path):
+    """These name the group and its columns otherwise."""
+    path, is_full = uncertain
+    seen = {}
+    for columns in ("value uncertainty change scatter iteration",
+                    "value bound mesh increments iteration"):
+        copy = shutil.copy(path, tmp_path)
+        with h5py.File(copy, "r+") as file:
+            rows = file["errors/FACE"]
+            del file["uncertainty" if "bound" in columns else "errors"]
+            for key in set(rows) - {"no_estimate"}:
+                rows[key].attrs["components"] = columns
+            rows = rows["normal_force"][-1]
+        assert main([str(copy), "--out", str(tmp_path)]) == 0
+        page = (tmp_path / "cylinder.html").read_text()
+        seen[columns] = re.search("<caption>Interface FACE at the last (.*?)</table>", page)[1]
+        for part in columns.split()[2:]:
+            assert f">by {part}</th>" in seen[columns]
+        row = seen[columns].split("normal force")[1].split("</tr>")[0].replace("−", "-")
+        cells = re.findall(r"<td[^>]*>(.*?)</td>", row)[3:]
+        assert list(map(float, cells)) == [float(f"{part:.2g}") for part in rows[2:]]
+    former, present = (table.split("<tbody>")[1] for table in seen.values())
+    assert former == present
+    assert ("Heat of the model at the last increment" in page) == is_full
+
+
 def test_the_page_takes_step_and_reason_from_the_listing(tmp_path):
     text = page_of_example(tmp_path, "brake_pad", "--accuracy", "5%", status=4)
     assert '<span class="fail">not met</span>, step 1 with ' in text
-    assert "MPa: peak at a corner</td>" in text
+    assert "MPa: at a corner</td>" in text
 
 
 def test_the_page_says_what_there_is_where_nothing_is_judged(tmp_path):

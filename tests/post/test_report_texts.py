@@ -46,7 +46,7 @@ VERIFICATION
 REQUESTED ACCURACY
 ------------------
    - requested accuracy not reached after 1 round: {accuracy}
-   - {contact} {quantity}    not met: bound 2 %, target 1 % ({remark})
+   - {contact} {quantity}    not met: uncertainty 2 %, target 1 % ({remark})
 
 WARNINGS
 --------
@@ -89,9 +89,9 @@ def hostile(tmp_path_factory):
         group.attrs["reached"], group.attrs["later_round_begun"] = 0, 0
         for key in ("cpu_seconds", "unknowns", "elements", "increments"):
             group[key] = [1]
-        file["errors/time"] = [15.0]
-        bounds = group.create_group("bounds").create_group(name("contact"))
-        bounds[name("quantity")] = [[1.0, 5.0, 2.0, 0.1]]
+        file["uncertainty/time"] = [15.0]
+        judged = group.create_group("uncertainty").create_group(name("contact"))
+        judged[name("quantity")] = [[1.0, 5.0, 2.0, 0.1]]
     words = {key: payload(key) for key in IN_LISTING}
     words |= {key: name(key) for key in ("contact", "quantity")}
     path.with_suffix(".lst").write_text(LISTING.format(**words))

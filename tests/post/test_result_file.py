@@ -295,9 +295,11 @@ def test_every_dataset_says_what_it_is_and_the_document_says_the_same(results):
                 group, _, last = path.rpartition("/")
                 if group == "":
                     continue
-                if group.startswith("errors/"):
-                    assert f"`{last}`" in document and "value, and the bound of its error" in document
-                    assert said.startswith(("value and the bound of its error", "reason for")), path
+                if group.startswith("errors/"):  # the former name, which comes first
+                    assert dataset == file[path.replace("errors", "uncertainty", 1)]
+                    words = "value and its numerical uncertainty (95 %), with its parts"
+                    assert f"`{last}`" in document and words in document
+                    assert said.startswith((words, "reason for")), path
                     continue
                 if path.startswith("VTKHDF/") and not group.endswith(("PointData", "CellData")):
                     place = path.removeprefix("VTKHDF/")

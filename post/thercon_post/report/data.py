@@ -111,7 +111,7 @@ def contact_data(result, contact):
             key: packed(contact.edge_on_axis(contact[f"edge_{key}"], coordinate))
             for key in ("contact", "stick")
         },
-        "totals": totals(contact),
+        "totals": totals(result, contact),
     }
 
 
@@ -141,10 +141,17 @@ def hottest(contact):
     return largest(contact.data.get("slave_temperature", 0.0))
 
 
-def totals(contact):
+def totals(result, contact):
     """Return the quantities of a contact over the increments; its edges are drawn elsewhere."""
-    return [{"key": key, "label": words_of(key), "unit": contact.unit(key), "values": listed(values)}
+    known = result.uncertainties(contact.name)
+    return [{"key": key, "label": words_of(key), "unit": contact.unit(key),
+             "values": listed(values), "uncertainty": uncertainty(known, key)}
             for key, values in contact.totals().items() if not key.startswith("edge_")]
+
+
+def uncertainty(known, key):
+    """Return the uncertainties of a quantity over the increments, of which there may be none."""
+    return listed(known[key][2][:, 1]) if key in known else []
 
 
 def listed(values):
@@ -156,16 +163,18 @@ def histories(result):
     """Return what there is of every increment: totals of the contacts, then of the whole run, without
     what is rounding beside others of its kind. Balances are checked by the run."""
     found, contacts, peaks = [], contacts_of(result), {}
+    known = result.uncertainties("increment")
     for contact in contacts:
         of = f" of {contact.name}" if len(contacts) > 1 else ""
         crossing = contact.data.get("conductance", 0.0) * contact["weight"]
         peaks["heat"] = max(peaks.get("heat", 0.0), hottest(contact) * largest(crossing))
-        found += [each | {"label": each["label"].capitalize() + of} for each in totals(contact)]
+        found += [each | {"label": each["label"].capitalize() + of}
+                  for each in totals(result, contact)]
     for key, values in result.history.items():
         if key not in ("time", "load") and values.ndim == 1 and not key.endswith("_imbalance"):
             unit = plain(result.units.names.get("power", "")) if key in HEAT else ""
             found.append({"key": key, "label": words_of(key).capitalize(), "unit": unit,
-                          "values": listed(values)})
+                          "values": listed(values), "uncertainty": uncertainty(known, key)})
     kinds = [next((kind for kind in ("heat", "gain") if kind in each["key"]),
                   each["key"].split("_")[-1]) for each in found]
     sizes = [largest([v or 0.0 for v in each["values"]]) for each in found]

@@ -42,6 +42,7 @@ function show(value, digits = 5) {
       String(Number(value.toPrecision(digits)));
    return words.replaceAll('-', '−');
 }
+const within = ({uncertainty}, k) => Number.isFinite(uncertainty[k]) ? ` ± ${show(uncertainty[k], 2)}` : '';
 const withUnit = (words, unit) => unit ? `${words} (${unit})` : words;
 const unit = name => data.units[name] || '';
 
@@ -63,7 +64,7 @@ function rangeOf(values, zero) {
    return [zero && low === 0 && high > 0 ? 0 : low - room, zero && high === 0 && low < 0 ? 0 : high + room];
 }
 const peak = values => values.reduce((most, v) => Math.abs(v) > most ? Math.abs(v) : most, 0);
-// lines: {x, y, colour, dash, mark, name}; clouds: {points, shape, colour, name}; uprights: [x]
+// lines: {x, y, off, colour, dash, mark, name}, off the uncertainties of y; clouds: {points, shape, colour, name}; uprights: [x]
 function chart(box, options) {
    const W = Math.min(options.width || 480, box.clientWidth || 480), H = options.height || 300;
    const [x0, x1] = options.xRange, [y0, y1] = options.yRange;
@@ -84,16 +85,19 @@ function chart(box, options) {
    for (const x of options.uprights || [])
       out.push(html`<path d="M${X(x)} ${top}V${H - bottom}" stroke="var(--ink)" stroke-dasharray="2 3" class="upright"/>`);
    for (const line of options.lines) {
-      let path = '', pen = 'M', marks = '';
+      let path = '', pen = 'M', marks = '', bars = '';
       for (let k = 0; k < line.x.length; k++) {
          const a = line.x[k], b = line.y[k];
          if (!Number.isFinite(a) || !Number.isFinite(b)) { pen = 'M'; continue; }
          path += `${pen}${X(a).toFixed(1)} ${Y(b).toFixed(1)}`;
          pen = 'L';
+         if (line.off && Number.isFinite(line.off[k]))
+            bars += `M${X(a).toFixed(1)} ${Y(b - line.off[k]).toFixed(1)}V${Y(b + line.off[k]).toFixed(1)}`;
          if (line.mark && !(line.plain && line.plain[k]))
             marks += `M${(X(a) - 2.6).toFixed(1)} ${Y(b).toFixed(1)}a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0`;
       }
       out.push(html`<path d="${path}" fill="none" stroke="${line.colour}" stroke-width="${line.width || 1.6}" stroke-dasharray="${line.dash || ''}"/>`);
+      if (bars) out.push(html`<path d="${bars}" stroke="${INK}" class="uncertainty"/>`);
       if (marks) out.push(html`<path d="${marks}" fill="${line.hollow ? PAPER : line.colour}" stroke="${line.colour}"/>`);
    }
    out.push(html`</g><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}" fill="none" stroke="var(--ink)"/>`);
@@ -235,8 +239,8 @@ function drawProfiles() {
 }
 function drawTotals() {
    const c = contact(), words = [];
-   const add = (name, value, of) => { if (Number.isFinite(value)) words.push(html`<span>${name} <b>${show(value)}</b> ${of}</span>`); };
-   for (const each of c.totals) add(each.label, each.values[row], each.unit);
+   const add = (name, value, of, off = '') => { if (Number.isFinite(value)) words.push(html`<span>${name} <b>${show(value)}</b>${off} ${of}</span>`); };
+   for (const each of c.totals) add(each.label, each.values[row], each.unit, within(each, row));
    add(`edge of contact ${c.axis} =`, c.main.contact[row], unit('length'));
    add(`edge of stick ${c.axis} =`, c.main.stick[row], unit('length'));
    put($('totals'), html`${words}`);
@@ -276,8 +280,8 @@ function drawHistories() {
          width: 360, height: 200, title: `${each.label} over the load`,
          xLabel: data.branch ? 'Load factor' : data.load.axis, xRange: [low - room, high + room],
          yLabel: each.unit, yRange: rangeOf(y, true), uprights: [along[row]],
-         lines: data.branch ? branchLines(y) : [{x: abscissa, y, colour: BLUE, mark: count <= 60}],
-         caption: html`${each.label}: <b>${show(y[row])}</b> ${each.unit}`,
+         lines: data.branch ? branchLines(y) : [{x: abscissa, y, off: each.uncertainty, colour: BLUE, mark: count <= 60}],
+         caption: html`${each.label}: <b>${show(y[row])}</b>${within(each, row)} ${each.unit}`,
       });
    });
 }

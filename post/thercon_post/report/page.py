@@ -53,7 +53,7 @@ def page(result):
     result.rows()  # without an increment there is nothing to show
     listing = read_listing(result.path.with_suffix(".lst"), result.deck)
     script, data = own("field.js", "page.js"), compressed(page_data(result))
-    summary = [tables.facts(result, listing), tables.bounds(result),
+    summary = [tables.facts(result, listing), tables.uncertainties(result),
                tables.stability(result, listing), tables.rounds(result, listing)]
     sections = [
         ("summary", "Summary", joined(summary)),

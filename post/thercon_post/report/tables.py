@@ -75,46 +75,53 @@ def last_load(result):
 LARGEST = {"von_mises": "largest von Mises stress", "temperature": "largest temperature"}
 
 
-def bounds(result):
-    """Return the quantities of every interface and the largest values of every body at the last
-    increment, with the bounds of their errors."""
-    head = ["quantity", "value", "error bound", "unit", "by the mesh", "by increments",
-            "by iteration"]
-    found = []
+def uncertainties(result):
+    """Return what has numerical uncertainties at the last increment: the quantities of every
+    interface, the largest values of every body and the heat of the model."""
+    said, found = "at the last increment", []
     for contact in contacts_of(result):
-        rows = []
+        rows, known = [], result.uncertainties(contact.name)
         for key, values in contact.totals().items():
-            if np.isnan(values[-1]) or (key == "shear_force" and not values[-1]):
+            value = float(values[-1])
+            if np.isnan(value) or (key == "shear_force" and not value):
                 continue
-            rows.append(bound_row(result, contact, key, float(values[-1])))
-            rows[-1][0] = words_of(key) + (", s" if key.startswith("edge_") else "")
-            rows[-1][3] = contact.unit(key)
-        caption = f"Interface {contact.name} at the last increment"
-        found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
-    for name, values in result.maxima.items():
-        rows = [[LARGEST[key], number(errors[0]), *bound_cells(errors, why, unit)]
-                for key, (unit, errors, why) in values.items() if np.isfinite(errors[0])]
+            cells = uncertainty_cells(*known[key][2:], contact.unit(key)) if key in known else None
+            ends = [contact["s"][piece][-1] for piece in contact.pieces]
+            if key.startswith("edge_") and value in ends:
+                cells = ["none: end of the face", contact.unit(key), *NO_PARTS]
+            rows.append([words_of(key) + (", s" if key.startswith("edge_") else ""), number(value),
+                         *(cells or ["no estimate", contact.unit(key), *NO_PARTS])])
+        found.append(uncertainty_table(f"Interface {contact.name} {said}", known, rows))
+    largest = f"{said}, stress away from singular corners"
+    others = {f"{name.capitalize()} {largest}": known for name, known in result.maxima.items()}
+    others[f"Heat of the model {said}"] = result.uncertainties("increment")
+    for caption, known in others.items():
+        rows = [[LARGEST.get(key, words_of(key)), number(each[-1, 0]),
+                 *uncertainty_cells(each, why, unit)]
+                for key, (unit, _, each, why) in known.items() if np.nan_to_num(each[-1, 0])]
         if rows:
-            caption = f"{name.capitalize()} at the last increment, stress away from singular corners"
-            found.append(table(caption, head, rows, (1, 2, 4, 5, 6)))
+            found.append(uncertainty_table(caption, known, rows))
     return joined(found)
 
 
-def bound_row(result, contact, key, value):
-    """Return value, bound and its parts; words where nothing is known of them, or to be known."""
-    if key.startswith("edge_") and value in [contact["s"][piece][-1] for piece in contact.pieces]:
-        return ["", number(value), "none: end of the face", "", "–", "–", "–"]
-    _, errors, why = result.errors_of(contact.name).get(key, ("", np.full(5, np.nan), ""))
-    return ["", number(value), *bound_cells(errors, why, "")]
+NO_PARTS = "–", "–", "–"
 
 
-def bound_cells(errors, why, unit):
-    """Return bound or why there is none, unit and the parts of the bound."""
-    value, bound, *parts = errors
+def uncertainty_table(caption, known, rows):
+    """Return a table of values and their uncertainties, with the parts that the file names."""
+    _, columns, *_ = next(iter(known.values()), ("", ["", "", "change", "scatter", "iteration"]))
+    parts = [f"by {part}" for part in columns[2:]]
+    head = ["quantity", "value", "uncertainty (95 %)", "unit", *parts]
+    return table(caption, head, rows, (1, 2, 4, 5, 6))
+
+
+def uncertainty_cells(rows, why, unit):
+    """Return uncertainty or why there is none, unit and the parts of it."""
+    value, uncertainty, *parts = rows[-1]
     words = f"no estimate: {why}" if why else "no estimate"
-    if np.isfinite(bound):
-        share = f" ({number(100.0 * bound / abs(value), 2)} %)" if value else ""
-        words = f"± {number(bound, 2)}{share}"
+    if np.isfinite(uncertainty):
+        share = f" ({number(100.0 * uncertainty / abs(value), 2)} %)" if value else ""
+        words = f"± {number(uncertainty, 2)}{share}"
     return [words, unit, *(number(part, 2) for part in parts)]
 
 
@@ -151,13 +158,13 @@ def accuracy_words(group):
 
 
 def rounds(result, listing):
-    """Return the rounds of a requested accuracy: what each cost, and its bounds."""
+    """Return the rounds of a requested accuracy: what each cost, and its uncertainties."""
     group = result.accuracy
     if group is None:
         return ""
     named = [(contact.name, words_of(key), contact.unit(key), rows)
              for contact in contacts_of(result)
-             for key, rows in group["bounds"].get(contact.name, {}).items()]
+             for key, rows in group["uncertainty"].get(contact.name, {}).items()]
     costs = [group[key] for key in ("unknowns", "elements", "increments")]
     found = [[k + 1, *(each[k] for each in costs), f"{seconds:.2f}"]
              for k, seconds in enumerate(group["cpu_seconds"])]
@@ -168,8 +175,8 @@ def rounds(result, listing):
     said = listing.accuracy if listing else []
     rows = [[name, words, *target_cells(each, unit, remark(said, f"{name} {words}"))]
             for name, words, unit, each in named]
-    return joined([told, table("Error bounds of each round against their targets", head, rows,
-                               range(2, len(found) + 3))])
+    return joined([told, table("Uncertainties (95 %) of each round against their targets", head,
+                               rows, range(2, len(found) + 3))])
 
 
 def remark(said, target):
@@ -181,17 +188,17 @@ def remark(said, target):
 
 
 def target_cells(rows, unit, remark):
-    """Return the bounds of all rounds, target, unit and verdict of the last one."""
-    step, _, bound, allowed = rows[-1]
-    digits = 2  # or as many as show that the bound is above the target
-    while bound > allowed and digits < 6 and number(bound, digits) == number(allowed, digits):
+    """Return the uncertainties of all rounds, target, unit and verdict of the last one."""
+    step, _, found, allowed = rows[-1]
+    digits = 2  # or as many as show that it is above the target
+    while found > allowed and digits < 6 and number(found, digits) == number(allowed, digits):
         digits += 1
     cells = ["–" if each[0] == 0 else "no estimate" if np.isnan(each[2]) else number(each[2], digits)
              for each in rows]
     if step == 0:
         return [*cells, "–", unit, f"nothing to judge{remark}"]
-    verdict = "met" if bound <= allowed else "not met"
-    look = "pass" if bound <= allowed else "fail"
+    verdict = "met" if found <= allowed else "not met"
+    look = "pass" if found <= allowed else "fail"
     told = html('<span class="{}">{}</span>{}', look, verdict, remark)
     return [*cells, number(allowed, digits), unit, told]
 
