@@ -96,27 +96,27 @@ contains
       end do
    end subroutine divide
 
-   !> The middles and extents of the parts.
+   !> The middles and extents of the parts, of which one may have no node that is not a hinge.
    pure subroutine place(mesh, bodies)
       type(mesh_type), intent(in) :: mesh
       type(rigid_parts_type), intent(inout) :: bodies
-      integer :: nodes(size(bodies%body)), node
+      integer, allocatable :: nodes(:), parts(:)
+      integer :: counts(size(bodies%body)), i
 
-      allocate (bodies%middle(2, size(nodes)), bodies%extent(size(nodes)), source=0.0_dp)
-      nodes = 0
-      do node = 1, size(bodies%part)
-         if (bodies%part(node) == 0) cycle
-         associate (p => bodies%part(node))
-            nodes(p) = nodes(p) + 1
-            bodies%middle(:, p) = bodies%middle(:, p) + mesh%coordinates(:, node)
-         end associate
+      nodes = [pack([(i, i=1, size(bodies%part))], bodies%part > 0), bodies%hinge(1, :)]
+      parts = [pack(bodies%part, bodies%part > 0), bodies%hinge(2, :)]
+      allocate (bodies%middle(2, size(bodies%body)), bodies%extent(size(bodies%body)), &
+         source=0.0_dp)
+      counts = 0
+      do i = 1, size(nodes)
+         counts(parts(i)) = counts(parts(i)) + 1
+         bodies%middle(:, parts(i)) = bodies%middle(:, parts(i)) + mesh%coordinates(:, nodes(i))
       end do
-      bodies%middle = bodies%middle/spread(real(nodes, dp), 1, 2)
-      do node = 1, size(bodies%part)
-         if (bodies%part(node) == 0) cycle
-         associate (p => bodies%part(node))
-            bodies%extent(p) = max(bodies%extent(p), &
-               norm2(mesh%coordinates(:, node) - bodies%middle(:, p)))
+      bodies%middle = bodies%middle/spread(real(counts, dp), 1, 2)
+      do i = 1, size(nodes)
+         associate (extent => bodies%extent(parts(i)))
+            extent = max(extent, norm2(mesh%coordinates(:, nodes(i)) - &
+               bodies%middle(:, parts(i))))
          end associate
       end do
    end subroutine place

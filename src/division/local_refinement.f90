@@ -8,7 +8,7 @@
 !> Distance between lines of straight pieces; the largest values that have a part of a sum.
 module local_refinement
    use contact_definitions, only: contact_definition_type, pairing_surfaces
-   use element_kinds, only: element_corner_count
+   use element_kinds, only: element_corner_count, element_node_count
    use element_sides, only: element_sides_type, find_sides, side_ends
    use errors, only: error_type
    use kinds, only: dp
@@ -19,7 +19,8 @@ module local_refinement
    use surface_chains, only: align_chain, chain_faces, facing_chain, surface_chain_type
    implicit none
    private
-   public :: elements_about, elements_at_points, elements_at_surfaces, elements_in_region, choose_neighbours, &
+   public :: choose_neighbours, elements_about, elements_at_points, elements_at_surfaces, &
+      elements_in_region, &
       hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, place_hanging, &
       distance_of_lines, largest_part
 
