@@ -3,12 +3,13 @@
 !> corners, and in the children of these.
 module body_maxima
    use divided_mesh, only: divided_mesh_type
-   use element_kinds, only: element_node_count
+   use element_kinds, only: element_corner_count, element_node_count
    use field_quantities, only: maxima, point_values
    use field_recovery, only: point_map_type
    use kinds, only: dp
    use local_refinement, only: elements_about
    use mesh, only: mesh_type
+   use mesh_division, only: child_element
    use model, only: model_type
    use records, only: field_record_type, increment_record_type
    use refinement, only: parents_of
@@ -28,7 +29,7 @@ module body_maxima
       logical, allocatable :: is_singular(:)     !! (nodes)
    contains
       procedure :: find
-      procedure :: of_divided
+      procedure :: changes
       procedure :: larger_corners
    end type body_maxima_type
 
@@ -53,18 +54,90 @@ contains
       call find_places(self, model%mesh, simulation%recovery%points, record%fields)
    end subroutine find
 
-   !> The maxima on a divided mesh, in the children of some of the elements that count.
-   pure subroutine of_divided(self, divided, near, fine)
+   !> The changes of the maxima on a divided mesh: the rms of those of the fields at the nodes of the
+   !> elements round them, for at one node they may vanish by chance, and what the fields rise above
+   !> them there, between nodes as well.
+   function changes(self, divided, mesh, points, fields) result(change)
       class(body_maxima_type), intent(in) :: self
       type(divided_mesh_type), intent(in) :: divided         !! solved
-      logical, intent(in) :: near(:)                         !! (elements before)
-      type(body_maxima_type), intent(out) :: fine
-      logical :: is_looked_at(size(self%counts, 1), size(near))
+      type(mesh_type), intent(in) :: mesh                    !! before
+      type(point_map_type), intent(in) :: points             !! of stress, before
+      type(field_record_type), intent(in) :: fields          !! before
+      real(dp) :: change(size(self%value, 1), size(self%value, 2))   !! (maxima, bodies)
+      logical :: is_near(size(mesh%element_kind))
+      type(point_map_type) :: fine
+      real(dp), allocatable :: before(:), after(:)
+      integer :: b, e, n, q
 
-      is_looked_at = self%counts .and. spread(near, 1, size(self%counts, 1))
-      fine%counts = is_looked_at(:, parents_of(divided%division))
-      call find_places(fine, divided%model%mesh, divided%points(), divided%record%fields)
-   end subroutine of_divided
+      fine = divided%points()
+      change = 0.0_dp
+      do q = 1, size(maxima)
+         before = point_values(trim(maxima(q)%name), fields, points%node)
+         after = point_values(trim(maxima(q)%name), divided%record%fields, fine%node)
+         do b = 1, size(change, 2)
+            if (self%node(q, b) == 0) cycle
+            is_near = self%counts(q, :) .and. mesh%element_body == b .and. &
+               elements_about(mesh, self%node(q:q, b))
+            do e = 1, size(is_near)
+               if (.not. is_near(e)) cycle
+               n = element_node_count(mesh%element_kind(e))
+               change(q, b) = change(q, b) + sum((after(points_after(divided, fine, mesh, &
+                  e)) - before(points%element_points(:n, e)))**2)/n
+            end do
+            change(q, b) = sqrt(change(q, b)/max(1, count(is_near)))
+            change(q, b) = max(change(q, b), largest_of(divided%model%mesh, fine, after, &
+               is_near(parents_of(divided%division))) - self%value(q, b))
+         end do
+      end do
+   end function changes
+
+   !> The points of a divided mesh that those of an element are there: at the same nodes in its
+   !> parts.
+   pure function points_after(divided, fine, mesh, e) result(after)
+      type(divided_mesh_type), intent(in) :: divided
+      type(point_map_type), intent(in) :: fine            ! of the divided mesh
+      type(mesh_type), intent(in) :: mesh                 ! before
+      integer, intent(in) :: e
+      integer :: after(element_node_count(mesh%element_kind(e)))
+      integer :: child, k, part, place
+
+      do child = 1, merge(4, 1, divided%is_divided(e))
+         part = e
+         if (divided%is_divided(e)) part = child_element(divided%division, e, child)
+         do k = 1, size(after)
+            place = findloc(divided%model%mesh%element_nodes(:, part), mesh%element_nodes(k, e), &
+               dim=1)
+            if (place > 0) after(k) = fine%element_points(place, part)
+         end do
+      end do
+   end function points_after
+
+   !> The largest value at the nodes of some elements and, on their sides of three nodes, between
+   !> these: by the parabola through them.
+   pure real(dp) function largest_of(mesh, points, values, counts) result(largest)
+      type(mesh_type), intent(in) :: mesh
+      type(point_map_type), intent(in) :: points
+      real(dp), intent(in) :: values(:)                   ! (points)
+      logical, intent(in) :: counts(:)                    ! (elements)
+      real(dp) :: bend, slope
+      integer :: corners, e, k, n
+
+      largest = -huge(largest)
+      do e = 1, size(counts)
+         if (.not. counts(e)) cycle
+         n = element_node_count(mesh%element_kind(e))
+         corners = element_corner_count(mesh%element_kind(e))
+         associate (v => values(points%element_points(:n, e)))
+            largest = max(largest, maxval(v))
+            do k = 1, merge(corners, 0, n > corners)
+               slope = 0.5_dp*(v(modulo(k, corners) + 1) - v(k))
+               bend = 0.5_dp*(v(k) + v(modulo(k, corners) + 1)) - v(corners + k)
+               if (-2*bend > abs(slope)) largest = max(largest, v(corners + k) - &
+                  slope**2/(4*bend))
+            end do
+         end associate
+      end do
+   end function largest_of
 
    !> Singular corners in one of whose elements stress is at least the body's largest elsewhere.
    pure function larger_corners(self, mesh, points, fields) result(is_larger)

@@ -93,7 +93,6 @@ contains
       type(increment_record_type), intent(inout) :: record
       real(dp) :: values(size(estimated), size(record%contacts))
       type(body_maxima_type) :: found
-      logical, allocatable :: near(:)
       real(dp) :: iteration
       integer :: i
 
@@ -111,26 +110,25 @@ contains
       call self%histories%follow(record%time, values)
       if (.not. (self%is_full .or. record%last_of_step)) return
       call found%find(model, simulation, record)
-      call solve_finer(self, model, simulation, record, found, near)
+      call solve_finer(self, model, simulation, record, found)
       iteration = left_by_iteration(record)
       call judge_interfaces(self, model, simulation, values, iteration, record)
-      call judge_bodies(self, model, simulation, found, near, iteration, record)
+      call judge_bodies(self, model, simulation, found, iteration, record)
       call judge_checks(self, model, simulation, found, iteration, record)
       if (self%is_full) call judge_history(self, iteration, record)
    end subroutine end_increment
 
    !> Solves the finer mesh at the end of the increment.
-   subroutine solve_finer(self, model, simulation, record, found, near)
+   subroutine solve_finer(self, model, simulation, record, found)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(increment_record_type), intent(inout) :: record
       type(body_maxima_type), intent(in) :: found
-      logical, allocatable, intent(out) :: near(:)     ! (elements) whose stress is known there
+      logical :: near(size(model%mesh%element_kind))
       type(error_type), allocatable :: error
       logical :: was_lost
 
-      near = spread(.true., 1, size(model%mesh%element_kind))
       was_lost = allocated(self%lost)
       if (self%is_full) then
          if (.not. was_lost) call self%divided%follow(simulation, record, error)
@@ -261,21 +259,21 @@ contains
    end function has_friction
 
    !> Uncertainties of the maxima of bodies.
-   subroutine judge_bodies(self, model, simulation, found, near, iteration, record)
+   subroutine judge_bodies(self, model, simulation, found, iteration, record)
       type(error_estimator_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(body_maxima_type), intent(in) :: found
-      logical, intent(in) :: near(:)                         ! (elements)
       real(dp), intent(in) :: iteration                      ! relative
       type(increment_record_type), intent(inout) :: record
-      type(body_maxima_type) :: fine
       logical :: is_larger(size(found%is_singular)), holds(reason_count)
-      real(dp) :: value(size(maxima)), after
+      real(dp) :: change(size(maxima), model%mesh%body_count), value(size(maxima))
       integer :: b, k, q
 
       allocate (record%body_uncertainties(model%mesh%body_count))
-      if (.not. allocated(self%lost)) call found%of_divided(self%divided, near, fine)
+      change = ieee_value(1.0_dp, ieee_quiet_nan)
+      if (.not. allocated(self%lost)) change = found%changes(self%divided, model%mesh, &
+         simulation%recovery%points, record%fields)
       is_larger = found%larger_corners(model%mesh, simulation%recovery%points, record%fields)
       holds = .false.
       holds(slides_far) = any(record%contacts%slide%point > 0)
@@ -289,10 +287,8 @@ contains
                model%mesh%node_body == b)
             do q = 1, size(maxima)
                if (own%node(q) == 0) cycle
-               after = ieee_value(1.0_dp, ieee_quiet_nan)
-               if (allocated(fine%node)) after = fine%value(q, b)
-               call settle(own, q, reason_of(self, holds, after), uncertainty_parts(maxima(q), &
-                  after - value(q), 0.0_dp, 0.0_dp, iteration*value(q)))
+               call settle(own, q, reason_of(self, holds, change(q, b)), uncertainty_parts( &
+                  maxima(q), change(q, b), 0.0_dp, 0.0_dp, iteration*value(q)))
             end do
          end associate
       end do

@@ -23,6 +23,7 @@ module memory_needs
    real(dp), parameter :: base = 36.0e6_dp             !! of the program and its libraries [byte]
    real(dp), parameter :: per_entry = 33.0_dp          !! of an entry of element matrices [byte]
    real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one, for the finer mesh [byte]
+   real(dp), parameter :: finer = 2.5_dp   !! of entries and factors, where most elements are divided
    real(dp), parameter :: mumps_factor = 1.25_dp       !! MUMPS's memory in that of its factors
    real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]
    real(dp), parameter :: field_values = 25.0_dp       !! of a node and written increment that wait
@@ -79,7 +80,7 @@ contains
          real_bytes*friction_responses*nodes*points
       ! The finer mesh has room for both fields.
       has_finer_mesh = model%uncertainty == uncertainty_last
-      if (has_finer_mesh) bytes = bytes + per_fine_entry*entries_of(kinds, .true., .true.)* &
+      if (has_finer_mesh) bytes = bytes + finer*per_fine_entry*entries_of(kinds, .true., .true.)* &
          4.0_dp**levels
       solver = model%solver
       if (solver == solver_by_size) solver = default_solver(merge(2, 1, mechanics)*nodes)
@@ -90,7 +91,7 @@ contains
             levels)
       end if
       bytes = bytes + real_bytes*factors
-      if (has_finer_mesh) bytes = bytes + real_bytes*factors
+      if (has_finer_mesh) bytes = bytes + finer*real_bytes*factors
    end function memory_of_run
 
    !> Entries of the matrices of all elements.
