@@ -10,7 +10,7 @@
 !> Powers (`order`) and parts of the spacing (`resolution`) are in the tables of quantities:
 !>
 !>   0.8 and 0     numbers: fields with edges have 1; F = 4 in place of 3 holds shear forces, too
-!>   1.0 and 0     maxima of bodies, whose change is that of the field round them
+!>   0.9 and 0     maxima of bodies, whose change is that of the field round them
 !>   1.6 and 0.05  edges of contact, whose error on half the spacing is far smaller
 !>   1.6 and 0.5   edges of stick, which are known between two nodes only
 !>

@@ -50,10 +50,11 @@ module field_quantities
 
    !> The maxima of a body; components of body_uncertainty_type are in this order.
    type(quantity_type), parameter :: maxima(*) = [ &
-      quantity_type('von_mises', of_bodies, 'stress', needs_mechanics, label='von Mises stress', order=1.0_dp, &
+      quantity_type('von_mises', of_bodies, 'stress', needs_mechanics, label='von Mises stress', &
+      order=0.9_dp, &
       description='largest equivalent stress of von Mises away from singular corners'), &
-      quantity_type('temperature', of_bodies, 'temperature', needs_heat, label='temperature', order=1.0_dp, &
-      description='largest temperature')]
+      quantity_type('temperature', of_bodies, 'temperature', needs_heat, label='temperature', &
+      order=0.9_dp, description='largest temperature')]
 
 contains
 
