@@ -3,10 +3,12 @@
 The true value at the end of a step is that of a mesh refined twice everywhere and twice more at the faces, with
 increments a quarter as long; what a sixteenth changes is added. Where the path does not matter the mesh alone is
 refined, and values that change by a steady ratio are extrapolated. The last changes of mesh and increments say how
-accurate it is: an error is judged where it is at least KNOWN times that. The file judged.csv keeps these values:
-`python tests/accuracy/judged_decks.py SEED...` (or FIRST-LAST) adds those of the decks of seeds that it lacks, with
-`--file FILE` in another file; with `--judge ERRORS` it then solves these decks with `*OPTIONS, ERRORS=ERRORS` and
-prints the shares of uncertainties that hold. `--family NAME` does one family alone.
+accurate it is: an error is judged where it is at least KNOWN times that. A deck holds where all ends of its steps
+do; the shares of a family count each quantity of a deck.
+
+`python tests/accuracy/judged_decks.py SEED...` (or FIRST-LAST) adds the true values of the decks of seeds to
+judged.csv, or to `--file FILE`, unless it has them. With `--judge ERRORS` it then solves these decks with
+`*OPTIONS, ERRORS=ERRORS` and prints the shares of uncertainties that hold. `--family NAME` does one family alone.
 """
 
 import argparse
@@ -20,7 +22,7 @@ from pathlib import Path
 import report  # isort: skip, it makes the modules below known
 import h5py
 import numpy as np
-from held_bounds import ANALYSIS, LEAST, LEAST_EDGE, QUANTITIES, rest, run
+from held_bounds import ANALYSIS, LEAST_EDGE, QUANTITIES, rest, run
 from judged_families import FAMILIES
 
 FILE = Path(__file__).resolve().parent / "judged.csv"
@@ -29,13 +31,15 @@ WORDS = QUANTITIES | {"von_mises": "largest stress", "temperature": "largest tem
 GROUP = "uncertainty", "errors"    # of the result file, the first one that it has
 FINE, FACES = 2, 2                 # divisions of all elements, and beyond those of elements at the faces
 KNOWN = 3.0
+LEAST = 1e-5    # of the value: smaller errors are not judged; forces that loads prescribe have them
 SAME = 1e-6     # part of a value by which that of another place is the same
 PARTS = 4, 16   # into which increments are divided
 
 
 @dataclass(frozen=True)
 class Case:
-    """An error at the end of a step and its uncertainty, NaN with the reason for which there is none."""
+    """An error at the end of a step and its uncertainty, NaN with the reason for which there is none; whether
+    the true value is accurate enough to judge by."""
 
     family: str
     deck: str
@@ -43,6 +47,7 @@ class Case:
     error: float
     uncertainty: float
     reason: str
+    is_known: bool = True
 
     @property
     def is_told(self):
@@ -99,9 +104,14 @@ def solved(deck, level, part, folder):
     return found
 
 
+def faces_of(deck):
+    """Return how many times elements at the faces are divided beyond all."""
+    return deck.own_levels + 1 if deck.own_levels else FACES
+
+
 def reference(deck, folder):
     """Return true values at the ends of the steps, and how accurate they are, by place and quantity."""
-    faces = deck.own_levels + 1 if deck.own_levels else FACES
+    faces = faces_of(deck)
     if deck.has_path:
         coarse, fine = (solved(deck, (k, faces), PARTS[0], folder) for k in (FINE - 1, FINE))
         longer, shorter = (solved(deck, 1, part, folder) for part in PARTS)
@@ -150,8 +160,8 @@ def write_file(decks, file):
 
 
 def cases_of(path, deck, told):
-    """Return the cases of a result file: errors that are neither rounding nor smaller than KNOWN times what the
-    true value may be off by, of edges that are not the ends of the face and of largest values at their place."""
+    """Return the cases of a result file: errors that are more than rounding, of edges that are not the ends of
+    the face and of largest values at their place."""
     found = []
     with h5py.File(path) as file:
         group = next(file[name] for name in GROUP if name in file)
@@ -161,20 +171,26 @@ def cases_of(path, deck, told):
                 continue
             why = group[place]["no_estimate"]
             why = why[:, why.attrs["components"].split().index(quantity)]
+            is_edge = quantity.startswith("edge")
             for step, row in enumerate(group[place][quantity][:], 1):
                 (true, known), (value, uncertainty) = told[deck.name, place, quantity, step], row[:2]
-                least = least_of_edge(file[f"contact/{place}/s"][:], value) if "edge" in quantity else LEAST * abs(true)
-                is_there = "edge" in quantity or abs(value - own[step - 1]) <= SAME * abs(value)
-                if is_there and abs(true - value) > max(least, KNOWN * known):
+                least = LEAST * abs(true)
+                if is_edge:
+                    spacing = spacing_at(file[f"contact/{place}/s"][:], value)
+                    least = LEAST_EDGE * spacing
+                    if quantity == "edge_stick":   # a contact point, or midway between two
+                        known = max(known, spacing / 2 ** (FINE + faces_of(deck) - deck.own_levels + 1))
+                is_there = is_edge or abs(value - own[step - 1]) <= SAME * abs(value)
+                if is_there and abs(true - value) > least:
                     found.append(Case(deck.family, deck.name, quantity, true - value, uncertainty,
-                                      reasons[why[step - 1]]))
+                                      reasons[why[step - 1]], abs(true - value) > KNOWN * known))
     return found
 
 
-def least_of_edge(places, value):
-    """Return the least error of an edge that is judged, infinite at the end of the face."""
+def spacing_at(places, value):
+    """Return the spacing of contact points at an edge, infinite at the end of the face."""
     beyond = np.searchsorted(places, value + SAME * places[-1])
-    return LEAST_EDGE * (places[beyond] - places[max(0, beyond - 1)]) if beyond < len(places) else np.inf
+    return places[beyond] - places[max(0, beyond - 1)] if beyond < len(places) else np.inf
 
 
 def judged(deck, told, errors="YES"):
@@ -184,22 +200,25 @@ def judged(deck, told, errors="YES"):
 
 
 def by_deck(cases):
-    """Return the share of decks that hold at all ends of steps, that of decks with a number that has no estimate,
-    and the median and the ninth decile of uncertainty over error of all cases."""
-    some = [case for case in cases if case.is_told]
-    holds = {}
+    """Return the share of decks in which a quantity holds at all ends of steps, that of decks with a number
+    without estimate, the median and the ninth decile of uncertainty over error of all numbers, and how many
+    errors are too small to be judged by these true values."""
+    known = [case for case in cases if case.is_known]
+    some, holds = [case for case in known if case.is_told], {}
     for case in some:
-        holds[case.deck] = holds.get(case.deck, True) and case.is_held
-    without = {case.deck for case in cases if not case.is_told}
+        key = case.deck, case.quantity
+        holds[key] = holds.get(key, True) and case.is_held
+    without = {(case.deck, case.quantity) for case in known if not case.is_told}
     share = f"{sum(holds.values())}/{len(holds)}, {100 * np.mean([*holds.values()]):.0f} %" if holds else "-"
     ratios = [case.uncertainty / abs(case.error) for case in some]
-    return [share, f"{len(without)}/{len({case.deck for case in cases})}",
-            *((f"{np.quantile(ratios, part):.1f}" if ratios else "-") for part in (0.5, 0.9))]
+    return [share, f"{len(without)}/{len({(case.deck, case.quantity) for case in known})}",
+            *((f"{np.quantile(ratios, part):.1f}" if ratios else "-") for part in (0.5, 0.9)),
+            f"{len(cases) - len(known)}/{len(cases)}"]
 
 
 def judgement(cases):
     """Return the tables of all families together, of each, and of the reasons."""
-    head = ["decks that hold", "without estimate", "uncertainty/error, median", "90 %"]
+    head = ["decks that hold", "without estimate", "uncertainty/error, median", "90 %", "not judged"]
     pooled = report.Table("Uncertainties of all families", ["quantity", *head])
     each = report.Table("Uncertainties of each family", ["family", "quantity", *head])
     families = [*dict.fromkeys(case.family for case in cases)]
@@ -213,7 +232,7 @@ def judgement(cases):
     why = report.Table("Numbers without estimate", ["family", "reason", "numbers"])
     counts = {}
     for case in cases:
-        if not case.is_told:
+        if case.is_known and not case.is_told:
             counts[case.family, case.reason] = counts.get((case.family, case.reason), 0) + 1
     why.rows += [[*key, count] for key, count in counts.items()]
     return [pooled, each, why]
@@ -223,7 +242,7 @@ def misses(cases):
     """Return the table of the uncertainties that do not hold."""
     table = report.Table("Uncertainties that do not hold", ["deck", "quantity", "error/uncertainty"])
     table.rows += [[case.deck, WORDS[case.quantity], f"{abs(case.error) / case.uncertainty:.2f}"] for case in cases
-                   if case.is_told and not case.is_held]
+                   if case.is_known and case.is_told and not case.is_held]
     return table
 
 

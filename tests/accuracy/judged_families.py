@@ -312,7 +312,8 @@ def bolts(seed):
               f"0., {log_uniform(draw, 1e-4, 1e-3):.6g}, 0.95"]
     cards += ["*FRICTION", f"{joint.friction:.6g}"] if joint.friction else []
     cards += ["*SURFACE INTERACTION, NAME=SOFT", "*GAP LAW, TYPE=POWER",
-              f"0., {log_uniform(draw, 3e-5, 3e-4):.6g}, 0.95", "*CONTACT PAIR, INTERACTION=METAL, NAME=SEAT", "FACE, SEAT",
+              f"0., {log_uniform(draw, 3e-5, 3e-4):.6g}, 0.95",
+              "*CONTACT PAIR, INTERACTION=METAL, NAME=SEAT", "FACE, SEAT",
               "*CONTACT PAIR, INTERACTION=SOFT, NAME=GASKET", "GASKET.BOTTOM, LAND"]
     joint.cards = cards
     joint.held = ["*BOUNDARY", "SHANK.LEFT, 1", "HEAD.LEFT, 1", "SHANK.TOP, 2", "GASKET.TOP, 2"]
