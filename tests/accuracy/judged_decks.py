@@ -73,7 +73,8 @@ def values_of(file, deck):
     for name in deck.faces:
         face = file[f"contact/{name}"]
         found |= {(name, q): face[q][:][rows] for q in QUANTITIES if q in face}
-        found[name, "peak_pressure"] = face["pressure"][:].max(axis=1)[rows]
+        if not deck.has_corners:
+            found[name, "peak_pressure"] = face["pressure"][:].max(axis=1)[rows]
     for body, quantity, circle in deck.maxima:
         found[f"body {body}", quantity] = largest(file["VTKHDF"], body, quantity, circle, ends)
     return found

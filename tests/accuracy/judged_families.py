@@ -253,7 +253,7 @@ def press_fit(joint):
     for period in joint.draw.uniform(0.2, 2.0, 2) * time:
         joint.step("*COUPLED TEMPERATURE-DISPLACEMENT", "*SFILM", f"UP.RIGHT, F, {rise:.9g}, {film:.9g}",
                    period=float(period), more=2)
-    return joint.deck(True, maxima=((1, "temperature", None), (2, "temperature", None)))
+    return joint.deck(True, maxima=((1, "temperature", None), (2, "temperature", None)), has_corners=True)
 
 
 def casting(joint):
@@ -268,7 +268,7 @@ def casting(joint):
         joint.step("*COUPLED TEMPERATURE-DISPLACEMENT", "*SFILM", f"UP.RIGHT, F, 0., {film:.9g}",
                    period=float(period), more=2)
     cold = 2 if hot == "UP" else 1
-    return joint.deck(True, maxima=((cold, "temperature", None), (3 - cold, "temperature", None)))
+    return joint.deck(True, maxima=((cold, "temperature", None), (3 - cold, "temperature", None)), has_corners=True)
 
 
 def bolts(seed):
@@ -324,7 +324,7 @@ def bolts(seed):
     joint.step("*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "*SFILM",
                f"FLANGE.RIGHT, F, {draw.uniform(50, 300):.6g}, 0.001", "HEAD.BOTTOM, F, 20., 0.01",
                "GASKET.TOP, F, 20., 0.01")
-    return joint.deck(faces=("SEAT", "GASKET"))
+    return joint.deck(faces=("SEAT", "GASKET"), has_corners=True)
 
 
 def drawn(seed):

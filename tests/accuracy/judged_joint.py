@@ -15,8 +15,8 @@ BASE = 100001   # number of the first node of the lower body
 @dataclass(frozen=True)
 class JudgedDeck:
     """A deck, its interfaces, whether the path to its loads matters, how many times its faces alone are
-    divided, and the largest values of bodies that have a limit: number of the body, quantity, and centre and
-    radius of the circle where it is, or None."""
+    divided, the largest values of bodies that have a limit (number of the body, quantity, and centre and
+    radius of the circle where it is, or None), and whether contact ends at corners, where pressure has none."""
 
     family: str
     name: str
@@ -25,6 +25,7 @@ class JudgedDeck:
     has_path: bool
     own_levels: int = 0
     maxima: tuple = ()
+    has_corners: bool = False
 
 
 class Joint:

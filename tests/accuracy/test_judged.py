@@ -15,7 +15,7 @@ def test_a_deck_of_each_family_is_solved_and_closes(tmp_path, family):
     found = solved(deck, (0, deck.own_levels), 1, tmp_path)
     for face in deck.faces:
         assert len(found[face, "normal_force"]) == len(ends_of_steps(deck.text)) >= 1
-        assert found[face, "normal_force"][0] > 0 and found[face, "peak_pressure"][0] > 0
+        assert found[face, "normal_force"][0] > 0 and (deck.has_corners or found[face, "peak_pressure"][0] > 0)
     for body, quantity, _ in deck.maxima:
         assert np.isfinite(found[f"body {body}", quantity]).all()
 
