@@ -13,7 +13,7 @@ from judged_joint import BASE, FINE, Joint, JudgedDeck
 from physics import material, mesh, nodes_of
 
 REFERENCE = 900001   # number of the reference node of a section or a rigid body
-SHIFT = 10001        # to the seed of another family of bound_decks
+SHIFT = 101          # to the seed of another family of bound_decks
 
 
 def stacked(joint, **of_materials):
