@@ -62,16 +62,18 @@ class Case:
         return abs(self.error) <= self.bound
 
 
-def run(deck, level, part, folder, estimates=True):
-    """Solve a deck with other elements and increments; return the result file. The level is that of all
-    elements, or a pair with the one of those at the faces beyond it."""
-    pair, faces = re.search(r"^(\*CONTACT PAIR.*)\n(.+)", deck.text, re.M).groups()
-    # The faces of node pairs are divided together, those of mortar points each for itself.
-    divided = faces.split(",")[:2 if "PAIRING=SURFACES" in pair else 1]
+def run(deck, level, part, folder, errors="YES"):
+    """Solve a deck with other elements and increments, and the errors of *OPTIONS; return the result file. The
+    level is that of all elements, or a pair with the one of those at the faces beyond it."""
+    # The faces of node pairs are divided together, those of mortar points each for itself, those of rigid bodies not.
+    rigid = re.findall(r"^\*RIGID BODY.*(?:SURFACE|ELSET)=(\w+)", deck.text, re.M)
+    divided = [face for pair, faces in re.findall(r"^(\*CONTACT PAIR.*)\n(.+)", deck.text, re.M)
+               for face in faces.split(", ")[:2 if "PAIRING=SURFACES" in pair else 1]
+               if face.split(".")[0] not in rigid]
     everywhere, at_faces = level if isinstance(level, tuple) else (level, 0)
     cards = [f"*REFINE, LEVELS={everywhere}"] if everywhere else []
-    cards += [f"*REFINE, LEVELS={at_faces}, SURFACE={face.strip()}" for face in divided if at_faces]
-    cards.append(f"*OPTIONS, ERRORS={'YES' if estimates else 'NO'}")
+    cards += [f"*REFINE, LEVELS={at_faces}, SURFACE={face}" for face in divided if at_faces]
+    cards.append(f"*OPTIONS, ERRORS={errors}")
     text = re.sub(r"^\*REFINE.*\n", "", deck.text.split("*VERIFY")[0], flags=re.M)
     text = re.sub(r"INC=\d+", "INC=100000", text)
     text = ANALYSIS.sub(lambda found: f"{found[1]}{float(found[2]) / part!r}", text)
@@ -86,7 +88,7 @@ def run(deck, level, part, folder, estimates=True):
 
 def values_of(deck, level, part, times, folder):
     """Return the quantities at times, from a run that bounds nothing."""
-    with h5py.File(run(deck, level, part, folder, False)) as file:
+    with h5py.File(run(deck, level, part, folder, "NO")) as file:
         face = file[f"contact/{deck.face}"]
         found = {q: face[q][:] for q in QUANTITIES if q in face}
         found["peak_pressure"] = face["pressure"][:].max(axis=1)

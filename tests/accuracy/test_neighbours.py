@@ -76,7 +76,7 @@ def series(found):
 
 def drawn_cases(deck, level, folder):
     """Return the cases of a drawn deck at its last loads."""
-    with h5py.File(held_bounds.run(replace(deck, text=ended(deck.text, 0)), FINE, 1, folder, False)) as file:
+    with h5py.File(held_bounds.run(replace(deck, text=ended(deck.text, 0)), FINE, 1, folder, "NO")) as file:
         face = file[f"contact/{deck.face}"]
         true = {q: face[q][-LOADS:] for q in QUANTITIES if q in face}
         true["peak_pressure"] = face["pressure"][-LOADS:].max(axis=1)
