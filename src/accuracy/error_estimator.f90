@@ -212,7 +212,7 @@ contains
       real(dp), intent(in) :: iteration                      ! relative
       type(increment_record_type), intent(inout) :: record
       real(dp) :: other(size(values, 1), size(values, 2)), fine(size(values, 1)), &
-         scatter(size(values, 1))
+         change(size(values, 1)), largest(size(values, 1)), scatter(size(values, 1))
       type(contact_points_type) :: points
       logical :: holds(reason_count)
       integer :: i, q
@@ -227,6 +227,11 @@ contains
          call simulation%bodies%view(i, points)
          scatter = self%histories%scatter(i)
          if (.not. allocated(self%lost)) fine = quantities_of(self%divided%record%contacts(i))
+         change = fine - values(:, i)
+         if (self%is_full) largest = self%histories%largest_change(i, change)
+         ! In steps of few increments changes alone tell how they scatter.
+         if (self%is_full) change = merge(largest, change, ieee_is_nan(scatter))
+         where (ieee_is_nan(scatter)) scatter = 0.0_dp
          do q = 1, size(values, 1)
             holds = .false.
             holds(slides_far) = record%contacts(i)%slide%point > 0
@@ -236,7 +241,7 @@ contains
             holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. &
                has_friction(simulation, i)
             call settle(record%uncertainties(i), q, reason_of(self, holds, fine(q)), &
-               uncertainty_parts(estimated(q), fine(q) - values(q, i), scatter(q), &
+               uncertainty_parts(estimated(q), change(q), scatter(q), &
                spacing_at(estimated(q), points, values(q, i)), iteration*values(q, i)))
             if (holds(not_unique)) call append(record%notes, trim(estimated(q)%name)//' of '// &
                model%contacts(i)%name//' is '//to_text(values(q, i))//' or '//to_text( &

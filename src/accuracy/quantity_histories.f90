@@ -15,10 +15,13 @@ module quantity_histories
       real(dp) :: time(kept) = 0.0_dp              !! ends of the increments, the newest last
       !> (kept, quantities, interfaces) likewise; NaN before the step
       real(dp), allocatable :: values(:, :, :)
+      !> (3, quantities, interfaces) their last changes on a finer mesh that is followed, else 0
+      real(dp), allocatable :: changes(:, :, :)
    contains
       procedure :: begin_step
       procedure :: follow
       procedure :: scatter
+      procedure :: largest_change
       procedure :: exchange
    end type quantity_histories_type
 
@@ -29,8 +32,10 @@ contains
       class(quantity_histories_type), intent(inout) :: self
       integer, intent(in) :: quantities, interfaces   !! numbers of them
 
-      if (.not. allocated(self%values)) allocate (self%values(kept, quantities, interfaces))
+      if (.not. allocated(self%values)) allocate (self%values(kept, quantities, interfaces), &
+         self%changes(3, quantities, interfaces))
       self%values = ieee_value(1.0_dp, ieee_quiet_nan)
+      self%changes = 0.0_dp
    end subroutine begin_step
 
    !> Takes the values at the end of an increment.
@@ -48,17 +53,35 @@ contains
    subroutine exchange(self, table)
       class(quantity_histories_type), intent(inout) :: self   !! with values where it receives them
       type(state_table_type), intent(inout) :: table
-      real(dp), allocatable :: time(:), values(:)
+      real(dp), allocatable :: changes(:), time(:), values(:)
 
       time = self%time
       values = [self%values]
+      changes = [self%changes]
       call reals(table, 'history_time', time)
       call reals(table, 'history_values', values)
+      call reals(table, 'history_changes', changes)
       self%time = time
       self%values = reshape(values, shape(self%values))
+      self%changes = reshape(changes, shape(self%changes))
    end subroutine exchange
 
-   !> How much the quantities of an interface scatter; 0 where they have too few values.
+   !> Takes the changes of the quantities of an interface on a finer mesh at the end of an increment;
+   !> those of the last three that are largest, since at one increment one may vanish by chance.
+   function largest_change(self, interface, change) result(largest)
+      class(quantity_histories_type), intent(inout) :: self
+      integer, intent(in) :: interface
+      real(dp), intent(in) :: change(:)           !! (quantities) NaN: none
+      real(dp) :: largest(size(change))           !! likewise
+
+      associate (own => self%changes(:, :, interface))
+         own(:2, :) = own(2:, :)
+         own(3, :) = merge(0.0_dp, abs(change), ieee_is_nan(change))
+         largest = merge(change, maxval(own, dim=1), ieee_is_nan(change))
+      end associate
+   end function largest_change
+
+   !> How much the quantities of an interface scatter; NaN where they have too few values.
    pure function scatter(self, interface)
       class(quantity_histories_type), intent(in) :: self
       integer, intent(in) :: interface
@@ -70,7 +93,7 @@ contains
       end do
    end function scatter
 
-   !> How much values scatter about a smooth history; 0 for too few. The deviation is that which
+   !> How much values scatter about a smooth history; NaN for too few. The deviation is that which
    !> fourth divided differences tell, in which a history that is cubic in time vanishes, whatever the
    !> increments: their median, which a corner of the history does not move.
    pure real(dp) function scatter_of(time, values)
@@ -79,7 +102,7 @@ contains
       real(dp) :: difference(size(values) - 4), t(5), weight(5)
       integer :: first, i, j, k, n
 
-      scatter_of = 0.0_dp
+      scatter_of = ieee_value(1.0_dp, ieee_quiet_nan)
       first = findloc(ieee_is_nan(values), .true., dim=1, back=.true.) + 1
       if (size(values) - first + 1 < needed) return
       n = size(difference)

@@ -11,8 +11,8 @@
 !>
 !>   0.8 and 0     numbers: fields with edges have 1; F = 4 in place of 3 holds shear forces, too
 !>   0.9 and 0     maxima of bodies, whose change is that of the field round them
-!>   1.6 and 0.05  edges of contact, whose error on half the spacing is far smaller
-!>   1.6 and 0.5   edges of stick, which are known between two nodes only
+!>   1.5 and 0.08  edges of contact, whose error on half the spacing is far smaller
+!>   1.5 and 0.6   edges of stick, which are known between two nodes only
 !>
 !> docs/accuracy.md says on which decks they were chosen and which judge them.
 module uncertainty_rule

@@ -26,10 +26,10 @@ module contact_quantities
       is_traded=.true., is_published=.false., follows_path=.true., &
       description='largest contact pressure'), &
       quantity_type('edge_contact', of_interface, 'length', label='edge of contact s =', &
-      head='contact', is_estimated=.true., is_traded=.true., order=1.6_dp, resolution=0.05_dp, &
+      head='contact', is_estimated=.true., is_traded=.true., order=1.5_dp, resolution=0.08_dp, &
       description='outer edge of the contact zone with the largest s; NaN: none'), &
       quantity_type('edge_stick', of_interface, 'length', label='of stick s =', head='stick', &
-      is_estimated=.true., is_traded=.true., order=1.6_dp, resolution=0.5_dp, &
+      is_estimated=.true., is_traded=.true., order=1.5_dp, resolution=0.6_dp, &
       follows_path=.true., &
       description='outer edge of the widest stick zone; NaN: none'), &
       quantity_type('edges_contact', of_interface, 'length', values=edges_kept, &

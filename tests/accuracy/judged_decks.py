@@ -172,8 +172,10 @@ def cases_of(path, deck, told):
                 continue
             why = group[place]["no_estimate"]
             why = why[:, why.attrs["components"].split().index(quantity)]
+            rows = [int(np.argmin(np.abs(group["time"][:] - end))) for end in ends_of_steps(deck.text)]
+            why = why[rows]
             is_edge = quantity.startswith("edge")
-            for step, row in enumerate(group[place][quantity][:], 1):
+            for step, row in enumerate(group[place][quantity][:][rows], 1):
                 (true, known), (value, uncertainty) = told[deck.name, place, quantity, step], row[:2]
                 least = LEAST * abs(true)
                 if is_edge:
