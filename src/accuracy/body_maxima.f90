@@ -54,9 +54,9 @@ contains
       call find_places(self, model%mesh, simulation%recovery%points, record%fields)
    end subroutine find
 
-   !> The changes of the maxima on a divided mesh: the rms of those of the fields at the nodes of the
-   !> elements round them, for at one node they may vanish by chance, and what the fields rise above
-   !> them there, between nodes as well.
+   !> The changes of the maxima on a divided mesh: the rms of those of the fields at the nodes of
+   !> the elements round them, for at one node they may vanish by chance, and what the fields rise
+   !> above them there, between nodes as well.
    function changes(self, divided, mesh, points, fields) result(change)
       class(body_maxima_type), intent(in) :: self
       type(divided_mesh_type), intent(in) :: divided         !! solved

@@ -165,8 +165,9 @@ contains
             call advance(run, self%model, self%record, error)
             if (allocated(error)) return
          end do
-         if (allocated(record%fields%stress) .and. .not. allocated(self%record%fields%stress)) &
+         if (allocated(record%fields%stress) .and. .not. allocated(self%record%fields%stress)) then
             call recover_stress(self, run%state)
+         end if
       end associate
    end subroutine follow
 
@@ -284,7 +285,8 @@ contains
       integer :: k
 
       chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
-      if (any(counts)) chosen = chosen .and. elements_about(model%mesh, nodes_at(pack([(k, k=1, size(counts))], &
+      if (any(counts)) chosen = chosen .and. elements_about(model%mesh, nodes_at(pack([(k, k=1, &
+         size(counts))], &
          counts)))
       if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
          [model%ties%faces%slave, model%ties%faces%master])

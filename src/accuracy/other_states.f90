@@ -23,9 +23,9 @@ module other_states
 
 contains
 
-   !> The quantities of another state, of those from OPEN and from CLOSED that differ from that of the
-   !> run at contact points beside edges alone: those farthest from its own. What differs more is
-   !> another branch, no error of this one.
+   !> The quantities of another state, of those from OPEN and from CLOSED that differ from that of
+   !> the run at contact points beside edges alone: those farthest from its own. What differs more
+   !> is another branch, no error of this one.
    subroutine find_other_states(simulation, model, step, before, farthest)
       type(simulation_type), intent(in) :: simulation        !! the run at the end of an increment
       type(model_type), intent(in) :: model

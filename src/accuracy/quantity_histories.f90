@@ -7,7 +7,7 @@ module quantity_histories
    private
    public :: quantity_histories_type, scatter_of
 
-   integer, parameter :: needed = 9, kept = 17     !! values that tell a scatter, at least and at most
+   integer, parameter :: needed = 9, kept = 17 !! values that tell a scatter, at least and at most
 
    !> The quantities of all interfaces at the last increments of a step.
    type :: quantity_histories_type
@@ -66,8 +66,9 @@ contains
       self%changes = reshape(changes, shape(self%changes))
    end subroutine exchange
 
-   !> Takes the changes of the quantities of an interface on a finer mesh at the end of an increment;
-   !> those of the last three that are largest, since at one increment one may vanish by chance.
+   !> Takes the changes of the quantities of an interface on a finer mesh at the end of an
+   !> increment; those of the last three that are largest, since at one increment one may vanish by
+   !> chance.
    function largest_change(self, interface, change) result(largest)
       class(quantity_histories_type), intent(inout) :: self
       integer, intent(in) :: interface
@@ -94,8 +95,8 @@ contains
    end function scatter
 
    !> How much values scatter about a smooth history; NaN for too few. The deviation is that which
-   !> fourth divided differences tell, in which a history that is cubic in time vanishes, whatever the
-   !> increments: their median, which a corner of the history does not move.
+   !> fourth divided differences tell, in which a history that is cubic in time vanishes, whatever
+   !> the increments: their median, which a corner of the history does not move.
    pure real(dp) function scatter_of(time, values)
       real(dp), intent(in) :: time(:)     !! (17) the newest last [time]
       real(dp), intent(in) :: values(:)   !! (17) likewise; NaN where there is none

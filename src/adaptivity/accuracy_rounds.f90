@@ -1,10 +1,10 @@
 !> The rounds of a requested accuracy: what each found at the ends of its steps.
 !>
 !> The uncertainties are those of the error estimator. Where the last increment alone tells none,
-!> every round divides both faces and halves the increments (`adaptive_rounds`), and the larger one of
-!> the last two changes from round to round tells it, by the same rule: one change can be small by
-!> chance. A pressure that has no limit has none whatever the changes are; where it is at a corner,
-!> no round is spent on it.
+!> every round divides both faces and halves the increments (`adaptive_rounds`), and the larger one
+!> of the last two changes from round to round tells it, by the same rule: one change can be small
+!> by chance. A pressure that has no limit has none whatever the changes are; where it is at a
+!> corner, no round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
@@ -169,7 +169,8 @@ contains
 
       do d = 1, size(self%demands)
          associate (finding => self%rounds(size(self%rounds))%findings(d, record%step), &
-            errors => record%uncertainties(self%demands(d)%interface), q => self%demands(d)%quantity)
+            errors => record%uncertainties(self%demands(d)%interface), &
+            q => self%demands(d)%quantity)
             if (.not. finding%is_there) cycle
             errors%total(q) = finding%uncertainty
             errors%no_estimate(q) = finding%no_estimate
@@ -177,8 +178,8 @@ contains
       end do
    end subroutine settle
 
-   !> The uncertainty of one quantity at the end of a step. Where an edge is the end of the interface
-   !> there is nothing to judge.
+   !> The uncertainty of one quantity at the end of a step. Where an edge is the end of the
+   !> interface there is nothing to judge.
    function found(demand, points, errors, scale) result(finding)
       type(demand_type), intent(in) :: demand
       type(contact_points_type), intent(in) :: points
@@ -275,7 +276,8 @@ contains
       end do
    end function worst_step
 
-   !> Largest uncertainty of a demand over what its target allows; 0 for none, huge where it is unknown.
+   !> Largest uncertainty of a demand over what its target allows; 0 for none, huge where it is
+   !> unknown.
    pure real(dp) function excess(self, d)
       class(accuracy_round_type), intent(in) :: self
       integer, intent(in) :: d                    !! the demand

@@ -203,7 +203,8 @@ contains
             far*finding%allowed)
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity, &
             of_elements => self%division%levels)
-            ! Where the last increment alone tells no error, the change by sides of half the size does.
+            ! Where the last increment alone tells no error, the change by sides of half the size
+            ! does.
             if (ieee_is_nan(record%uncertainties(i)%total(q))) then
                where (elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
                   model%contacts(i)%master])) of_elements = max(of_elements, 1)

@@ -23,7 +23,7 @@ module memory_needs
    real(dp), parameter :: base = 36.0e6_dp             !! of the program and its libraries [byte]
    real(dp), parameter :: per_entry = 33.0_dp          !! of an entry of element matrices [byte]
    real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one, for the finer mesh [byte]
-   real(dp), parameter :: finer = 2.5_dp   !! of entries and factors, where most elements are divided
+   real(dp), parameter :: finer = 2.5_dp !! of entries and factors, where most elements are divided
    real(dp), parameter :: mumps_factor = 1.25_dp       !! MUMPS's memory in that of its factors
    real(dp), parameter :: waiting = 70.0e6_dp          !! most of results that wait [byte]
    real(dp), parameter :: field_values = 25.0_dp       !! of a node and written increment that wait
@@ -35,8 +35,8 @@ module memory_needs
 
 contains
 
-   !> The largest memory that a run holds at a time, estimated on the mesh before it is refined: with
-   !> ERRORS=FULL that of two runs.
+   !> The largest memory that a run holds at a time, estimated on the mesh before it is refined:
+   !> with ERRORS=FULL that of two runs.
    function memory_needed(model, levels, order) result(bytes)
       type(model_type), intent(in) :: model   !! the model, unrefined and with all nodes
       integer, intent(in) :: levels           !! refinements that are to come

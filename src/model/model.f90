@@ -88,7 +88,7 @@ module model
       type(physical_constants_type) :: constants                 !! *PHYSICAL CONSTANTS
       integer :: solver = solver_skyline                         !! one of the solver_* constants
       integer :: tail = tail_by_size                             !! one of the tail_* constants
-      integer :: uncertainty = uncertainty_last                  !! one of the uncertainty_* constants
+      integer :: uncertainty = uncertainty_last !! one of the uncertainty_* constants
       type(accuracy_request_type) :: accuracy                    !! *ACCURACY
       real(dp) :: memory_needed = 0.0_dp                         !! estimate for a run [byte]
       integer :: written_levels = 0                              !! *REFINE, LEVELS=

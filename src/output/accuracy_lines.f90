@@ -129,8 +129,8 @@ contains
       end associate
    end function demand_name
 
-   !> The uncertainty at the end of the step that is furthest from a target; the summary tells the values
-   !> of the last step.
+   !> The uncertainty at the end of the step that is furthest from a target; the summary tells the
+   !> values of the last step.
    function target_words(accuracy, d, labels) result(words)
       type(accuracy_rounds_type), intent(in) :: accuracy
       integer, intent(in) :: d
@@ -160,7 +160,8 @@ contains
             if (ieee_is_nan(finding%uncertainty)) then
                words = words//with_unit(to_text(finding%value))
             else
-               words = words//with_unit(to_text(finding%value)//' +- '//few_digits(finding%uncertainty))
+               words = words//with_unit(to_text(finding%value)//' +- '// &
+                  few_digits(finding%uncertainty))
             end if
          else if (step > 1) then
             words = words//', step '//to_text(step)
@@ -174,8 +175,8 @@ contains
          end if
       end associate
    contains
-      !> The uncertainty or what is allowed, as a part of the value's scale where the target is one; more
-      !> digits where only these show that the target is missed.
+      !> The uncertainty or what is allowed, as a part of the value's scale where the target is one;
+      !> more digits where only these show that the target is missed.
       function amount(number)
          real(dp), intent(in) :: number
          character(:), allocatable :: amount
@@ -272,8 +273,8 @@ contains
       end do
    end subroutine write_accuracy
 
-   !> A row for each round: step, value, uncertainty and what the target allows, at the end of the step
-   !> that is furthest from the target; zeros where no step has the quantity.
+   !> A row for each round: step, value, uncertainty and what the target allows, at the end of the
+   !> step that is furthest from the target; zeros where no step has the quantity.
    subroutine write_demand(file, accuracy, d, path)
       type(hdf5_writer_type), intent(inout) :: file
       type(accuracy_rounds_type), intent(in) :: accuracy

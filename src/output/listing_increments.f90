@@ -28,7 +28,8 @@ module listing_increments
 
    character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'scatter', &
       'iteration']
-   character(*), parameter :: uncertainty_head = '         value  uncertainty          %        mesh'// &
+   character(*), parameter :: uncertainty_head = '         value  uncertainty          %'// &
+      '        mesh'// &
       '       scatter     iteration  largest part'
 
 contains
@@ -228,8 +229,8 @@ contains
       end do
    end subroutine print_body_errors
 
-   !> Prints the uncertainties of an interface. What has no value, or no part in the deck, is left out, and
-   !> so are edges at the end of the face.
+   !> Prints the uncertainties of an interface. What has no value, or no part in the deck, is left
+   !> out, and so are edges at the end of the face.
    subroutine print_uncertainties(page, points, errors)
       type(page_type), intent(inout) :: page               !! of the listing
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
@@ -264,7 +265,8 @@ contains
          'THE INCREMENT', maxval(len_trim(history_estimated%name)), names, errors)
    end subroutine print_history_uncertainties
 
-   !> Prints the uncertainties of the maxima of a body, where they are, and the corners that are left out.
+   !> Prints the uncertainties of the maxima of a body, where they are, and the corners that are
+   !> left out.
    subroutine print_maxima(page, mesh, body, errors)
       type(page_type), intent(inout) :: page               !! of the listing
       type(mesh_type), intent(in) :: mesh
@@ -313,8 +315,8 @@ contains
                cell(errors%iteration(q), 14, '-')//'    '//largest_part(errors, q)))
          end associate
       end do
-      call page%table('   NUMERICAL UNCERTAINTY (95 %) OF '//title//': how far values may be off '// &
-         'to either side, with its parts', rows)
+      call page%table('   NUMERICAL UNCERTAINTY (95 %) OF '//title//': how far values may be '// &
+         'off to either side, with its parts', rows)
       do q = 1, size(names)
          associate (why => errors%no_estimate(q))
             if (why == no_reason .or. names(q)%value == '') cycle

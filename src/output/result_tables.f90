@@ -16,8 +16,8 @@ module result_tables
    public :: result_table_type, with_uncertainty, write_geometry
 
    !> A group with one dataset for each quantity: `/history` and `/contact/<name>` with one row an
-   !> increment, `/convergence` with one row a pass, `/uncertainty` and `/uncertainty/<name>` with one row a
-   !> step.
+   !> increment, `/convergence` with one row a pass, `/uncertainty` and `/uncertainty/<name>` with
+   !> one row a step.
    type :: result_table_type
       character(:), allocatable :: group                           !! its path
       type(quantity_type), allocatable, private :: quantities(:)   !! those that grow
@@ -58,7 +58,7 @@ contains
 
    !> Adds an increment.
    subroutine append_increment(self, record)
-      class(result_table_type), intent(inout) :: self     !! `/history`, or the times of `/uncertainty`
+      class(result_table_type), intent(inout) :: self !! `/history`, or the times of `/uncertainty`
       type(increment_record_type), intent(in) :: record
       integer :: i
 
@@ -120,7 +120,8 @@ contains
          quantities(i) = estimated(i)
          quantities(i)%values = 5
          quantities(i)%components = 'value uncertainty change scatter iteration'
-         quantities(i)%description = 'value and its numerical uncertainty (95 %), with its parts: '// &
+         quantities(i)%description = 'value and its numerical uncertainty (95 %), with its '// &
+            'parts: '// &
             trim(estimated(i)%description)
          reason%components = trim(reason%components)//' '//estimated(i)%name
       end do

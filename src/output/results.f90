@@ -479,8 +479,8 @@ contains
       end associate
    end subroutine write_heads
 
-   !> Writes the words of the reasons for which there are no uncertainties, and the one that holds at
-   !> increments that end no step.
+   !> Writes the words of the reasons for which there are no uncertainties, and the one that holds
+   !> at increments that end no step.
    subroutine write_reasons(file, model)
       type(hdf5_writer_type), intent(inout) :: file
       type(model_type), intent(in) :: model

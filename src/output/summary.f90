@@ -267,7 +267,8 @@ contains
          to_text(size(errors%corners) - most_corners)//' more'
    end function corner_words
 
-   !> A line of the summary: a quantity, its value, its uncertainty, its unit, and where or how that is.
+   !> A line of the summary: a quantity, its value, its uncertainty, its unit, and where or how that
+   !> is.
    pure function summary_line(name, number, uncertainty, unit, words) result(line)
       character(*), intent(in) :: name, uncertainty, unit, words
       real(dp), intent(in) :: number
@@ -381,7 +382,8 @@ contains
          else
             uncertainty = mark_of(reason_inside_step(model))
          end if
-         line = summary_line(name, values(1), uncertainty, unit_label(estimated(q)%unit, model%units), &
+         line = summary_line(name, values(1), uncertainty, unit_label(estimated(q)%unit, &
+            model%units), &
             zone)
          if (allocated(self%errors) .and. estimated(q)%name == 'peak_pressure') then
             if (self%errors(i)%no_estimate(q) == no_reason .and. rises_to_end(points, &

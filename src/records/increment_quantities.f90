@@ -11,7 +11,8 @@ module increment_quantities
    use text, only: counted, few_digits
    implicit none
    private
-   public :: increment_table, history_estimated, history_value, part_values, pass_value, stability_words
+   public :: increment_table, history_estimated, history_value, part_values, pass_value, &
+      stability_words
 
    type(quantity_type), parameter :: increment_table(*) = [ &
       quantity_type('time', of_history, 'time', &

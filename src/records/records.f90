@@ -22,7 +22,7 @@ module records
       real(dp), allocatable :: value(:)        !! of the quantities; NaN where there is none
       real(dp), allocatable :: total(:)        !! the uncertainties: the sum of the next three
       real(dp), allocatable :: change(:)       !! by the change on a finer mesh
-      real(dp), allocatable :: scatter(:)      !! by scatter over increments and places between nodes
+      real(dp), allocatable :: scatter(:) !! by scatter over increments and places between nodes
       real(dp), allocatable :: iteration(:)    !! by what the fixed point has left
       integer, allocatable :: no_estimate(:)   !! why there is none, a reason of no_estimates
    end type uncertainty_type

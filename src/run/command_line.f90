@@ -245,8 +245,8 @@ contains
             'edge, shear, stick), not '//value)
       case ('--errors')
          command%uncertainty = uncertainty_named(value)
-         if (command%uncertainty < 0) call set_error(error, status_deck, 'option --errors needs '// &
-            'last, full or no, not '//value)
+         if (command%uncertainty < 0) call set_error(error, status_deck, &
+            'option --errors needs last, full or no, not '//value)
       case ('--limit')
          call read_real(value(:len(value) - merge(1, 0, index(value, 's') == len(value))), &
             command%limit, valid)

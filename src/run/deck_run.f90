@@ -117,8 +117,8 @@ contains
             output%run%settings = settings_in_words(self%command)
             if (allocated(self%deck%origin)) output%run%origin = self%deck%origin%words()
             if (model%uncertainty == uncertainty_full .and. .not. self%command%quiet) call &
-               print_line(output_unit, self%path//': ERRORS=FULL solves the deck once more beside '// &
-               'itself, with '//to_text(4*size(model%mesh%element_kind))//' elements for '// &
+               print_line(output_unit, self%path//': ERRORS=FULL solves the deck once more '// &
+               'beside itself, with '//to_text(4*size(model%mesh%element_kind))//' elements for '// &
                to_text(size(model%mesh%element_kind))//' and increments half as long: 4 to 12 '// &
                'times the time of ERRORS=NO')
             call solve_deck(self, rounds, error)
