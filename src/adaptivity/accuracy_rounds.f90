@@ -1,10 +1,10 @@
 !> The rounds of a requested accuracy: what each found at the ends of its steps.
 !>
 !> The uncertainties are those of the error estimator. Where the last increment alone tells none,
-!> every round divides both faces and halves the increments (`adaptive_rounds`), and the larger one
-!> of the last two changes from round to round tells it, by the same rule: one change can be small
-!> by chance. A pressure that has no limit has none whatever the changes are; where it is at a
-!> corner, no round is spent on it.
+!> every round divides both faces and halves the increments (`adaptive_rounds`), and the last two
+!> changes from round to round tell it, by the same rule: one change can be small by chance. A
+!> pressure that has no limit has none whatever the changes are; where it is at a corner, no round
+!> is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
@@ -204,7 +204,7 @@ contains
       type(accuracy_round_type), intent(inout) :: rounds(:)
       type(quantity_type), intent(in) :: quantity
       integer, intent(in) :: d, step
-      real(dp) :: parts(3)
+      real(dp) :: finer, parts(3)
       integer :: n
 
       n = size(rounds)
@@ -214,10 +214,11 @@ contains
          now%change = abs(now%value - before%value)
          if (remains(now%no_estimate)) return
          if (.not. ieee_is_nan(now%uncertainty)) return
-         parts = uncertainty_parts(quantity, max(now%change, before%change), 0.0_dp, now%spacing, &
-            0.0_dp)
-         ! The change leads to the finer mesh, whose error is so many times smaller.
-         now%uncertainty = parts(1)/2.0_dp**quantity%order + parts(2)
+         ! A change leads to the finer mesh, whose error is so many times smaller.
+         finer = 2.0_dp**quantity%order
+         parts = uncertainty_parts(quantity, max(now%change, before%change/finer)/finer, 0.0_dp, &
+            now%spacing, 0.0_dp)
+         now%uncertainty = parts(1) + parts(2)
          now%no_estimate = no_reason
       end associate
    end subroutine add_change

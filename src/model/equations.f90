@@ -164,7 +164,7 @@ contains
       real(dp) :: arm(2)
 
       nodes = coupled_nodes(mesh, coupling)
-      nodes = pack(nodes, nodes /= coupling%reference)
+      nodes = pack(nodes, nodes /= coupling%reference .and. .not. follow_sides(mesh, nodes))
       allocate (equations(size(nodes)*(count(coupling%follows) + merge(1, 0, coupling%is_warm)) + &
          merge(1, 0, coupling%is_rigid)))
       n = 0
@@ -185,6 +185,32 @@ contains
       n = n + 1
       call fill_equation([coupling%rotation], [2], [1.0_dp], equations(n))
    end function rigid_equations
+
+   !> Whether each of some nodes hangs on a side whose nodes are among them: it moves with these.
+   pure function follow_sides(mesh, nodes) result(follow)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: nodes(:)
+      logical :: follow(size(nodes)), is_one(0:size(mesh%node_number)), &
+         hangs(0:size(mesh%node_number))
+      integer :: h
+
+      follow = .false.
+      if (.not. allocated(mesh%hanging_sides)) return
+      is_one = .false.
+      is_one(nodes) = .true.
+      hangs = .false.
+      do h = 1, size(mesh%hanging_sides, 2)
+         associate (side => mesh%hanging_sides(:, h))
+            ! Of a side of two nodes the middle hangs, of one of three what is half way to its ends.
+            if (side(4) == 0) then
+               hangs(side(2)) = all(is_one(side([1, 3])))
+            else
+               hangs(side(4:5)) = all(is_one(side(:3)))
+            end if
+         end associate
+      end do
+      follow = hangs(nodes)
+   end function follow_sides
 
    !> The equations of the nodes of both faces of a section: u = u' + n u_r, where u' is that of the
    !> opposite face and u_r the first degree of freedom of the reference node, by which the faces
