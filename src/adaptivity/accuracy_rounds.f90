@@ -1,25 +1,28 @@
 !> The rounds of a requested accuracy: what each found at the ends of its steps.
 !>
-!> The uncertainties are those of the error estimator. Where the last increment alone tells none,
-!> every round divides both faces and halves the increments (`adaptive_rounds`), and the last two
-!> changes from round to round tell it, by the same rule: one change can be small by chance. A
-!> pressure that has no limit has none whatever the changes are; where it is at a corner, no round
-!> is spent on it.
+!> The uncertainties are those of the error estimator: of the last increment of each step, or, where
+!> that alone does not tell what is requested, of the whole run (ERRORS=FULL). Increments are halved
+!> where a finer mesh brought little. Where a quantity has none for another reason, every round
+!> divides both faces, and the last two changes from round to round tell it by the same rule: one
+!> change can be small by chance. A pressure that has no limit has none whatever the changes are;
+!> where it is at a corner, no round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
+   use contact_definitions, only: brings_friction
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
    use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use kinds, only: dp
-   use no_estimates, only: at_corner, grows, no_reason, remains
+   use model, only: model_type
+   use no_estimates, only: at_corner, grows, no_reason, of_path, reason_of_run, remains
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, uncertainty_type
    use text, only: to_text
    use uncertainty_rule, only: uncertainty_parts
    implicit none
    private
-   public :: accuracy_rounds_type, accuracy_round_type, finding_type
+   public :: accuracy_rounds_type, accuracy_round_type, finding_type, needs_full
 
    !> Least scale of a value: parts of the largest one so far, and of those of other interfaces.
    real(dp), parameter :: early = 0.25_dp, beside_others = 0.01_dp
@@ -44,7 +47,8 @@ module accuracy_rounds
       real(dp) :: change = 0.0_dp          !! what the round changed it by
       real(dp) :: uncertainty = 0.0_dp     !! NaN: not known
       real(dp) :: spacing = 0.0_dp         !! about an edge [length]
-      logical :: follows_path = .false.    !! whether increments count as well
+      !> Whether increments half as long are due: what a finer mesh did not bring
+      logical :: is_of_increments = .false.
       real(dp) :: allowed = 0.0_dp         !! what the target allows
       integer :: no_estimate = no_reason   !! why there is none, of no_estimates
       character(:), allocatable :: instead !! what there is where it has no value or no edge
@@ -83,6 +87,26 @@ module accuracy_rounds
    end type accuracy_rounds_type
 
 contains
+
+   !> Whether a request is for what the last increment alone does not tell.
+   pure logical function needs_full(model)
+      type(model_type), intent(in) :: model              !! with targets
+      logical :: with_friction(size(model%contacts))
+      integer :: i, q, s
+
+      needs_full = reason_of_run(model) == of_path
+      if (needs_full) return
+      with_friction = model%interactions(model%contacts%interaction)%friction%coefficient > 0.0_dp
+      do s = 1, size(model%steps)
+         with_friction = with_friction .or. brings_friction(model%steps(s)%changes)
+      end do
+      do i = 1, size(model%accuracy%targets)
+         associate (target => model%accuracy%targets(i))
+            q = find_quantity(estimated, target%quantity)
+            needs_full = needs_full .or. estimated(q)%follows_path .and. any(with_friction)
+         end associate
+      end do
+   end function needs_full
 
    !> Begins a round; the first one takes what is requested, of one interface or of all.
    subroutine begin_round(self, request, interfaces, steps)
@@ -143,8 +167,6 @@ contains
             associate (finding => self%rounds(n)%findings(d, record%step))
                finding = found(self%demands(d), points, &
                   record%uncertainties(self%demands(d)%interface), scale)
-               finding%follows_path = ieee_is_nan(finding%uncertainty) .or. &
-                  allocated(record%history_uncertainties)
                finding%instead = '0 at the end of each step'
                if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) then
                   finding%instead = 'no heat'
@@ -156,7 +178,7 @@ contains
                      remains(finding%no_estimate)) finding%no_estimate = grows
                end if
             end associate
-            call add_change(self%rounds, quantity, d, record%step)
+            call add_change(self%rounds, quantity, d, record)
          end associate
       end do
    end subroutine follow
@@ -200,20 +222,27 @@ contains
    end function found
 
    !> Lets the changes from the rounds before count where nothing else does.
-   subroutine add_change(rounds, quantity, d, step)
+   subroutine add_change(rounds, quantity, d, record)
       type(accuracy_round_type), intent(inout) :: rounds(:)
       type(quantity_type), intent(in) :: quantity
-      integer, intent(in) :: d, step
+      integer, intent(in) :: d
+      type(increment_record_type), intent(in) :: record   ! of an end of a step
       real(dp) :: finer, parts(3)
       integer :: n
 
       n = size(rounds)
       if (n == 1) return
-      associate (now => rounds(n)%findings(d, step), before => rounds(n - 1)%findings(d, step))
+      associate (now => rounds(n)%findings(d, record%step), &
+         before => rounds(n - 1)%findings(d, record%step))
          if (.not. (now%is_there .and. before%is_there)) return
          now%change = abs(now%value - before%value)
          if (remains(now%no_estimate)) return
-         if (.not. ieee_is_nan(now%uncertainty)) return
+         if (.not. ieee_is_nan(now%uncertainty)) then
+            if (allocated(record%history_uncertainties) .and. .not. ieee_is_nan( &
+               before%uncertainty)) now%is_of_increments = now%uncertainty > &
+               nearer*before%uncertainty
+            return
+         end if
          ! A change leads to the finer mesh, whose error is so many times smaller.
          finer = 2.0_dp**quantity%order
          parts = uncertainty_parts(quantity, max(now%change, before%change/finer)/finer, 0.0_dp, &

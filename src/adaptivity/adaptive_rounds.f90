@@ -196,8 +196,7 @@ contains
       do d = 1, size(rounds%demands)
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
          if (finding%is_met() .or. finding%no_estimate == at_corner) cycle
-         ! What follows the path takes increments half as long as well.
-         if (finding%follows_path) self%halvings = 1
+         if (finding%is_of_increments) self%halvings = 1
          levels = 1
          if (.not. ieee_is_nan(finding%uncertainty)) levels = merge(2, 1, finding%uncertainty > &
             far*finding%allowed)

@@ -1,6 +1,7 @@
 !> One deck from its cards to a run that can start, or to what is wrong with it.
 module deck_preparation
    use, intrinsic :: iso_fortran_env, only: error_unit
+   use accuracy_rounds, only: needs_full
    use cards, only: cards_type
    use command_line, only: command_run, command_type
    use contact_definitions, only: pairing_surfaces
@@ -17,7 +18,7 @@ module deck_preparation
    use load_histories, only: load_history_type
    use loads, only: loads_type
    use messages, only: print_error, print_line
-   use model, only: model_type, uncertainty_last
+   use model, only: model_type, uncertainty_full, uncertainty_last
    use no_estimates, only: of_branches, of_path, reason_of_run
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use held_points, only: first_redundant
@@ -132,6 +133,15 @@ contains
       if (command%uncertainty >= 0) deck%model%uncertainty = command%uncertainty
       if (allocated(command%targets)) deck%model%uncertainty = max(deck%model%uncertainty, &
          uncertainty_last)
+      if (allocated(command%targets)) deck%model%accuracy%targets = command%targets
+      if (allocated(deck%model%accuracy%targets) .and. deck%model%uncertainty == &
+         uncertainty_last) then
+         if (needs_full(deck%model)) then
+            deck%model%uncertainty = uncertainty_full
+            call append(deck%model%notes, 'the requested accuracy takes ERRORS=FULL: the last '// &
+               'increment alone does not tell uncertainties that build up along the path')
+         end if
+      end if
       select case (reason_of_run(deck%model))
       case (of_path)
          call append(deck%model%notes, 'no numerical uncertainties: where heat is stored, '// &
@@ -147,7 +157,6 @@ contains
       if (reason_of_run(deck%model) == of_branches) call deck%report%error(deck%cards%last, &
          'a requested accuracy needs numerical uncertainties, which branches of *CONTINUATION '// &
          'do not have; refine by *REFINE')
-      deck%model%accuracy%targets = command%targets
       if (size(deck%model%contacts) == 0) call deck%report%error(deck%cards%last, &
          'the deck has no *CONTACT PAIR: there is no quantity whose accuracy could be requested')
    end subroutine read_model

@@ -5,6 +5,7 @@ module deck_trade
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
    use accuracy_targets, only: whole_request
+   use accuracy_rounds, only: needs_full
    use adaptive_rounds, only: adaptive_rounds_type, increment_taker_type
    use clock, only: wall_seconds
    use command_line, only: command_type
@@ -20,7 +21,7 @@ module deck_trade
    use interruption, only: caught_signal
    use kinds, only: dp
    use messages, only: print_error, print_line
-   use model, only: model_type, uncertainty_last, uncertainty_no
+   use model, only: model_type, uncertainty_full, uncertainty_last, uncertainty_no
    use order_reduction, only: side_corners
    use processes, only: child_type, pause_briefly, reason_of, report_type, &
       set_reason, share_numbers, task_type
@@ -363,7 +364,10 @@ contains
       model%uncertainty = merge(uncertainty_last, uncertainty_no, self%accuracy > 0.0_dp)
       model%steps%restart_frequency = 0
       if (allocated(model%accuracy%targets)) deallocate (model%accuracy%targets)
-      if (self%accuracy > 0.0_dp) model%accuracy%targets = whole_request(self%accuracy)
+      if (self%accuracy > 0.0_dp) then
+         model%accuracy%targets = whole_request(self%accuracy)
+         if (needs_full(model)) model%uncertainty = uncertainty_full
+      end if
       call index%build(model%mesh%node_number)
       self%found%nodes = [(index%find(self%nodes(i)), i=1, size(self%nodes))]
       self%found%figures(:, 2) = 0.0_dp
