@@ -117,10 +117,7 @@ contains
             output%run%settings = settings_in_words(self%command)
             if (allocated(self%deck%origin)) output%run%origin = self%deck%origin%words()
             if (model%uncertainty == uncertainty_full .and. .not. self%command%quiet) call &
-               print_line(output_unit, self%path//': ERRORS=FULL solves the deck once more '// &
-               'beside itself, with '//to_text(4*size(model%mesh%element_kind))//' elements for '// &
-               to_text(size(model%mesh%element_kind))//' and increments half as long: 4 to 12 '// &
-               'times the time of ERRORS=NO')
+               print_line(output_unit, self%path//': '//cost_words(model))
             call solve_deck(self, rounds, error)
             if (allocated(error)) call report_failure(self, error, is_told=.false.)
             ! Of a run that could not go on for want of a file or of memory a check says nothing.
@@ -135,6 +132,18 @@ contains
       end associate
       deallocate (self%model, self%simulation, self%output)
    end subroutine solve_round
+
+   !> What ERRORS=FULL costs.
+   function cost_words(model) result(words)
+      type(model_type), intent(in) :: model
+      character(:), allocatable :: words
+
+      associate (elements => size(model%mesh%element_kind))
+         words = 'ERRORS=FULL solves the deck once more beside itself, with '// &
+            to_text(4*elements)//' elements for '//to_text(elements)//' and increments half '// &
+            'as long: 4 to 12 times the time of ERRORS=NO'
+      end associate
+   end function cost_words
 
    !> All that comes before the first increment. A first round touches no file before its deck is
    !> found sound; a later one can say in the listing what ends it.
