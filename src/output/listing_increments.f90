@@ -26,11 +26,10 @@ module listing_increments
    public :: print_increment, print_attempts, print_interface, print_interfaces, print_balances
    public :: print_body_errors, print_history_uncertainties, print_maxima, print_uncertainties
 
-   character(*), parameter :: kinds_of_error(3) = [character(10) :: 'mesh', 'scatter', &
+   character(*), parameter :: kinds_of_error(3) = [character(10) :: 'change', 'scatter', &
       'iteration']
    character(*), parameter :: uncertainty_head = '         value  uncertainty          %'// &
-      '        mesh'// &
-      '       scatter     iteration  largest part'
+      '      change       scatter     iteration  largest part'
 
 contains
 

@@ -48,7 +48,7 @@ module results
    public :: results_type
 
    type(quantity_type), parameter :: step_time = quantity_type('time', of_history, 'time', &
-      description='total time at the end of the step')
+      description='total time at the end of the step (with ERRORS=FULL, of the increment)')
    integer, parameter :: history = 1, convergence = 2, stability = 3   !! tables
    character(*), parameter :: contact_end = '.contact.vtkhdf', end_of_name = '.vtkhdf'
    character(*), parameter :: earlier = '.earlier'   !! before the end of the name
