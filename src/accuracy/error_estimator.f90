@@ -235,7 +235,8 @@ contains
          do q = 1, size(values, 1)
             holds = .false.
             holds(slides_far) = record%contacts(i)%slide%point > 0
-            holds(not_unique) = abs(other(q, i) - values(q, i)) > same*abs(values(q, i))
+            if (.not. ieee_is_nan(other(q, i) - values(q, i))) holds(not_unique) = &
+               abs(other(q, i) - values(q, i)) > same*abs(values(q, i))
             holds(at_corner) = estimated(q)%name == 'peak_pressure' .and. &
                peaks_at_corner(points, record%contacts(i))
             holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. &
@@ -397,11 +398,13 @@ contains
             worst(fine) - checks%value(i), 0.0_dp, 0.0_dp, iteration*checks%value(i)))
       end subroutine compare
 
-      !> The value that a check judges.
+      !> The value that a check judges; NaN where one is.
       pure real(dp) function worst(values)
          real(dp), intent(in) :: values(:)
 
-         worst = values(max(1, maxloc(abs(values - model%verifications(i)%value), dim=1)))
+         worst = ieee_value(1.0_dp, ieee_quiet_nan)
+         if (.not. any(ieee_is_nan(values))) worst = values(maxloc(abs(values - &
+            model%verifications(i)%value), dim=1))
       end function worst
 
    end subroutine judge_checks

@@ -3,6 +3,7 @@
 !> and cold: both are solutions on the mesh of the run, and its increments decide which one it
 !> finds. The exact solution has one edge; so what these states differ by is an error of the mesh.
 module other_states
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_quantities, only: estimated
    use contact_system, only: contact_open
    use controls, only: start_closed, start_open, start_type
@@ -53,7 +54,9 @@ contains
             if (.not. is_beside(state%contact%contact_state, &
                simulation%state%contact%contact_state, piece_starts(bodies))) cycle
             call quantities_of_state(bodies, state, other)
-            where (abs(other - own) > abs(farthest - own)) farthest = other
+            where (.not. ieee_is_nan(other - own))
+               farthest = merge(other, farthest, abs(other - own) > abs(farthest - own))
+            end where
          end do
       end associate
       call heat%release()

@@ -258,7 +258,7 @@ contains
 
       do q = 1, size(names)
          names(q)%value = ''
-         if (abs(errors%value(q)) > 0.0_dp) names(q)%value = trim(history_estimated(q)%name)
+         if (.not. ieee_is_nan(errors%value(q))) names(q)%value = trim(history_estimated(q)%name)
       end do
       if (any([(names(q)%value /= '', q=1, size(names))])) call print_table(page, &
          'THE INCREMENT', maxval(len_trim(history_estimated%name)), names, errors)
