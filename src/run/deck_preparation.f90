@@ -18,7 +18,7 @@ module deck_preparation
    use load_histories, only: load_history_type
    use loads, only: loads_type
    use messages, only: print_error, print_line
-   use model, only: model_type, uncertainty_full, uncertainty_last
+   use model, only: model_type, uncertainty_full, uncertainty_last, uncertainty_no
    use no_estimates, only: of_branches, of_path, reason_of_run
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use held_points, only: first_redundant
@@ -149,6 +149,7 @@ contains
             'along the path, which ERRORS=FULL follows once more')
       case (of_branches)
          call append(deck%model%notes, 'no numerical uncertainties of branches')
+         deck%model%uncertainty = uncertainty_no
       case default   ! none, or asked for none
       end select
       if (.not. allocated(command%targets)) return
