@@ -238,7 +238,7 @@ def test_files_without_a_step_are_skipped_in_a_batch_only(good, bad, tmp_path):
 
 
 def pellets_without_tables(folder):
-    """Write the fuel pellets with the first row of each property, so that errors have bounds."""
+    """Write the fuel pellets with the first row of each property, so that numbers have uncertainties."""
     text = (INPUT / "examples" / "fuel_pellet.inp").read_text().split("*VERIFY")[0]
     text = re.sub(r"(?m)^(\*(?:ELASTIC|EXPANSION|CONDUCTIVITY).*\n.*\n)(?:\d.*\n)+", r"\1", text)
     text = text.replace("INPUT=", f"INPUT={INPUT / 'examples'}/")
@@ -249,8 +249,8 @@ def test_a_summary_tells_zones_without_an_edge(tmp_path):
     """The faces of the press fit are closed from end to end, those of the rods open."""
     press_fit = run("run", INPUT / "examples" / "press_fit.inp", "--out", tmp_path).stdout
     assert re.search(r"\n    edge of contact +10 +mm, whole face\n", press_fit)
-    bounds = (tmp_path / "press_fit.lst").read_text().split("BOUNDS OF THE ERRORS OF SEAT")[1].split("\n\n")[0]
-    assert "peak pressure" in bounds and "edge" not in bounds
+    table = (tmp_path / "press_fit.lst").read_text().split("NUMERICAL UNCERTAINTY (95 %) OF SEAT")[1]
+    assert "peak pressure" in table.split("\n\n")[0] and "edge" not in table.split("\n\n")[0]
     pellets = run("run", pellets_without_tables(tmp_path), "--out", tmp_path).stdout
     assert re.search(r"\n    edge of contact +10 +mm, up to an end of the face, closed at 10\n", pellets)
     assert re.search(r"\n    edge of contact +0.51\d+ \+- .* mm, closed from 0 to 0.51\d+, width 0.51\d+\n", pellets)
@@ -264,9 +264,10 @@ def test_a_summary_tells_zones_without_an_edge(tmp_path):
 def test_a_summary_tells_the_interface_then_the_results_then_what_failed(tmp_path):
     deck = copy_deck(CYLINDER, tmp_path / "cylinder.inp", [
         '*VERIFY, KIND=ANALYTIC, SOURCE="wrong on purpose"', "pressure, MAX, LAST, 2., 1.E-6"])
-    process = run("run", deck, "--out", tmp_path)
+    process = run("run", deck, "--out", tmp_path, "--errors", "full")
     assert process.returncode == 4
-    lines = process.stdout.splitlines()
+    cost, *lines = process.stdout.splitlines()
+    assert "ERRORS=FULL solves the deck once more beside itself" in cost
     assert lines[1] == "  at time 900 (increment 45), temperature of TOP 900:"
     assert lines[2] == "  FACE"
     with h5py.File(tmp_path / "cylinder.vtkhdf") as file:
@@ -277,14 +278,14 @@ def test_a_summary_tells_the_interface_then_the_results_then_what_failed(tmp_pat
                     "peak pressure": face["pressure"][-1].max(),
                     "edge of contact": face["edge_contact"][-1],
                     "edge of stick": face["edge_stick"][-1]}
-        bounds = [file[f"errors/FACE/{name}"][-1, 1] for name in (
+        told = [file[f"uncertainty/FACE/{name}"][-1, 1] for name in (
             "normal_force", "shear_force", "heat_rate", "peak_pressure", "edge_contact", "edge_stick")]
     units = ["MPa cm^2", "MPa cm^2", "W", "MPa", "cm", "cm"]
-    for line, (name, value), unit, bound in zip(lines[3:9], expected.items(), units, bounds, strict=True):
+    for line, (name, value), unit, uncertainty in zip(lines[3:9], expected.items(), units, told, strict=True):
         assert line[4:21].strip() == name
         assert float(line[21:34]) == pytest.approx(value, rel=1e-5)
         assert line.split(",")[0].endswith(" " + unit)
-        assert float(line.split("+-")[1].split()[0]) == pytest.approx(bound, rel=0.05)
+        assert float(line.split("+-")[1].split()[0]) == pytest.approx(uncertainty, rel=0.05)
     assert lines[9] == "  largest in body 1" and "  largest in body 2" in lines
     assert re.fullmatch(r" +von Mises stress +\S+ \+- \S+ +\(\S+ %\) +MPa, node \d+ \(\S+, \S+\)",
                         lines[10])

@@ -189,7 +189,7 @@ def test_a_stress_presses_faces_together(tmp_path):
                                     ("S22", "LOWER", "LAST", -5.0, 1e-9),
                                     ("S22", "UPPER", "LAST", -5.0, 1e-9)])
     with h5py.File(result) as file:
-        value, *errors = file["errors/FACE/normal_force"][0]
+        value, *errors = file["uncertainty/FACE/normal_force"][0]
     assert value == pytest.approx(10.0)
     assert np.abs(errors) == pytest.approx(0.0, abs=1e-9)
 

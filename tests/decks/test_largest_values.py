@@ -1,4 +1,4 @@
-"""The largest stress and temperature of a body: their bounds, and singular corners that are named."""
+"""The largest stress and temperature of a body: their uncertainties, and singular corners that are named."""
 
 import re
 
@@ -28,7 +28,7 @@ def summary(folder, *cards):
 def corner(place):
     """Return the words that name one corner."""
     x, y = place
-    return rf"no bound: node \d+ \({x:g}, {y:g}\)"
+    return rf"no estimate: node \d+ \({x:g}, {y:g}\)"
 
 
 def test_a_clamped_side_ends_at_singular_corners(tmp_path):
@@ -78,8 +78,8 @@ def test_a_reentrant_corner_is_singular(tmp_path):
     assert re.search(corner((1, 1)), head)
 
 
-@pytest.mark.parametrize(("where", "bounded"), [("MAX", True), ("1", True), ("BODY.LEFT", False)])
-def test_checks_of_largest_values_and_of_nodes_have_bounds(tmp_path, where, bounded):
+@pytest.mark.parametrize(("where", "is_known"), [("MAX", True), ("1", True), ("BODY.LEFT", False)])
+def test_checks_of_largest_values_and_of_nodes_have_uncertainties(tmp_path, where, is_known):
     _, text = summary(tmp_path, *block(), *material("BODY", None, conductivity=1.0),
                       "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", "*STEP",
                       "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY",
@@ -88,15 +88,15 @@ def test_checks_of_largest_values_and_of_nodes_have_bounds(tmp_path, where, boun
                       f"NT, {where}, LAST, 0.2947, 1.")
     # 0.294685 in the middle of a square of side 2 (S. P. Timoshenko, J. N. Goodier, section 109).
     found = re.search(r"found: (\S+) \+- (\S+)", text)
-    assert bool(found) == bounded
-    assert not bounded or abs(float(found[1]) - 0.294685) < float(found[2]) < 0.01
+    assert bool(found) == is_known
+    assert not is_known or abs(float(found[1]) - 0.294685) < float(found[2]) < 0.01
 
 
-def test_without_bounds_nothing_is_told(tmp_path):
+def test_without_uncertainties_nothing_is_told(tmp_path):
     deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=NO", *block(), *material("BODY"), *STATIC,
                                          "BODY.BOTTOM, 1, 2", "*DSLOAD", "BODY.TOP, P, -1.",
                                          "*END STEP"])
     process = run("run", deck, "--out", tmp_path)
     assert process.returncode == 0 and "largest in body" not in process.stdout
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
-        assert set(file["errors"]) == {"reasons", "time"}
+        assert set(file["uncertainty"]) == {"reasons", "time"}

@@ -62,7 +62,7 @@ def test_the_estimate_is_not_under_the_peak_nor_twice_as_much(tmp_path, source, 
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
 
 
-def test_the_estimate_has_room_for_the_factors_of_the_bounds_beside_mortar_points(tmp_path):
+def test_the_estimate_has_room_for_the_factors_of_the_finer_mesh_beside_mortar_points(tmp_path):
     deck = few_increments(without_checks(CYLINDER, tmp_path, ["*REFINE, LEVELS=3"]))
     deck.write_text(deck.read_text().replace("PAIRING=NODES", "PAIRING=SURFACES"))
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0
@@ -165,7 +165,7 @@ def test_a_hard_limit_of_the_stack_is_told_with_what_to_do(tmp_path, arguments, 
 
 @pytest.mark.parametrize("solver", ["SKYLINE", "MUMPS"])
 def test_the_estimate_covers_a_plain_run(tmp_path, solver):
-    """Without bounds of errors, which take most of the memory: what is left is the solver's."""
+    """Without uncertainties, which take most of the memory: what is left is the solver's."""
     deck = few_increments(without_checks(CYLINDER, tmp_path, [
         "*REFINE, LEVELS=2", "*OPTIONS, ERRORS=NO", f"*SOLVER, TYPE={solver}"]))
     assert 1.0 <= estimate(deck) / peak(deck) <= 2.0

@@ -125,10 +125,10 @@ def test_heat_crosses_a_radial_gap_on_the_radius_midway(tmp_path, kind, slave):
 
 
 @pytest.mark.parametrize("friction", ["*FRICTION\n50.", "*FRICTION, ROUGH"])
-def test_a_ring_that_lifts_off_a_rough_base_has_bounds_in_time(tmp_path, friction):
+def test_a_ring_that_lifts_off_a_rough_base_has_uncertainties_in_time(tmp_path, friction):
     """A hot disc on mortar points dishes and lifts, but for its rim, which carries all of the load.
 
-    Near the edge of contact points slip with next to no force; the finer mesh of the bounds failed.
+    Near the edge of contact points slip with next to no force; the finer mesh of the uncertainties failed.
     """
     xs = even(0.0, 2.0, 5)
     cards = [*mesh("LOW", xs, [0.0, 1.0], "CAX4"), *mesh("UP", xs, [1.0, 2.0], "CAX4", first=101),
@@ -145,5 +145,5 @@ def test_a_ring_that_lifts_off_a_rough_base_has_bounds_in_time(tmp_path, frictio
     result = solve(write(tmp_path / "ring.inp", without_unused_surfaces(cards)))
     with h5py.File(result) as file:
         assert file["contact/P/normal_force"][-1] == pytest.approx(np.pi * 4.0 * 0.5, rel=1e-9)
-        bound = file["errors/P/normal_force"][-1][1]
-        assert 0.0 < bound < 0.1 * np.pi * 4.0 * 0.5
+        uncertainty = file["uncertainty/P/normal_force"][-1][1]
+        assert 0.0 < uncertainty < 0.1 * np.pi * 4.0 * 0.5

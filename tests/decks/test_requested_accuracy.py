@@ -37,7 +37,7 @@ def rounds_of(result, face="FACE"):
     with h5py.File(result) as file:
         group = file["accuracy"]
         costs = {name: group[name][:] for name in ("cpu_seconds", "unknowns", "elements", "increments")}
-        bounds = {name: rows[:] for name, rows in group[f"bounds/{face}"].items()}
+        bounds = {name: rows[:] for name, rows in group[f"uncertainty/{face}"].items()}
         return costs, bounds, int(group.attrs["reached"])
 
 
@@ -56,7 +56,7 @@ def test_true_errors_are_inside_the_target_and_the_bound(tmp_path, deck, percent
         elements = len(file["VTKHDF/CellData/element_id"])
         unknowns = sum(file["run"].attrs[name] for name in (
             "equations_thermal", "equations_mechanical", "contact_unknowns"))
-        told = {name: file[f"errors/FACE/{name}"][-1, 1] for name in found}
+        told = {name: file[f"uncertainty/FACE/{name}"][-1, 1] for name in found}
     assert (elements, unknowns) == (costs["elements"][-1], costs["unknowns"][-1])
     for name, exact in CONVERGED[deck].items():
         step, value, bound, allowed = bounds[name][-1]
@@ -293,11 +293,11 @@ def test_a_number_has_one_verdict(tmp_path, name):
     unsure = set(re.findall(r"^    (\S.*?)  +\S+ \(no estimate: ", process.stdout, flags=re.M))
     assert met and not met & unsure
     with h5py.File(tmp_path / f"{name}.vtkhdf") as file:
-        for face, targets in file["accuracy/bounds"].items():
+        for face, targets in file["accuracy/uncertainty"].items():
             for key, rows in targets.items():
                 step, value, bound, _ = rows[-1]
-                if step == len(file["errors/time"]):
-                    np.testing.assert_array_equal(file[f"errors/{face}/{key}"][-1, :2], [value, bound])
+                if step == len(file["uncertainty/time"]):
+                    np.testing.assert_array_equal(file[f"uncertainty/{face}/{key}"][-1, :2], [value, bound])
 
 
 def test_a_deck_without_contact_has_nothing_to_request(tmp_path):
@@ -348,8 +348,8 @@ def test_a_pressure_without_limit_is_never_reached_and_costs_no_round(tmp_path, 
     _, bounds, reached = rounds_of(tmp_path / "punch.vtkhdf", "P")
     assert not reached and np.all(np.isnan(bounds["peak_pressure"][:, 2]))
     with h5py.File(tmp_path / "punch.vtkhdf") as file:
-        assert np.isnan(file["errors/P/peak_pressure"][-1, 1])
-        assert file["errors/P/normal_force"][-1, 1] < 0.1
+        assert np.isnan(file["uncertainty/P/peak_pressure"][-1, 1])
+        assert file["uncertainty/P/normal_force"][-1, 1] < 0.1
 
 
 @pytest.mark.parametrize(("columns", "width"), [(8, None), (12, 4)], ids=["mortar points", "node pairs"])

@@ -77,7 +77,7 @@ def go_on(deck, result, folder, at=None):
 
 
 # Friction that turns round, mortar points, a transient whose increments follow its error, with one
-# that touches, a scheme with a past, bounds of errors and of doubled increments with friction.
+# that touches, a scheme with a past, uncertainties of complete finer runs.
 @pytest.mark.parametrize(("name", "cards"), [
     ("thermal_cycling", ()),
     ("roller", ()),

@@ -69,10 +69,10 @@ def hertz(kind, radius, width):
 
 
 @pytest.mark.parametrize(("level", "options"), [(0, []), (1, []), (0, ["--accuracy", "1%"])],
-                         ids=["bounds", "refined", "accuracy"])
+                         ids=["deck", "refined", "accuracy"])
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
 @pytest.mark.parametrize("kind", ["CPE8", "CAX8"])
-def test_errors_are_within_their_bounds(tmp_path, kind, pairing, level, options):
+def test_errors_are_within_their_uncertainties(tmp_path, kind, pairing, level, options):
     """Johnson, sections 3.4, 4.2. Stress below a line load on a block errs by its width over the
     block's; normals lean by x/(2 R)."""
     radius, size, width = 1000.0, 4e4 if kind == "CPE8" else 400.0, 1.0
@@ -80,13 +80,13 @@ def test_errors_are_within_their_bounds(tmp_path, kind, pairing, level, options)
     lean = (width / radius)**2 / (32 if kind == "CPE8" else 20)
     deck = write(tmp_path / "deck.inp", roller(kind, force, pairing, radius, size, level))
     with h5py.File(solve(deck, *options)) as file:
-        errors = {name: file[f"errors/{name}"][-1, :2] for name in (
+        errors = {name: file[f"uncertainty/{name}"][-1, :2] for name in (
             "FACE/normal_force", "FACE/peak_pressure", "FACE/edge_contact", "body 1/von_mises")}
-    for (value, bound), exact in zip(errors.values(), [force * (1 + lean), peak, width, stress],
+    for (value, uncertainty), exact in zip(errors.values(), [force * (1 + lean), peak, width, stress],
                                      strict=True):
-        assert abs(value - exact) <= bound
+        assert abs(value - exact) <= uncertainty
     if options:
-        assert max(bound / value for value, bound in list(errors.values())[:3]) <= 0.01
+        assert max(uncertainty / value for value, uncertainty in list(errors.values())[:3]) <= 0.01
 
 
 PLATE = ["*NODE", "9001, 0.5, 3.25", "9002, 2., 3.", "9003, 0., 3.", "9004, -2., 3."]
@@ -139,7 +139,7 @@ def test_rigid_bodies_are_as_one_of_a_far_larger_modulus(tmp_path, pairing):
             face = file["contact/FACE"]
             found.append([face["normal_force"][-1], face["edge_contact"][-1],
                           face["pressure"][-1].max()])
-            assert file["errors/FACE/normal_force"][-1, 1] < 0.01 * found[-1][0]
+            assert file["uncertainty/FACE/normal_force"][-1, 1] < 0.01 * found[-1][0]
     assert found[1] == pytest.approx(found[0], rel=1e-5)
     assert found[2] == pytest.approx(found[0], rel=1e-5)
 

@@ -131,14 +131,14 @@ EDGES = {
 
 @pytest.mark.parametrize("name", EDGES)
 def test_fields_without_inner_unknowns_have_one_solution_with_both_solvers(tmp_path, name):
-    """No unknowns at all, one, or none but those of contact, also on the finer mesh of the bounds; with
+    """No unknowns at all, one, or none but those of contact, also on the finer mesh of the uncertainties; with
     the solver that the size of the deck chooses, too."""
     found = {}
     for solver in ("SKYLINE", "MUMPS", "default"):
         cards = [f"*SOLVER, TYPE={solver}"] if solver != "default" else []
         deck = write(tmp_path / f"{solver}.inp", [*cards, *EDGES[name]])
         with h5py.File(solve(deck)) as file:
-            groups = [group for group in ("contact", "history", "VTKHDF/PointData", "errors")
+            groups = [group for group in ("contact", "history", "VTKHDF/PointData", "uncertainty")
                       if group in file]
         found[solver] = datasets(deck.with_suffix(".vtkhdf"), *groups)
     skyline = {key: values for key, values in found["SKYLINE"].items() if key not in ROUNDING}
@@ -146,9 +146,9 @@ def test_fields_without_inner_unknowns_have_one_solution_with_both_solvers(tmp_p
     for key, values in skyline.items():
         scale = max(np.nanmax(np.abs(values), initial=0.0), 1e-3)   # below that all is rounding
         part = 1e-10
-        if key.startswith("errors/"):
+        if key.startswith("uncertainty/"):
             # Which of elements that err alike the finer mesh divides follows rounding, and with it
-            # the bound of a shear that is zero, which is measured by the normal force.
+            # the uncertainty of a shear that is zero, which is measured by the normal force.
             part = 1e-2
             scale = max(scale, np.abs(skyline.get("contact/P/normal_force", scale)).max())
         for solver in ("MUMPS", "default"):

@@ -498,7 +498,7 @@ def test_analysis_changes_no_digit_of_the_run(tmp_path):
                for card, name in (("*STABILITY", "with"), ("**", "without"))]
     with h5py.File(results[0]) as one, h5py.File(results[1]) as two:
         assert "stability" not in two
-        for group in "history", "contact/FACE", "errors/FACE":
+        for group in "history", "contact/FACE", "uncertainty/FACE":
             for name in two[group]:
                 np.testing.assert_array_equal(one[f"{group}/{name}"][:], two[f"{group}/{name}"][:])
 

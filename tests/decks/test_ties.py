@@ -315,7 +315,7 @@ def test_a_tie_stands_beside_contact_that_shares_its_nodes(tmp_path, rows, frict
         moment = sum((file[f"contact/{name}/pressure"][-1] * file[f"contact/{name}/weight"][()]
                       * file[f"contact/{name}/x"][()]).sum() for name in "AB")
         assert sorted(file["contact"]) == ["A", "B"]
-        assert all(np.isfinite(file[f"errors/{name}/normal_force"][-1, 2]) for name in "AB")
+        assert all(np.isfinite(file[f"uncertainty/{name}/normal_force"][-1, 2]) for name in "AB")
     assert sum(force) == pytest.approx(8.0, rel=1e-9)
     assert moment == pytest.approx(6.0 * 0.5 + 2.0 * 1.5, rel=1e-6)
     assert heat == pytest.approx(9.0, rel=1e-9)

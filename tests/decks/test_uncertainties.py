@@ -1,12 +1,12 @@
-"""Bounds of the errors of a run against true errors that are known in closed form."""
+"""Numerical uncertainties of a run against true errors that are known in closed form."""
 
 import re
+import shutil
 
 import h5py
 import numpy as np
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
-from changes import note_changes
 from deck_runs import CYLINDER, HERTZ, INPUT, copy_deck, run, solve
 from physics import material, mesh, nodes_of   # puts tests/reference on the path, too
 
@@ -14,33 +14,35 @@ import rods
 
 PRESS_FIT = INPUT / "examples" / "press_fit.inp"
 FINE = 3   # refinements behind which the mesh's error is a thousandth of that of the deck's
+FACTOR = 3 / (2**0.8 - 1)   # of a change, which makes it the uncertainty of a number
+FULL = "*OPTIONS, ERRORS=FULL"
 
 
 def errors(result, face):
-    """Return the rows of /errors at the end of a run: value, bound, mesh, increments, iteration."""
+    """Return the rows of /uncertainty at the end of a run: value, uncertainty, change, scatter,
+    iteration."""
     with h5py.File(result) as file:
-        return {name: data[-1] for name, data in file[f"errors/{face}"].items()}
+        return {name: data[-1] for name, data in file[f"uncertainty/{face}"].items()}
 
 
 def bare(source, folder, name, cards=(), changes=()):
     """Copy a deck without its checks."""
     deck = copy_deck(source, folder / name, cards, changes)
     deck.write_text(deck.read_text().split("*VERIFY")[0])
-    for mesh in source.parent.glob("*.mesh"):
-        (folder / mesh.name).write_text(mesh.read_text())
+    for part in (part for end in ("mesh", "inc", "step") for part in source.parent.glob(f"*.{end}")):
+        shutil.copy(part, folder)
     return deck
 
 
 def test_error_of_the_mesh_where_it_is_smooth(tmp_path):
     """The force of a press fit converges with h^4: a mesh with three refinements is exact beside
-    it. The bound is three times what half the elements at the face change, where a single increment tells
-    no scatter, and a part of the squared error of the energy in the others."""
+    it. A single increment without friction and heat tells neither scatter nor iteration."""
     coarse = errors(solve(bare(PRESS_FIT, tmp_path, "coarse.inp")), "SEAT")
     fine = errors(solve(bare(PRESS_FIT, tmp_path, "fine.inp", [f"*REFINE, LEVELS={FINE}"])), "SEAT")
-    value, bound, mesh, increment, iteration = coarse["normal_force"]
+    value, uncertainty, change, scatter, iteration = coarse["normal_force"]
     true = abs(fine["normal_force"][0] - value)
-    assert true <= mesh <= 3 * true
-    assert increment == iteration == 0.0 and bound == mesh   # no friction, no heat
+    assert true <= change <= FACTOR * true
+    assert scatter == iteration == 0.0 and uncertainty == change
 
 
 def test_error_of_hertz_peak_pressure(tmp_path):
@@ -52,29 +54,10 @@ def test_error_of_hertz_peak_pressure(tmp_path):
     with h5py.File(fine) as file:
         peak = file["contact/FACE/pressure"][-1].max()
         edge = file["contact/FACE/edge_contact"][-1]
-    value, bound, *_ = coarse["peak_pressure"]
-    assert 0.25 * bound <= abs(peak - value) <= bound
-    value, bound, *_ = coarse["edge_contact"]
-    assert abs(edge - value) <= bound
-
-
-def test_a_peak_where_friction_turns_round_has_no_bound_until_the_mesh_has_what_sticks(tmp_path):
-    """With little friction the whole face slips away from the axis: between both sides the shear jumps. Bodies of
-    one stiffness have a bound."""
-    words = "friction turns round at the peak"
-    for friction, level, is_known in (("0.03", 0, False), ("0.03", 1, False), ("0.04", 0, False), ("0.04", 1, True)):
-        deck = bare(CYLINDER, tmp_path, f"{friction}_{level}.inp", [f"*REFINE, LEVELS={level}"],
-                    {"0.155, 1.E5": f"{friction}, 1.E5"})
-        process = run("run", deck, "--out", tmp_path)
-        _, bound, *_ = errors(deck.with_suffix(".vtkhdf"), "FACE")["peak_pressure"]
-        assert np.isfinite(bound) == is_known == (words not in process.stdout)
-    alike = {"0.155, 1.E5": "0.03, 1.E5", "2.E4, 0.2": "2.E4, 0.4"}
-    deck = bare(CYLINDER, tmp_path, "alike.inp", (), alike)
-    assert words not in run("run", deck, "--out", tmp_path).stdout
-    # What changes from round to round is no bound either.
-    changes = {"0.155, 1.E5": "0.01, 1.E5"}
-    request = run("run", bare(CYLINDER, tmp_path, "asked.inp", (), changes), "--accuracy", "1%", "--out", tmp_path)
-    assert request.returncode == 4 and f"not met: no estimate, target 1 %: {words}" in request.stdout
+    value, uncertainty, *_ = coarse["peak_pressure"]
+    assert uncertainty / FACTOR <= abs(peak - value) <= uncertainty
+    value, uncertainty, *_ = coarse["edge_contact"]
+    assert abs(edge - value) <= uncertainty
 
 
 def bent_on_a_block(path, friction, cards=(), held="B.BOTTOM"):
@@ -92,23 +75,35 @@ def bent_on_a_block(path, friction, cards=(), held="B.BOTTOM"):
         "*BOUNDARY", "A.LEFT, 11, 11, 200.", "A.RIGHT, 11, 11, -100.", "*END STEP"]))
 
 
-@pytest.mark.parametrize(("held", "near"), [("B.BOTTOM", 0.03), ("B", 0.1)])
+@pytest.mark.parametrize("held", ["B.BOTTOM", "B"])
 @pytest.mark.parametrize("friction", [["*FRICTION", "0.3"], []])
-def test_mesh_of_a_coupled_run(tmp_path, friction, held, near):
-    """The bound of the mesh is three times what the next one changes, also where one body is held at all
-    of its nodes, and the energy of the elements that are left. In one increment, before which nothing has slipped: what friction left on the finer mesh
-    is not known."""
-    coarse = errors(solve(bent_on_a_block(tmp_path / "coarse.inp", friction, held=held)), "P")
-    fine = errors(solve(bent_on_a_block(tmp_path / "fine.inp", friction, ["*REFINE, LEVELS=1"], held)), "P")
+def test_change_of_a_complete_finer_run(tmp_path, friction, held):
+    """With ERRORS=FULL it is that to a deck with all elements and increments halved, also where one
+    body is held at all of its nodes."""
+    halved = bent_on_a_block(tmp_path / "fine.inp", friction, ["*REFINE, LEVELS=1"], held)
+    halved.write_text(halved.read_text().replace("\n1., 1.\n*BOUNDARY", "\n0.5, 1.\n*BOUNDARY"))
+    coarse = errors(solve(bent_on_a_block(tmp_path / "coarse.inp", friction, [FULL], held)), "P")
+    fine = errors(solve(halved), "P")
     assert 1.0 < coarse["edge_contact"][0] < 3.0
+    for name in ("normal_force", "heat_rate", "peak_pressure", "shear_force")[:4 if friction else 3]:
+        value, uncertainty, change, *_ = coarse[name]
+        assert FACTOR * abs(fine[name][0] - value) == pytest.approx(change, rel=1e-6), name
+        assert 0.0 < change <= uncertainty
+
+
+@pytest.mark.parametrize("held", ["B.BOTTOM", "B"])
+def test_change_of_the_last_increment_alone(tmp_path, held):
+    """Without friction it is that to a run with all elements halved: those at the faces err most."""
+    coarse = errors(solve(bent_on_a_block(tmp_path / "coarse.inp", [], held=held)), "P")
+    fine = errors(solve(bent_on_a_block(tmp_path / "fine.inp", [], ["*REFINE, LEVELS=1"], held)), "P")
     for name in ("normal_force", "heat_rate", "peak_pressure"):
-        value, _, mesh, *_ = coarse[name]
-        assert 1 - near < 3 * abs(fine[name][0] - value) / mesh < 1 + 1e-6, name
+        value, _, change, *_ = coarse[name]
+        assert FACTOR * abs(fine[name][0] - value) == pytest.approx(change, rel=0.03), name
 
 
 def test_a_later_step_divides_the_elements_at_its_contact(tmp_path):
     """A block is pressed at its left end, then at its right one; without friction it does not remember
-    the first step: the bounds are those of a deck with the second alone."""
+    the first step: the uncertainties are those of a deck with the second alone."""
     def deck(name, *steps):
         lines = np.linspace(0.0, 4.0, 9)
         cards = [*block("A", lines, [1.0, 1.5, 2.0, 2.5]), *block("B", lines, [0.0, 0.5, 1.0], first=1001),
@@ -123,34 +118,35 @@ def test_a_later_step_divides_the_elements_at_its_contact(tmp_path):
     left, right = 17, 24
     both = errors(solve(deck("both", left, right)), "P")
     one = errors(solve(deck("one", right)), "P")
-    for name, (value, bound, *_) in one.items():
+    for name, (value, uncertainty, *_) in one.items():
         if not np.isnan(value):
             assert both[name][0] == pytest.approx(value, rel=1e-9), name
-            assert both[name][1] == pytest.approx(bound, rel=1e-6), name
+            assert both[name][1] == pytest.approx(uncertainty, rel=1e-6), name
 
 
 @pytest.mark.parametrize("friction", [["*FRICTION", "0.3"], []])
-@pytest.mark.parametrize("order", [[], ["*OPTIONS, ORDER=1"]])
+@pytest.mark.parametrize("order", [[FULL], [f"{FULL}, ORDER=1"]], ids=["order 2", "order 1"])
 def test_mesh_of_a_model_with_equations(tmp_path, friction, order):
-    """All nodes of the top move as one that is held: the bounds are those of a top that is held
+    """All nodes of the top move as one that is held: the uncertainties are those of a top that is held
     itself, but that its new nodes hang along x and in temperature, too: of linear elements that
     moves the peak."""
+    is_linear = "ORDER=1" in order[0]
     plain = bent_on_a_block(tmp_path / "plain.inp", friction, order)
     top = [node for node, (x, y) in nodes_of(plain.read_text().splitlines()).items()
-           if y == 2.0 and not (order and 2 * x % 1)]   # which are corners, 0.5 apart
+           if y == 2.0 and not (is_linear and 2 * x % 1)]   # which are corners, 0.5 apart
     equations = "".join(f"2\n{node}, 2, 1., 1050, 2, -1.\n" for node in top)
     cards = plain.read_text().replace("*ELEMENT", "*NODE\n1050, 2., 3.\n*ELEMENT", 1).replace(
         "*SURFACE INTERACTION", f"*EQUATION\n{equations}*SURFACE INTERACTION", 1)
     assert "A.TOP, 2\n" in cards
     (tmp_path / "equations.inp").write_text(cards.replace("A.TOP, 2\n", "1050, 2\n", 1))
     held, led = errors(solve(plain), "P"), errors(solve(tmp_path / "equations.inp"), "P")
-    for name in ("normal_force", "heat_rate", "edge_contact", "peak_pressure")[:3 if order else 4]:
+    for name in ("normal_force", "heat_rate", "edge_contact", "peak_pressure")[:3 if is_linear else 4]:
         assert led[name][0] == pytest.approx(held[name][0], rel=1e-9), name
         assert led[name][2] == pytest.approx(held[name][2], rel=0.05), name
 
 
 @pytest.mark.parametrize("steps", [1, 2])
-def test_no_step_has_bounds_where_the_finer_mesh_does_not_match(tmp_path, steps):
+def test_no_step_has_uncertainties_where_the_finer_mesh_does_not_match(tmp_path, steps):
     """A midside node of the base is moved along it: what the finer mesh adds is not opposite each
     other any more."""
     deck = bare(CYLINDER, tmp_path, "moved.inp", ["*REFINE, LEVELS=1, SURFACE=CURVED"],
@@ -159,9 +155,9 @@ def test_no_step_has_bounds_where_the_finer_mesh_does_not_match(tmp_path, steps)
     deck.write_text(deck.read_text() + step * (steps - 1))
     result = solve(deck)
     with h5py.File(result) as file:
-        assert np.isnan(file["errors/FACE/normal_force"][:, 1]).tolist() == [True] * steps
+        assert np.isnan(file["uncertainty/FACE/normal_force"][:, 1]).tolist() == [True] * steps
     assert result.with_suffix(".lst").read_text().count(
-        "the errors of the mesh cannot be estimated: contact pair FACE: slave node") == steps
+        "numerical uncertainties cannot be estimated: contact pair FACE: slave node") == steps
 
 
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
@@ -175,8 +171,8 @@ def test_the_summary_says_that_a_peak_at_an_end_may_have_no_limit(tmp_path, pair
     said = {}
     for name, young in (("unlike", 300.0), ("alike", 1000.0)):
         cards = [*block("A", lines, [1.0, 1.5, 2.0]), *block("B", lines, [0.0, 0.5, 1.0], first=1001),
-                 *solid("A", young, 0.3), *solid("B", 1000.0, 0.3), "*SURFACE INTERACTION, NAME=I",
-                 "*FRICTION", "10.", f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}",
+                 *solid("A", young, 0.3), *solid("B", 1000.0, 0.3), FULL,
+                 "*SURFACE INTERACTION, NAME=I", "*FRICTION", "10.", f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}",
                  "A.BOTTOM, B.TOP", "*BOUNDARY", "A.LEFT, 1", "B.LEFT, 1", "B.BOTTOM, 2",
                  "A.TOP, 2, 2, -0.01", "*STEP", "*STATIC", "0.5, 1.", "*END STEP"]
         said[name] = summary(write(tmp_path / f"{name}.inp", without_unused_surfaces(cards)))
@@ -202,26 +198,26 @@ def punched(name, first, shift=0.0, scale=1.0, side=1):
 
 
 def punches(path, *joints, law=(), behind=(), moved=()):
-    """Solve a deck of joints with a law, cards behind them, and more supports; return the bounds of
-    each."""
+    """Solve a deck of joints with a law, cards behind them, and more supports; return the
+    uncertainties of each."""
     cards, held = (sum(parts, []) for parts in zip(*(punched(*joint) for joint in joints), strict=True))
     result = solve(write(path, without_unused_surfaces([
-        "*SURFACE INTERACTION, NAME=I", *law, *cards, *behind]), [
+        *([FULL] if law else []), "*SURFACE INTERACTION, NAME=I", *law, *cards, *behind]), [
         "*STEP", "*STATIC", "0.25, 1.", "*BOUNDARY", *held, *moved, "*END STEP"]))
     return {name: errors(result, name) for name, *_ in joints}
 
 
-def test_every_joint_of_a_model_has_bounds_of_its_own(tmp_path):
+def test_every_joint_of_a_model_has_uncertainties_of_its_own(tmp_path):
     """Beside one of four times its modulus, whose forces and their errors are four times as large, it
-    has no smaller ones than alone."""
-    alone = punches(tmp_path / "alone.inp", ("B", 1))["B"]
+    has that which it has alone."""
+    alone = punches(tmp_path / "alone.inp", ("B", 1))["B"]["normal_force"]
     both = punches(tmp_path / "both.inp", ("A", 1001, 10.0, 4.0), ("B", 1))
-    for name, scale in ("normal_force", 4.0), ("edge_contact", 1.0):
-        np.testing.assert_allclose(both["A"][name][:2], scale * both["B"][name][:2], rtol=1e-6)
-        assert both["B"][name][1] >= (1 - 1e-6) * alone[name][1] > 0.0, name
+    assert alone[1] > 0.0
+    np.testing.assert_allclose(both["B"]["normal_force"][:2], alone[:2], rtol=1e-6)
+    np.testing.assert_allclose(both["A"]["normal_force"][:2], 4.0 * alone[:2], rtol=1e-6)
 
 
-def test_a_joint_that_closes_late_has_its_own_bounds_beside_one_that_is_closed(tmp_path):
+def test_a_joint_that_closes_late_has_its_own_uncertainty_beside_one_that_is_closed(tmp_path):
     """It slides until it closes within the last increment."""
     late = {"law": ["*FRICTION", "5."], "moved": ["BP.LEFT, 1, 1, 0.004"],
             "behind": ["*CLEARANCE, SLAVE=BP.BOTTOM, MASTER=BB.TOP, VALUE=0.0085"]}
@@ -231,7 +227,7 @@ def test_a_joint_that_closes_late_has_its_own_bounds_beside_one_that_is_closed(t
     np.testing.assert_allclose(both[:2], alone[:2], rtol=1e-6)
 
 
-def test_heat_across_an_open_gap_has_the_same_bound_beside_a_closed_joint(tmp_path):
+def test_heat_across_an_open_gap_has_the_same_uncertainty_beside_a_closed_joint(tmp_path):
     """Where nothing is closed, all elements at the faces are divided."""
     parts = {"B": [], "A": []}
     held = {"B": ["BU.LEFT, 11, 11, 100.", "BL.BOTTOM, 11, 11, 0.", "BU.TOP, 2"],
@@ -257,7 +253,7 @@ def test_heat_across_an_open_gap_has_the_same_bound_beside_a_closed_joint(tmp_pa
     np.testing.assert_allclose(found[1], found[0], rtol=1e-6)
 
 
-def test_bounds_are_the_same_whichever_face_is_the_slave(tmp_path):
+def test_uncertainties_are_the_same_whichever_face_is_the_slave(tmp_path):
     """Where the same nodes are opposite each other: elements on both sides are divided."""
     deck = bent_on_a_block(tmp_path / "deck.inp", [])
     cards, found = deck.read_text(), []
@@ -269,13 +265,13 @@ def test_bounds_are_the_same_whichever_face_is_the_slave(tmp_path):
     np.testing.assert_allclose(found[1], found[0], rtol=1e-6)
 
 
-def test_a_mirrored_punch_has_the_same_bounds(tmp_path):
+def test_a_mirrored_punch_has_the_same_uncertainty(tmp_path):
     punch = punches(tmp_path / "punch.inp", ("B", 1))["B"]
     mirrored = punches(tmp_path / "mirrored.inp", ("B", 1, 0.0, 1.0, -1))["B"]
     np.testing.assert_allclose(mirrored["normal_force"][:2], punch["normal_force"][:2], rtol=1e-6)
 
 
-def test_a_past_out_of_equilibrium_is_no_error_of_the_mesh(tmp_path):
+def test_the_uncertainty_holds_what_a_past_out_of_equilibrium_leaves(tmp_path):
     """Heat from a film and a source flows along y, which linear elements solve, behind a start that
     it is not at rest in."""
     deck = [*mesh("UP", [0.0, 1.0], [0.0, 1.0], "CPE4"),
@@ -289,15 +285,14 @@ def test_a_past_out_of_equilibrium_is_no_error_of_the_mesh(tmp_path):
         "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*BOUNDARY", "UP, 1",
         "LOW, 1", "LOW.BOTTOM, 2", "LOW.BOTTOM, 11, 11, 0.", "*SFILM", "UP.TOP, F, 100., 4.",
         "*DSFLUX", "UP.TOP, S, 6.", "*DSLOAD", "UP.TOP, P, 5.", "*END STEP"]))
-    value, _, of_mesh, *_ = errors(result, "FACE")["heat_rate"]
+    value, uncertainty, *_ = errors(result, "FACE")["heat_rate"]
     at_rest = (100.0 + 6.0 / 4.0) / (1 / 2 + 1 / 3 + 1 / 2 + 1 / 4)
-    assert abs(value / at_rest - 1) > 0.1
-    assert of_mesh < 1e-5 * at_rest   # the tolerance of a fixed point on the divided mesh is 1e-6
+    assert 0.1 * at_rest < abs(value - at_rest) <= uncertainty
 
 
 def test_an_amplitude_moves_the_new_nodes_of_its_own_side_alone(tmp_path):
     """Half of twice the way, given node by node on a side of divided elements, beside another one
-    that is held without an amplitude: the bounds of the way itself."""
+    that is held without an amplitude: the uncertainties of the way itself."""
     cards = [*mesh("P", [0.0, 0.4, 0.7, 1.0], [0.0, 0.5], "CPE4"), *material("P", (100.0, 0.3)),
              *mesh("B", [0.0, 0.4, 0.7, 1.0, 1.5, 3.0], [-1.0, 0.0], "CPE4", first=101),
              *material("B", (50.0, 0.3)), "*SURFACE INTERACTION, NAME=I",
@@ -313,9 +308,9 @@ def test_an_amplitude_moves_the_new_nodes_of_its_own_side_alone(tmp_path):
     np.testing.assert_allclose(moved["normal_force"][:2], plain["normal_force"][:2], rtol=1e-6)
 
 
-def test_the_bound_of_a_temperature_holds_the_error_of_elements_far_away(tmp_path):
+def test_the_uncertainty_of_a_temperature_holds_the_error_of_elements_far_away(tmp_path):
     """A ring heated within, T = T(R) + q r ln(R/r)/k: its side towards the middle is fine, the
-    others are not. Where it is cooled, its largest temperature is given."""
+    others are not. All temperatures may be higher."""
     inner, outer = 1.0, 9.0
     radii = [inner, 1.02, 1.04, 1.06, 1.08, 3.0, outer]
 
@@ -327,10 +322,10 @@ def test_the_bound_of_a_temperature_holds_the_error_of_elements_far_away(tmp_pat
                 f"RING.RIGHT, 11, 11, {given!r}", "*DSFLUX", f"RING.LEFT, S, {flux!r}",
                 "*END STEP"])), "body 1")["temperature"][:2]
 
-    value, bound = largest(5.0, 0.0)
-    assert 0.0 < abs(value - 5.0 * inner * np.log(outer / inner) / 2.0) <= bound
-    np.testing.assert_allclose(largest(5.0, 300.0), [300.0 + value, bound], rtol=1e-9)
-    assert tuple(largest(-5.0, 300.0)) == (300.0, 0.0)
+    value, uncertainty = largest(5.0, 0.0)
+    assert 0.0 < abs(value - 5.0 * inner * np.log(outer / inner) / 2.0) <= uncertainty
+    # Rounding of 300 among elements that are 300 times as long as high.
+    np.testing.assert_allclose(largest(5.0, 300.0), [300.0 + value, uncertainty], rtol=1e-7)
 
 
 def test_every_body_has_its_own_stress_and_singular_corners(tmp_path):
@@ -353,37 +348,34 @@ def test_every_body_has_its_own_stress_and_singular_corners(tmp_path):
         assert re.findall(r"node (\d+)", body.partition("singular corner")[2]) == named
 
 
-def test_error_of_increments(tmp_path):
-    """The explicit scheme is of the first order: its conductance is that of the last increment."""
-    cards = ["*THERMAL SCHEME, TYPE=EXPLICIT"]
-    runs = []
-    for size in ("5.", "2.5", "0.625"):
-        deck = bare(CYLINDER, tmp_path, f"steps{size}inp", cards, {"INC=100": "INC=10000",
-                                                                   "20., 900.": f"{size}, 900."})
-        runs.append(errors(solve(deck), "FACE")["heat_rate"])
-    exact = runs[2][0]
-    for value, *_, increment, _ in runs[:2]:
-        assert 0.5 * increment <= abs(exact - value) <= 1.01 * increment
+def test_the_uncertainty_holds_the_error_of_increments(tmp_path):
+    """The explicit scheme is of the first order: its conductance is that of the last increment. The
+    elements of the rods are exact."""
+    cards = ["*THERMAL SCHEME, TYPE=EXPLICIT", FULL]
+    for size in 0.25, 0.05:
+        deck = bare(INPUT / "rods" / "r1.inp", tmp_path, "rods.inp", cards, {"\n1., 1.": f"\n{size}, 1."})
+        value, uncertainty, *_ = errors(solve(deck), "FACE")["heat_rate"]
+        assert abs(value - 48240.180765) <= uncertainty <= FACTOR * abs(value - 48240.180765)
 
 
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
 @pytest.mark.parametrize("sides", [3, 6])
-def test_friction_that_a_held_contact_point_lacks_is_in_the_bound(tmp_path, pairing, sides):
+def test_friction_that_a_held_contact_point_lacks_is_in_the_uncertainty(tmp_path, pairing, sides):
     """A block expands on a held one, all of it slips away from the plane of symmetry: the shear force is
     mu times the normal force. The contact point in that plane is held, and its friction is missing."""
     lines = np.linspace(0.0, 3.0, sides + 1)
     cards = [*block("A", lines, [1.0, 1.5, 2.0]), *block("B", lines, [0.0, 0.5, 1.0], first=1001),
-             *solid("A", 1000.0, 0.0, 1e-4), *solid("B", 1000.0, 0.0),
+             *solid("A", 1000.0, 0.0, 1e-4), *solid("B", 1000.0, 0.0), FULL,
              "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.1",
              f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}", "A.BOTTOM, B.TOP",
              "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "A, 0.", "B, 0.",
              "*BOUNDARY", "A.LEFT, 1", "B, 1, 2", "*STEP", "*STATIC, DIRECT", "0.05, 1.",
              "*DSLOAD", "A.TOP, P, 2.", "*TEMPERATURE", "A, 100.", "*END STEP"]
     found = errors(solve(write(tmp_path / "held.inp", without_unused_surfaces(cards))), "P")
-    normal, (value, bound, *_) = found["normal_force"][0], found["shear_force"]
+    normal, (value, uncertainty, *_) = found["normal_force"][0], found["shear_force"]
     true = abs(0.1 * normal - abs(value))
     assert normal == pytest.approx(6.0)
-    assert 0.01 * normal / sides < true <= bound
+    assert 0.01 * normal / sides < true <= uncertainty
 
 
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
@@ -391,13 +383,13 @@ def test_without_friction_the_shear_force_is_exact(tmp_path, pairing):
     """Normals of the finer mesh differ on a curved face: nothing of the pressure is friction."""
     changes = {"NAME=FACE": f"NAME=FACE, PAIRING={pairing}"}
     deck = bare(HERTZ, tmp_path, "smooth.inp", ["*REFINE, LEVELS=1, SURFACE=CURVED"], changes)
-    value, bound, *_ = errors(solve(deck), "FACE")["shear_force"]
-    assert value == bound == 0.0
+    value, uncertainty, *_ = errors(solve(deck), "FACE")["shear_force"]
+    assert value == uncertainty == 0.0
 
 
 @pytest.mark.parametrize("corner", [600, 720, 800])
 def test_a_corner_of_an_amplitude_is_no_scatter(tmp_path, corner):
-    """Heated to a corner inside the step and cooled from there on: the bounds are as large as those of a
+    """Heated to a corner inside the step and cooled from there on: the uncertainties are as large as those of a
     step that ends there and another one. They are taken over other increments, so not the same."""
     curve = [f"*AMPLITUDE, NAME=BENT\n0., 0., {corner}., 1.2, 900., 1."]
     bent = errors(solve(bare(CYLINDER, tmp_path, "bent.inp", curve, {
@@ -417,8 +409,8 @@ def test_a_corner_of_an_amplitude_is_no_scatter(tmp_path, corner):
 
 
 @pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
-@pytest.mark.parametrize("increments", [10, 30])
-@pytest.mark.parametrize("course", ["closes", "closes and opens and closes"])
+@pytest.mark.parametrize(("course", "increments"), [
+    ("closes", 10), ("closes", 30), ("closes and opens and closes", 30)])
 def test_a_whole_face_that_closes_or_opens_is_no_scatter(tmp_path, pairing, increments, course):
     """Two bars in plane strain, one above the other: a load at the end that fills the gap, as a ramp or
     with turns between the ends of the increments. The force is exact on every mesh."""
@@ -432,14 +424,14 @@ def test_a_whole_face_that_closes_or_opens_is_no_scatter(tmp_path, pairing, incr
              "*STATIC, DIRECT", f"{1 / increments!r}, 1.", "*BOUNDARY, AMPLITUDE=COURSE",
              "A.TOP, 2, 2, -0.06", "*END STEP"]
     found = errors(solve(write(tmp_path / "bars.inp", without_unused_surfaces(cards))), "P")
-    for name, (value, bound, *_) in found.items():
+    for name, (value, uncertainty, *_) in found.items():
         if name in ("normal_force", "peak_pressure"):
-            assert abs(value - 20.0) <= max(bound, 1e-7), name
-            assert bound < 1e-6 * value, name
+            assert abs(value - 20.0) <= max(uncertainty, 1e-7), name
+            assert uncertainty < 1e-6 * value, name
 
 
 @pytest.mark.parametrize("tolerance", ["1.E-2", "1.E-3"])
-def test_error_of_the_iteration_is_a_bound(tmp_path, tolerance):
+def test_the_part_of_the_iteration_holds_its_error(tmp_path, tolerance):
     """Loose tolerances, against one that is met to rounding."""
     def rows(value):
         cards = [f"*FIXED POINT, METHOD=ZAITSEV, TOL={value}"]
@@ -501,31 +493,15 @@ def test_error_of_the_iteration_near_a_turning_point(tmp_path):
     assert residual * value < off < iteration
 
 
-@pytest.mark.changes("OPTIONS, ERRORS")
-def test_errors_are_left_out_where_the_deck_says_so(tmp_path):
-    """The results are the same with them and without."""
-    decks = [bare(CYLINDER, tmp_path, f"{word}.inp", [f"*OPTIONS, ERRORS={word}"])
-             for word in ("YES", "NO")]
-    note_changes(*(deck.read_text().splitlines() for deck in decks))
-    results = [solve(deck) for deck in decks]
-    with h5py.File(results[0]) as one, h5py.File(results[1]) as other:
-        assert {len(data) for data in (one["errors/time"], *one["errors/FACE"].values())} == {1}
-        assert np.isnan(other["errors/FACE/normal_force"][:, 1:]).all()
-        for name, data in one["contact/FACE"].items():
-            np.testing.assert_array_equal(data[()], other[f"contact/FACE/{name}"][()])
-    assert "BOUNDS OF THE ERRORS" in results[0].with_suffix(".lst").read_text()
-    assert "BOUNDS OF THE ERRORS" not in results[1].with_suffix(".lst").read_text()
-
-
-def test_the_listing_says_which_part_of_a_bound_is_the_largest(tmp_path):
+def test_the_listing_says_which_part_of_an_uncertainty_is_the_largest(tmp_path):
     """A table of every interface at the end of each step."""
     listing = solve(bare(CYLINDER, tmp_path, "cylinder.inp")).with_suffix(".lst").read_text()
-    table = listing[listing.index("BOUNDS OF THE ERRORS OF FACE"):]
+    table = listing[listing.index("NUMERICAL UNCERTAINTY (95 %) OF FACE"):]
     row, = re.findall(r"^ +heat rate +(.*)$", table, flags=re.M)
-    value, bound, percent, mesh, *_, part = row.split()
+    value, uncertainty, percent, mesh, scatter, _, part = row.split()
     assert float(value) == pytest.approx(30.87, rel=1e-2)
-    assert float(bound) >= float(mesh) > 0.0
-    assert float(percent) == pytest.approx(100 * float(bound) / float(value), rel=0.05)
+    assert float(uncertainty) >= float(mesh) > float(scatter) > 0.0
+    assert float(percent) == pytest.approx(100 * float(uncertainty) / float(value), rel=0.05)
     assert part == "mesh"
 
 
@@ -533,14 +509,6 @@ def test_the_listing_has_no_shear_force_without_friction(tmp_path):
     table = solve(bare(HERTZ, tmp_path, "hertz.inp")).with_suffix(".lst").read_text()
     told = re.findall("^    (shear|normal) force ", table, flags=re.M)
     assert set(told) == {"normal"}
-
-
-def test_other_word_for_errors_is_refused(tmp_path):
-    """YES and NO are all there is."""
-    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*OPTIONS, ERRORS=SOME"])
-    process = run("check", deck)
-    assert process.returncode == 1
-    assert "ERRORS" in process.stderr
 
 
 def test_heat_through_faces_that_only_touch_has_no_error(tmp_path):
@@ -556,6 +524,6 @@ def test_heat_through_faces_that_only_touch_has_no_error(tmp_path):
              "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "13, 11, 11, 100.",
              "14, 11, 11, 100.", "1, 11, 11, 0.", "2, 11, 11, 0.", "*END STEP"]
     (tmp_path / "rods.inp").write_text("\n".join(cards) + "\n")
-    value, bound, *_ = errors(solve(tmp_path / "rods.inp"), "F")["heat_rate"]
+    value, uncertainty, *_ = errors(solve(tmp_path / "rods.inp"), "F")["heat_rate"]
     assert abs(value) == pytest.approx(2.0 * 100.0 / (1 / 10 + 2 / 50), rel=1e-12)
-    assert bound < 1e-9 * abs(value)
+    assert uncertainty < 1e-9 * abs(value)

@@ -49,12 +49,12 @@ def test_every_number_says_why_it_has_no_bound(tmp_path, reason):
             r"whole face|end of the face|\(open\)", words)
         assert is_no_number or words.startswith(mark), (name, words)
     assert "+-" not in printed and "uncertain" not in printed
-    assert listing.count(mark) >= printed.count(mark) and "BOUNDS OF THE ERRORS" not in listing
+    assert listing.count(mark) >= printed.count(mark) and "NUMERICAL UNCERTAINTY (95 %)" not in listing
     # The largest of all temperatures is a number of this kind, a displacement is not.
     assert len(re.findall(rf"found:  \S+{re.escape(mark)}\n", listing)) == (1 if reason == "pre-tension"
                                                                            else 2)
     with h5py.File(result) as file:
-        steps, words = file["errors"], file["errors/reasons"].asstr()[:]
+        steps, words = file["uncertainty"], file["uncertainty/reasons"].asstr()[:]
         for name in (name for name in steps if isinstance(steps[name], h5py.Group)):
             why = steps[name]["no_estimate"]
             for quantity, column in zip(why.attrs["components"].split(), why[:].T, strict=True):
@@ -68,6 +68,6 @@ def test_a_number_with_a_bound_has_no_reason(tmp_path):
     result, printed = tmp_path / "two_rods.vtkhdf", run("run", RODS, "--out", tmp_path).stdout
     assert "+-" in printed and "no estimate" not in printed
     with h5py.File(result) as file:
-        assert not file["errors/GAP/no_estimate"][:].any()
-        assert file["errors/reasons"].asstr()[0] == ""
-        assert file["errors"].attrs["inside_step"] == "inside a step"
+        assert not file["uncertainty/GAP/no_estimate"][:].any()
+        assert file["uncertainty/reasons"].asstr()[0] == ""
+        assert file["uncertainty"].attrs["inside_step"] == "inside a step"
