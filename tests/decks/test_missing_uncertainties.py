@@ -1,4 +1,4 @@
-"""Numbers without a bound of their error: which they are, and the reason that is told."""
+"""Numbers without a numerical uncertainty: which they are, and the reason that is told."""
 
 import re
 
@@ -10,21 +10,23 @@ from deck_runs import INPUT, copy_deck, run
 RODS, FLANGE = (INPUT / "examples" / f"{name}.inp" for name in ("two_rods", "bolted_flange"))
 STEADY = "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT"
 CONDUCTIVITY = "*CONDUCTIVITY\n0.2\n"
-DECKS = {  # reason -> deck, cards and changes
-    "pre-tension": (FLANGE, (), {}),
-    "branches": (RODS, (), {"*END STEP": "*CONTINUATION, POINTS=10\n*END STEP"}),
-    "stored heat": (RODS, (), {
+PATH = "path; ERRORS=FULL"
+DECKS = {  # what there is -> reason, deck, cards and changes
+    "pre-tension": (PATH, FLANGE, (), {}),
+    "branches": ("branches", RODS, (), {"*END STEP": "*CONTINUATION, POINTS=10\n*END STEP"}),
+    "stored heat": (PATH, RODS, (), {
         CONDUCTIVITY: f"{CONDUCTIVITY}*DENSITY\n1.\n*SPECIFIC HEAT\n3.6\n",
         STEADY: "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT"}),
-    "tables over temperature": (RODS, (), {CONDUCTIVITY: "*CONDUCTIVITY\n0.2, 0.\n0.2001, 500.\n"}),
-    "ERRORS=NO": (RODS, ["*OPTIONS, ERRORS=NO"], {})}
+    "tables over temperature": (PATH, RODS, (), {
+        CONDUCTIVITY: "*CONDUCTIVITY\n0.2, 0.\n0.2001, 500.\n"}),
+    "nothing wanted": ("ERRORS=NO", RODS, ["*OPTIONS, ERRORS=NO"], {})}
 QUANTITY = re.compile(r"^    ((?:normal|shear) force|heat rate|peak pressure|edge of \w+)  +\S+(.*)$",
                       re.MULTILINE)
 
 
-def solved(folder, reason):
-    """Solve a deck whose numbers have no bounds, with checks; return its result and output."""
-    source, cards, changes = DECKS[reason]
+def solved(folder, name, *options):
+    """Solve a deck with checks; return its result and output."""
+    _, source, cards, changes = DECKS[name]
     for mesh in source.parent.glob(f"{source.stem}.mesh"):
         (folder / mesh.name).write_text(mesh.read_text())
     (folder / "plain.txt").write_text(source.read_text().split("*VERIFY")[0])
@@ -32,27 +34,30 @@ def solved(folder, reason):
     with deck.open("a") as file:
         file.write("*VERIFY, KIND=FIGURE\npressure, MAX, LAST, 0., 1.E9, ABS\n"
                    "NT, MAX, LAST, 0., 1.E9, ABS\nU1, MAX, LAST, 0., 1.E9, ABS\n")
-    process = run("run", deck, "--out", folder)
+    process = run("run", deck, "--out", folder, *options)
     assert process.returncode == 0, process.stderr
     return deck.with_suffix(".vtkhdf"), process.stdout
 
 
-@pytest.mark.parametrize("reason", DECKS)
-def test_every_number_says_why_it_has_no_bound(tmp_path, reason):
+def is_no_number(name, words):
+    """Return whether an edge is one of the face, or none."""
+    return name.startswith("edge") and re.search(r"whole face|end of the face|\(open\)", words)
+
+
+@pytest.mark.parametrize("name", DECKS)
+def test_every_number_says_why_it_has_no_uncertainty(tmp_path, name):
     """In summary, listing, result file and at the checks."""
-    result, printed = solved(tmp_path, reason)
+    reason = DECKS[name][0]
+    result, printed = solved(tmp_path, name)
     listing, mark = result.with_suffix(".lst").read_text(), f" (no estimate: {reason})"
     told = QUANTITY.findall(printed)
     assert {"normal force", "heat rate", "peak pressure"} <= {name for name, _ in told}
-    for name, words in told:
-        is_no_number = name.startswith("edge") and re.search(
-            r"whole face|end of the face|\(open\)", words)
-        assert is_no_number or words.startswith(mark), (name, words)
-    assert "+-" not in printed and "uncertain" not in printed
-    assert listing.count(mark) >= printed.count(mark) and "NUMERICAL UNCERTAINTY (95 %)" not in listing
-    # The largest of all temperatures is a number of this kind, a displacement is not.
-    assert len(re.findall(rf"found:  \S+{re.escape(mark)}\n", listing)) == (1 if reason == "pre-tension"
-                                                                           else 2)
+    for quantity, words in told:
+        assert is_no_number(quantity, words) or words.startswith(mark), (quantity, words)
+    assert "+-" not in printed and "NUMERICAL UNCERTAINTY" not in listing
+    assert listing.count(mark) >= printed.count(mark)
+    # All checks are of numbers of this kind.
+    assert len(re.findall(rf"found:  \S+{re.escape(mark)}\n", listing)) == 3
     with h5py.File(result) as file:
         steps, words = file["uncertainty"], file["uncertainty/reasons"].asstr()[:]
         for name in (name for name in steps if isinstance(steps[name], h5py.Group)):
@@ -64,10 +69,26 @@ def test_every_number_says_why_it_has_no_bound(tmp_path, reason):
                 np.testing.assert_array_equal(told, np.where(np.isnan(rows[:, 0]), "", reason))
 
 
-def test_a_number_with_a_bound_has_no_reason(tmp_path):
+@pytest.mark.parametrize("name", [name for name in DECKS if DECKS[name][0] == PATH])
+def test_a_complete_finer_run_estimates_what_follows_a_path(tmp_path, name):
+    result, printed = solved(tmp_path, name, "--errors", "full")
+    told = QUANTITY.findall(printed)
+    assert told and "path" not in printed + result.with_suffix(".lst").read_text()
+    for quantity, words in told:
+        assert is_no_number(quantity, words) or words.startswith(" +- ") or (
+            quantity == "peak pressure" and words.startswith(" (no estimate: at a corner)")), quantity
+
+
+def test_a_number_with_an_uncertainty_has_no_reason(tmp_path):
     result, printed = tmp_path / "two_rods.vtkhdf", run("run", RODS, "--out", tmp_path).stdout
     assert "+-" in printed and "no estimate" not in printed
     with h5py.File(result) as file:
         assert not file["uncertainty/GAP/no_estimate"][:].any()
         assert file["uncertainty/reasons"].asstr()[0] == ""
-        assert file["uncertainty"].attrs["inside_step"] == "inside a step"
+        assert file["uncertainty"].attrs["inside_step"] == "inside a step; ERRORS=FULL"
+
+
+def test_the_former_name_of_the_group_is_the_same_group(tmp_path):
+    run("run", RODS, "--out", tmp_path)
+    with h5py.File(tmp_path / "two_rods.vtkhdf") as file:
+        assert file["errors"] == file["uncertainty"]

@@ -260,7 +260,7 @@ def test_values_are_told_with_their_uncertainties(tmp_path, quantity, where, nam
 
 def test_the_uncertainty_of_a_check_holds_the_error_of_the_increments(tmp_path):
     """Blocks slide faster and faster, as t^2: over the last increment, whose slip heats them, at the
-    mean rate 2 - h, at its end at 2. Temperatures are linear, so that elements are exact."""
+    mean rate 2 - h, at its end at 2. Elements are exact but for the moment of little friction."""
     bodies = [*mesh("UP", [0.0, 1.0, 2.0], [0.0, 1.0], "CPE4"),
               *mesh("LOW", [0.0, 1.0, 2.0], [-1.0, 0.0], "CPE4", first=101)]
     size = 0.25
@@ -269,18 +269,18 @@ def test_the_uncertainty_of_a_check_holds_the_error_of_the_increments(tmp_path):
          f"{name}, 0."] for name in ("UP", "LOW")), [
         "*OPTIONS, ERRORS=FULL", "*AMPLITUDE, NAME=SLIDE",
         *(f"{k / 64}, {(k / 64)**2}" for k in range(65)),
-        "*SURFACE INTERACTION, NAME=I", "*FRICTION", f"{FRICTION!r}", "*GAP LAW, TYPE=POWER",
+        "*SURFACE INTERACTION, NAME=I", "*FRICTION", "1.E-3", "*GAP LAW, TYPE=POWER",
         "3., 0., 1.", "*GAP HEAT GENERATION", "1., 0.7",
         "*CONTACT PAIR, INTERACTION=I, NAME=FACE", "UP.BOTTOM, LOW.TOP",
         "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", f"{size}, 1.",
         "*BOUNDARY", "LOW, 1, 2", "UP.TOP, 11", "LOW.BOTTOM, 11", "*BOUNDARY, AMPLITUDE=SLIDE",
-        "UP, 1, 1, 0.05", "*DSLOAD", "UP.TOP, P, 100.", "*END STEP",
+        "UP.TOP, 1, 1, 0.05", "*DSLOAD", "UP.TOP, P, 100.", "*END STEP",
         "*VERIFY, KIND=FIGURE", "NT, 1, LAST, 0., 1e-9, ABS"])
     process = run("run", "--quiet", deck, "--out", tmp_path)
     found, said = (float(word) for word in re.search(
         r": (\S+) \+- (\S+), expected", process.stderr).groups())
     true = found * (2.0 / (2.0 - size) - 1.0)
-    assert 0.0 < true <= said <= 4.1 * true
+    assert 0.1 * found < true <= said <= 4.1 * true
 
 
 def test_the_uncertainty_of_a_check_is_that_of_its_own_body(tmp_path):
