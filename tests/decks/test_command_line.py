@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 import pytest
 from blocks import block, solid, without_unused_surfaces, write
+from changes import note_changes
 from deck_runs import CYLINDER, INPUT, PATIENCE, PROGRAM, copy_deck, run
 
 GOOD = [
@@ -243,6 +244,42 @@ def pellets_without_tables(folder):
     text = re.sub(r"(?m)^(\*(?:ELASTIC|EXPANSION|CONDUCTIVITY).*\n.*\n)(?:\d.*\n)+", r"\1", text)
     text = text.replace("INPUT=", f"INPUT={INPUT / 'examples'}/")
     return write(folder / "pellets.inp", text.replace("FUEL, BF, 0.6", "FUEL, BF, 0.8"))
+
+
+@pytest.mark.changes("OPTIONS, ERRORS")
+def test_errors_says_which_numbers_have_an_uncertainty_whatever_the_deck_says(tmp_path):
+    """Those of the ends of steps, all, or none; YES means LAST."""
+    rods, rows = INPUT / "examples" / "two_rods.inp", {}
+    for name, card, options in (
+            ("default", None, ()), ("yes", "YES", ()), ("last", "NO", ("--errors", "last")),
+            ("in the deck", "FULL", ()), ("full", "NO", ("--errors", "full")),
+            ("no", "FULL", ("--errors", "no"))):
+        cards = [f"*OPTIONS, ERRORS={card}"] if card else []
+        note_changes(cards, ["*OPTIONS, ERRORS=LAST"])
+        deck = copy_deck(rods, tmp_path / "deck.inp", cards)
+        process = run("run", deck, "--out", tmp_path, *options)
+        assert process.returncode == 0, process.stderr
+        with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+            rows[name] = file["uncertainty/GAP/normal_force"][:], file["uncertainty/time"][:]
+            increments = len(file["history/time"])
+            if options:
+                assert file["run"].attrs["settings"] == " ".join(options)
+    for one, other in ("default", "yes"), ("default", "last"), ("in the deck", "full"):
+        for k in range(2):
+            np.testing.assert_array_equal(rows[one][k], rows[other][k])
+    assert len(rows["full"][1]) == increments > len(rows["last"][1]) == len(rows["no"][1])
+    assert np.isfinite(rows["last"][0]).all() and np.isfinite(rows["full"][0]).all()
+    assert np.isnan(rows["no"][0][:, 1:]).all()
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    (("run", CYLINDER, "--errors", "some"), "option --errors needs last, full or no, not some"),
+    (("check", CYLINDER, "--errors", "full"), "option --errors does not go with check"),
+    (("trade", CYLINDER, "--errors", "full"), "option --errors does not go with trade")])
+def test_errors_is_refused_where_it_says_nothing(tmp_path, arguments, words):
+    process = run(*arguments, folder=tmp_path)
+    assert process.returncode == 1 and words in process.stderr
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_summary_tells_zones_without_an_edge(tmp_path):

@@ -1,14 +1,16 @@
 """Local refinement, *REFINE with SURFACE= or ELSET=: hanging nodes, contact faces, refusals."""
 
 import itertools
+import shutil
 
 import h5py
 import numpy as np
 import pytest
 from changes import note_changes
-from deck_runs import CYLINDER, copy_deck, run, solve
+from deck_runs import CYLINDER, INPUT, copy_deck, run, solve
 from physics import judge, judge_linear_fields, material, mesh
 
+ROLLER = INPUT / "examples" / "roller.inp"
 KINDS = ["CPE8", "CPE8R", "CPE6", "CPS8", "CPS6", "CPE4", "CPE4I", "CPE3"]
 EDGES = [0.0, 0.6, 1.5, 2.0, 2.6, 3.0], [0.0, 0.5, 1.2, 1.7, 2.1, 2.6]
 
@@ -241,6 +243,17 @@ def test_the_uncertainty_of_a_locally_refined_mesh_holds_its_error(tmp_path, cyl
         line = next(line for line in errors.splitlines() if name in line)
         uncertainty = float(line.split()[3])
         assert 0.1 * uncertainty < abs(true - value) < uncertainty, name
+
+
+def test_a_coarse_triangle_between_three_divided_ones_is_solved(tmp_path):
+    """All of its midside nodes hang, so that none is its own: the body still has a middle about which
+    it may turn."""
+    shutil.copy(ROLLER.with_suffix(".gmsh"), tmp_path)
+    cards = ["*ELSET, ELSET=CH", "114, 359, 360", "*REFINE, LEVELS=1, ELSET=CH"]
+    deck = tmp_path / "roller.inp"
+    head, step = ROLLER.read_text().split("*STEP", 1)
+    deck.write_text("\n".join([head.rstrip(), *cards, f"*STEP{step}"]))
+    solve(deck)   # with its checks
 
 
 @pytest.mark.parametrize(("card", "message"), [

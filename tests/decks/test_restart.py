@@ -82,6 +82,8 @@ def go_on(deck, result, folder, at=None):
     ("thermal_cycling", ()),
     ("roller", ()),
     ("warm_blocks", ()),
+    ("roller", ["*OPTIONS, ERRORS=FULL"]),
+    ("warm_blocks", ["*OPTIONS, ERRORS=FULL"]),
     ("warm_blocks", ["*SOLVER, TYPE=MUMPS"]),
     ("two_rods", ["*THERMAL SCHEME, TYPE=GALERKIN"]),
     ("brake_pad", ["*SOLVER, TYPE=MUMPS"]),
@@ -97,6 +99,9 @@ def test_a_run_goes_on_to_the_last_bit(tmp_path, name, cards):
         np.testing.assert_array_equal(times, file["history/time"][()])
     for i in sorted({0, len(times) // 2, len(times) - 2}):
         assert_same(whole, go_on(deck, whole, tmp_path / f"from{i}", float(times[i])))
+    if "ERRORS=FULL" in "".join(cards):
+        with h5py.File(whole) as file:
+            assert len(file["uncertainty/time"]) == len(file["history/time"])
     shown = (tmp_path / "from0" / f"{name}.lst").read_text()
     assert f"goes on   {whole}, increment 1 (time " in shown
 
