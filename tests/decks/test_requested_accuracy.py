@@ -29,6 +29,7 @@ TOLD = {row["deck"]: row for row in Document("accuracy.md", DECKS, (), "").rows(
     "Converged values of the known decks")}
 CONVERGED = {deck: {quantity: float(TOLD[name][head]) for quantity, head in QUANTITIES.items()}
              for deck, name in ((CYLINDER, "cylinder"), (COUPLED, "coupled twin"))}
+FRICTIONLESS = {"*FRICTION\n0.155, 1.E5\n": ""}   # the last increment alone tells all
 PRESS_FIT = INPUT / "examples" / "press_fit.inp"
 
 
@@ -42,7 +43,7 @@ def rounds_of(result, face="FACE"):
         return costs, known, int(group.attrs["reached"])
 
 
-@pytest.mark.parametrize(("deck", "percent", "rounds"), [(CYLINDER, 1, 2), (COUPLED, 3, 2)])
+@pytest.mark.parametrize(("deck", "percent", "rounds"), [(CYLINDER, 1, 2), (COUPLED, 3, 2), (COUPLED, 1, 2)])
 def test_true_errors_are_inside_the_target_and_the_uncertainty(tmp_path, deck, percent, rounds):
     """Rounds are as many as are told; the mesh is refined only where the deck's own does not do."""
     process = run("run", deck, "--out", tmp_path, "--accuracy", f"{percent}%")
@@ -59,8 +60,8 @@ def test_true_errors_are_inside_the_target_and_the_uncertainty(tmp_path, deck, p
             "equations_thermal", "equations_mechanical", "contact_unknowns"))
         told = {name: file[f"uncertainty/FACE/{name}"][-1, 1] for name in found}
     assert (elements, unknowns) == (costs["elements"][-1], costs["unknowns"][-1])
-    # Before the second round nothing tells what builds up along the path.
-    assert np.isnan(known["peak_pressure"][0, 2])
+    # With friction the last increment alone does not tell the peak: ERRORS=FULL does.
+    assert all(np.isfinite(rows).all() for rows in known.values())
     for name, exact in CONVERGED[deck].items():
         step, value, uncertainty, allowed = known[name][-1]
         assert step == 1 and value == pytest.approx(found[name], rel=1e-12), name
@@ -118,7 +119,7 @@ def test_targets_that_are_missed_are_told_with_status_4(tmp_path):
 
 def test_sides_at_an_edge_fall_with_the_distance_from_it(tmp_path):
     """Divided often where it lies, they are as long as before away from it."""
-    cards = "*ACCURACY, ROUNDS=2", "edge_contact, 0.025, ABS, FACE"
+    cards = "*ACCURACY, ROUNDS=2", "edge_contact, 0.027, ABS, FACE"
     result = solve(copy_deck(CYLINDER, tmp_path / "graded.inp", cards))
     with h5py.File(result) as file:
         s, edge = file["contact/FACE/s"][:], file["contact/FACE/edge_contact"][-1]
@@ -151,7 +152,7 @@ def test_a_course_that_bends_by_itself_keeps_no_request_from_its_target(tmp_path
 
 def test_increments_are_shortened_where_they_are_the_larger_part(tmp_path):
     """With five of them friction errs by 2 %: halves of them reach what no mesh does."""
-    cards = "*ACCURACY, ROUNDS=2", "shear_force, 0.03"
+    cards = "*ACCURACY, ROUNDS=3", "shear_force, 0.02"
     changes = {"\n20., 900.\n": "\n180., 900.\n"}
     text = CYLINDER.read_text().split("*VERIFY")[0]
     source = tmp_path / "long.txt"
@@ -159,7 +160,7 @@ def test_increments_are_shortened_where_they_are_the_larger_part(tmp_path):
     deck = copy_deck(source, tmp_path / "long.inp", cards, changes)
     run("run", deck, "--out", tmp_path, "--quiet")
     costs, known, _ = rounds_of(tmp_path / "long.vtkhdf")
-    assert costs["increments"].tolist() == [5, 10]
+    assert costs["increments"].tolist() == [5, 5, 10]
     with h5py.File(tmp_path / "long.vtkhdf") as file:
         assert len(file["history/time"]) == costs["increments"][-1]
 
@@ -389,23 +390,17 @@ def test_a_model_with_equations_is_judged_by_its_uncertainties(tmp_path):
     assert np.all(np.diff(peak[:, 1], 2) > 0.0) and np.all(peak[:, 2] > 0.6 * peak[:, 1])
 
 
-@pytest.mark.parametrize(("columns", "width", "length", "friction", "reason"), [
-    (8, None, 1, "", "at a corner"),
-    (12, 4, 1, "", "at a corner"),
-    (12, 4, 3, "*FRICTION\n0.3\n", "path; ERRORS=FULL")])
-def test_a_number_without_an_uncertainty_says_why(tmp_path, columns, width, length, friction, reason):
+@pytest.mark.parametrize(("columns", "width"), [(8, None), (12, 4)], ids=["mortar points", "node pairs"])
+def test_a_number_without_an_uncertainty_says_why(tmp_path, columns, width):
     """In the summary, in the table of uncertainties, and where a target is missed by it."""
     cards = ["*ACCURACY, ROUNDS=1", "peak_pressure, 0.01"]
-    deck = punch(tmp_path, "A.BOTTOM, B.TOP", columns, cards, width, length)
-    deck.write_text(deck.read_text().replace("*CONTACT PAIR", f"{friction}*CONTACT PAIR"))
+    deck = punch(tmp_path, "A.BOTTOM, B.TOP", columns, cards, width)
     process = run("run", deck, "--out", tmp_path)
     assert process.returncode == 4, process.stderr
     told = re.findall(r"^    (\S.*\S) +\S+ \(no estimate: (.*?)\)", process.stdout, flags=re.M)
-    assert "peak pressure" in dict(told) and {words for _, words in told} == {reason}
-    assert "normal force" not in dict(told)
-    assert f"\n    no estimate: {reason}\n" in deck.with_suffix(".lst").read_text()
-    if "corner" not in reason:
-        assert f"not met: no estimate, target 1 %: {reason}\n" in process.stdout
+    assert told == [("peak pressure", "at a corner")]
+    assert "\n    no estimate: at a corner\n" in deck.with_suffix(".lst").read_text()
+    assert "not met: no estimate, target 1 %: at a corner\n" in process.stdout
 
 
 def test_an_edge_that_a_finer_mesh_does_not_have_has_no_uncertainty(tmp_path):
@@ -455,7 +450,7 @@ def kept_round(folder, name, words):
 
 def in_a_later_round(folder, seconds):
     """Start a run whose later rounds take seconds; return it so long after the first one."""
-    deck = copy_deck(CYLINDER, folder / "deck.inp", ["*REFINE, LEVELS=1"])
+    deck = copy_deck(CYLINDER, folder / "deck.inp", ["*REFINE, LEVELS=1"], FRICTIONLESS)
     process = subprocess.Popen(
         [PROGRAM, "run", "--accuracy", "0.01%", deck, "--out", folder], text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -491,12 +486,13 @@ def test_a_signal_in_a_later_round_keeps_the_last_whole_one(tmp_path, seconds):
     whole = kept_round(tmp_path, "deck", words)
     assert f"ended by SIGINT in round {whole + 1} " in words
     if output:
-        assert f"deck.inp: interrupted, {45 * 2**(whole - 1)} increments" in output and f"results: {tmp_path}/deck" in output
+        assert "deck.inp: interrupted, 45 increments" in output
+        assert f"results: {tmp_path}/deck" in output
         assert re.search(rf"not reached after {whole} rounds?; round {whole + 1} was begun\n", output)
 
 
 def test_a_first_round_that_is_not_whole_has_no_row(tmp_path):
-    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*REFINE, LEVELS=3"])
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", ["*REFINE, LEVELS=3"], FRICTIONLESS)
     process = subprocess.Popen(
         [PROGRAM, "run", "--accuracy", "1%", deck, "--out", tmp_path], text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -521,17 +517,16 @@ def test_files_of_a_later_round_hold_the_verdicts_of_the_first(tmp_path):
     assert process.returncode == 4 and "reached after 2 rounds" in process.stdout
     assert "\n  1 check passed, 1 failed" in process.stdout
     listing = (tmp_path / "deck.lst").read_text()
-    assert "check failed, 90 increments" in listing
+    assert "check failed, 45 increments" in listing
     assert "1 check passed, 1 failed in round 1" in listing
     with h5py.File(tmp_path / "deck.vtkhdf") as file:
         assert file["run"].attrs["verify_passed"] == file["run"].attrs["verify_failed"] == 1
 
 
 def test_a_later_round_that_does_not_converge_keeps_the_last_whole_one(tmp_path):
-    """With as many iterations as the mesh of the deck needs, and no cut-backs. Without friction, its
-    increments stay."""
+    """With as many iterations as the mesh of the deck needs, and no cut-backs."""
     deck = copy_deck(COUPLED, tmp_path / "deck.inp", changes={
-        "METHOD=NEWTON": "METHOD=NEWTON, MAXITER=9", "*FRICTION\n0.155, 1.E5\n": ""})
+        "METHOD=NEWTON": "METHOD=NEWTON, MAXITER=9"} | FRICTIONLESS)
     process = run("run", deck, "--out", tmp_path, "--accuracy", "0.3%")
     assert process.returncode == 2
     whole = kept_round(tmp_path, "deck", process.stderr)
@@ -589,20 +584,20 @@ def test_memory_that_runs_out_in_a_later_round_keeps_the_last_whole_one(tmp_path
     resource.prlimit(process.pid, resource.RLIMIT_AS, (1000000, 1000000))
     output, words = process.communicate(timeout=PATIENCE)
     assert process.returncode == 3, words
-    whole = kept_round(tmp_path, "deck", words)
-    assert whole > 0
+    assert kept_round(tmp_path, "deck", words) > 0
     if "memory ran out: " in words:   # within an increment or a reduction
         assert output == "" and words.count("\n") == 1
     else:
-        assert f"deck.inp: out of memory, {45 * 2**(whole - 1)} increments" in output and "results: " in output
+        assert "deck.inp: out of memory, 45 increments" in output and "results: " in output
 
 
 def test_a_run_keeps_its_lock_from_round_to_round(tmp_path):
     """A lock that is asked for all the time is had when the run has ended; had it before, the run
     would end with "another run writes here"."""
-    deck = copy_deck(CYLINDER, tmp_path / "deck.inp")
+    deck = copy_deck(CYLINDER, tmp_path / "deck.inp", changes=FRICTIONLESS)
+    deck.write_text(deck.read_text().split("*VERIFY")[0])
     process = subprocess.Popen(
-        [PROGRAM, "run", "--quiet", "--accuracy", "1%", deck, "--out", tmp_path],
+        [PROGRAM, "run", "--quiet", "--accuracy", "0.5%", deck, "--out", tmp_path],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     listing = tmp_path / "deck.lst"
     while not text_of(listing) and process.poll() is None:
