@@ -172,7 +172,8 @@ def test_the_summary_says_that_a_peak_at_an_end_may_have_no_limit(tmp_path, pair
     for name, young in (("unlike", 300.0), ("alike", 1000.0)):
         cards = [*block("A", lines, [1.0, 1.5, 2.0]), *block("B", lines, [0.0, 0.5, 1.0], first=1001),
                  *solid("A", young, 0.3), *solid("B", 1000.0, 0.3), FULL,
-                 "*SURFACE INTERACTION, NAME=I", "*FRICTION", "10.", f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}",
+                 "*SURFACE INTERACTION, NAME=I", "*FRICTION", "10.",
+                 f"*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING={pairing}",
                  "A.BOTTOM, B.TOP", "*BOUNDARY", "A.LEFT, 1", "B.LEFT, 1", "B.BOTTOM, 2",
                  "A.TOP, 2, 2, -0.01", "*STEP", "*STATIC", "0.5, 1.", "*END STEP"]
         said[name] = summary(write(tmp_path / f"{name}.inp", without_unused_surfaces(cards)))

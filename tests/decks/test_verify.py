@@ -215,7 +215,8 @@ def test_a_set_is_judged_at_its_worst_node(tmp_path):
     process = run("run", "--quiet", verify(tmp_path / "set.inp", model(), [check]), "--out",
                   tmp_path)  # fmt: skip
     assert process.returncode == 4
-    assert ": check failed: NT UPPER at time 1: 100 (no estimate: inside a step; ERRORS=FULL), expected" in process.stderr
+    assert (": check failed: NT UPPER at time 1: 100 (no estimate: inside a step; ERRORS=FULL), "
+            "expected") in process.stderr
 
 
 def test_a_check_without_a_value_fails_with_the_reason(tmp_path):
