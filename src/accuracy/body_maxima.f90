@@ -2,6 +2,7 @@
 !> and on one some of whose elements are divided. Stress counts in elements without singular
 !> corners, and in the children of these.
 module body_maxima
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use divided_mesh, only: divided_mesh_type
    use element_kinds, only: element_corner_count, element_node_count
    use field_quantities, only: maxima, point_values
@@ -56,7 +57,7 @@ contains
 
    !> The changes of the maxima on a divided mesh: the rms of those of the fields at the nodes of
    !> the elements round them, for at one node they may vanish by chance, and what the fields rise
-   !> above them there, between nodes as well.
+   !> above them there, between nodes as well; NaN of stress of an earlier step.
    function changes(self, divided, mesh, points, fields) result(change)
       class(body_maxima_type), intent(in) :: self
       type(divided_mesh_type), intent(in) :: divided         !! solved
@@ -76,6 +77,10 @@ contains
          after = point_values(trim(maxima(q)%name), divided%record%fields, fine%node)
          do b = 1, size(change, 2)
             if (self%node(q, b) == 0) cycle
+            if (size(after) == 0) then
+               change(q, b) = ieee_value(1.0_dp, ieee_quiet_nan)
+               cycle
+            end if
             is_near = self%counts(q, :) .and. mesh%element_body == b .and. &
                elements_about(mesh, self%node(q:q, b))
             do e = 1, size(is_near)

@@ -293,6 +293,9 @@ contains
                model%mesh%node_body == b)
             do q = 1, size(maxima)
                if (own%node(q) == 0) cycle
+               holds(of_path) = .not. self%is_full .and. ieee_is_nan(change(q, b))
+               if (maxima(q)%name == 'temperature' .and. simulation%loads%temperature%active( &
+                  own%node(q))) change(q, b) = 0.0_dp
                call settle(own, q, reason_of(self, holds, change(q, b)), uncertainty_parts( &
                   maxima(q), change(q, b), 0.0_dp, 0.0_dp, iteration*value(q)))
             end do

@@ -116,7 +116,8 @@ contains
             call describe_run(self%path, model, simulation, output%run)
             output%run%settings = settings_in_words(self%command)
             if (allocated(self%deck%origin)) output%run%origin = self%deck%origin%words()
-            if (model%uncertainty == uncertainty_full .and. .not. self%command%quiet) call &
+            if (model%uncertainty == uncertainty_full .and. .not. (self%command%quiet .or. &
+               output%kept_round > 0)) call &
                print_line(output_unit, self%path//': '//cost_words(model))
             call solve_deck(self, rounds, error)
             if (allocated(error)) call report_failure(self, error, is_told=.false.)
