@@ -311,7 +311,7 @@ def test_an_amplitude_moves_the_new_nodes_of_its_own_side_alone(tmp_path):
 
 def test_the_uncertainty_of_a_temperature_holds_the_error_of_elements_far_away(tmp_path):
     """A ring heated within, T = T(R) + q r ln(R/r)/k: its side towards the middle is fine, the
-    others are not. All temperatures may be higher."""
+    others are not. Where it is cooled, its largest temperature is given."""
     inner, outer = 1.0, 9.0
     radii = [inner, 1.02, 1.04, 1.06, 1.08, 3.0, outer]
 
@@ -327,6 +327,7 @@ def test_the_uncertainty_of_a_temperature_holds_the_error_of_elements_far_away(t
     assert 0.0 < abs(value - 5.0 * inner * np.log(outer / inner) / 2.0) <= uncertainty
     # Rounding of 300 among elements that are 300 times as long as high.
     np.testing.assert_allclose(largest(5.0, 300.0), [300.0 + value, uncertainty], rtol=1e-7)
+    assert tuple(largest(-5.0, 300.0)) == (300.0, 0.0)
 
 
 def test_every_body_has_its_own_stress_and_singular_corners(tmp_path):
