@@ -7,7 +7,7 @@ module material_points
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4, quad4_enhanced
    use enhanced_strains, only: release_stresses
    use kinds, only: dp
-   use material_laws, only: law_points_type
+   use material_laws, only: law_interval_type, law_points_type
    use materials, only: has_law, heat_content, material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
    use point_gradients, only: add_hoop_strain, find_negative_gradient, find_strains, &
@@ -40,10 +40,9 @@ module material_points
    end type material_points_type
 
    !> Histories of all points at both ends of a time increment.
-   type :: point_history_type
+   type, extends(law_interval_type) :: point_history_type
       real(dp), allocatable :: before(:)   !! (numbers) at the start; unallocated for none
       real(dp), allocatable :: after(:)    !! (numbers) at the end
-      real(dp) :: duration = 0.0_dp        !! of the increment [time]
    end type point_history_type
 
 contains
@@ -180,7 +179,7 @@ contains
                self%temperature(mesh%element_nodes(:rule%nodes, element)))
          end do
          numbers = reshape(history%before(first:last), shape(numbers))
-         call material%law%respond(material%law, points, history%duration, numbers)
+         call material%law%respond(material%law, points, history%law_interval_type, numbers)
          history%after(first:last) = [numbers]
       end associate
    end subroutine respond
