@@ -5,7 +5,7 @@
 module material_points
    use element_integrals, only: area_factor
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4, quad4_enhanced
-   use enhanced_strains, only: release_stresses
+   use enhanced_strains, only: released_strains
    use kinds, only: dp
    use material_laws, only: law_interval_type, law_points_type
    use materials, only: has_law, heat_content, material_type, orientation_type, section_type
@@ -32,7 +32,9 @@ module material_points
       procedure :: positions
       procedure :: stress
       procedure :: respond
+      procedure, private :: changes_of_modes
       procedure :: follows_law
+      procedure :: largest_growth
       procedure :: heat_flux
       procedure :: add_contents
       procedure :: nodal_forces
@@ -44,6 +46,9 @@ module material_points
       real(dp), allocatable :: before(:)   !! (numbers) at the start; unallocated for none
       real(dp), allocatable :: after(:)    !! (numbers) at the end
    end type point_history_type
+
+   integer, parameter :: most_enhancements = 50       ! passes for enhanced strains
+   real(dp), parameter :: settled = 1.0e-12_dp        ! part of the strains that they change last
 
 contains
 
@@ -149,6 +154,8 @@ contains
       real(dp) :: strain(most, 4)
 
       call elastic_stress(self, mesh, element, displacement, temperature, strain, values)
+      if (mesh%element_kind(element) == quad4_enhanced) call release(self, mesh, element, values)
+      call add_initial_stress(mesh, element, self%rules(mesh%element_kind(element))%count, values)
    end subroutine stress
 
    !> Stress of an element at its points, its tangent and the new history, by the law of its
@@ -163,14 +170,20 @@ contains
       type(law_points_type), intent(inout) :: points
       real(dp) :: numbers(self%library(self%sections(mesh%element_section(element))%material)%law% &
          history_count, self%rules(mesh%element_kind(element))%count)
+      type(law_points_type) :: elastic
       integer :: g
 
-      call elastic_stress(self, mesh, element, displacement, temperature, points%strain, &
-         points%stress)
+      points%failed = .false.
       associate (material => self%library(self%sections(mesh%element_section(element))%material), &
          rule => self%rules(mesh%element_kind(element)), first => self%history_start(element), &
          last => self%history_start(element + 1) - 1)
-         if (.not. has_law(material)) return
+         if (.not. has_law(material)) then
+            call self%stress(mesh, element, displacement, temperature, points%stress)
+            return
+         end if
+         call elastic_stress(self, mesh, element, displacement, temperature, points%strain, &
+            points%stress)
+         call add_initial_stress(mesh, element, rule%count, points%stress)
          points%count = rule%count
          points%plane = mesh%element_plane(element)
          do g = 1, rule%count
@@ -178,11 +191,64 @@ contains
             points%temperature(g) = dot_product(rule%shape(g, :rule%nodes), &
                self%temperature(mesh%element_nodes(:rule%nodes, element)))
          end do
+         if (mesh%element_kind(element) == quad4_enhanced) elastic = points
          numbers = reshape(history%before(first:last), shape(numbers))
          call material%law%respond(material%law, points, history%law_interval_type, numbers)
+         if (mesh%element_kind(element) == quad4_enhanced) call enhance(self, mesh, element, &
+            history, elastic, points, numbers)
          history%after(first:last) = [numbers]
       end associate
    end subroutine respond
+
+   !> Finds the enhanced strains on which the stresses do no work, by Newton's method.
+   pure subroutine enhance(self, mesh, element, history, elastic, points, numbers)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      type(point_history_type), intent(in) :: history
+      type(law_points_type), intent(in) :: elastic           ! without them and without the law
+      type(law_points_type), intent(inout) :: points         ! the response
+      real(dp), intent(inout) :: numbers(:, :)               ! its history
+      real(dp) :: change(4, 4), strains(4, 4)
+      integer :: g, pass
+
+      strains = 0.0_dp
+      associate (law => self%library(self%sections(mesh%element_section(element))%material)%law, &
+         first => self%history_start(element))
+         do pass = 1, most_enhancements
+            if (points%failed) return
+            change = self%changes_of_modes(mesh, element, points)
+            strains = strains + change
+            if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + &
+               maxval(abs(elastic%strain(:4, :))))) return
+            points = elastic
+            do g = 1, 4
+               points%strain(g, :) = elastic%strain(g, :) + strains(:, g)
+               points%stress(g, :) = elastic%stress(g, :) + matmul(elastic%tangent(:, :, g), &
+                  strains(:, g))
+            end do
+            numbers = reshape(history%before(first:first + size(numbers) - 1), shape(numbers))
+            call law%respond(law, points, history%law_interval_type, numbers)
+         end do
+      end associate
+      points%failed = .true.
+   end subroutine enhance
+
+   !> Changes of the enhanced strains of an element that its stresses and their tangents ask for.
+   pure function changes_of_modes(self, mesh, element, points) result(strains)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                         !! which element
+      type(law_points_type), intent(in) :: points            !! its response
+      real(dp) :: strains(4, 4)                              !! (4, points)
+
+      associate (first => self%first(element), rule => self%rules(quad4_enhanced))
+         strains = released_strains(mesh%coordinates(:, mesh%element_nodes(:4, element)), &
+            matmul(node_position(quad4_enhanced), transpose(rule%shape(:4, :4))), &
+            mesh%element_plane(element) == axisymmetric, points%tangent(:, :, :4), &
+            self%volume(first:first + 3), transpose(points%stress(:4, :)))
+      end associate
+   end function changes_of_modes
 
    !> Whether an element responds by a law beyond thermoelasticity.
    pure logical function follows_law(self, mesh, element)
@@ -192,6 +258,28 @@ contains
 
       follows_law = has_law(self%library(self%sections(mesh%element_section(element))%material))
    end function follows_law
+
+   !> Largest growth of the equivalent plastic and creep strains from a history to another one.
+   pure function largest_growth(self, mesh, before, after) result(growth)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: before(:), after(:)            !! (numbers)
+      real(dp) :: growth(2)
+      integer :: e, i, k
+
+      growth = 0.0_dp
+      do e = 1, size(mesh%element_kind)
+         associate (law => self%library(self%sections(mesh%element_section(e))%material)%law)
+            do k = 1, 2
+               if (law%strains(k) == 0) cycle
+               do i = self%history_start(e) + law%strains(k) + 3, self%history_start(e + 1) - 1, &
+                  law%history_count
+                  growth(k) = max(growth(k), after(i) - before(i))
+               end do
+            end do
+         end associate
+      end do
+   end function largest_growth
 
    !> Stress by thermoelasticity, and the strains without those that are enhanced.
    pure subroutine elastic_stress(self, mesh, element, displacement, temperature, strain, values)
@@ -231,13 +319,20 @@ contains
                   self%materials(self%at_point(element, g))%thermal_stress
             end do
          end if
-         if (kind == quad4_enhanced) call release(self, mesh, element, values)
-         if (.not. allocated(mesh%initial_stress)) return
-         do g = 1, n
-            values(g, :) = values(g, :) + mesh%initial_stress(:, element)
-         end do
       end associate
    end subroutine elastic_stress
+
+   pure subroutine add_initial_stress(mesh, element, n, values)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element, n              ! number of its points
+      real(dp), intent(inout) :: values(most, 4)
+      integer :: g
+
+      if (.not. allocated(mesh%initial_stress)) return
+      do g = 1, n
+         values(g, :) = values(g, :) + mesh%initial_stress(:, element)
+      end do
+   end subroutine add_initial_stress
 
    !> Adds the stresses of enhanced strains.
    pure subroutine release(self, mesh, element, values)
@@ -245,19 +340,18 @@ contains
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element
       real(dp), intent(inout) :: values(most, 4)
-      real(dp) :: e(4, 4, 4), points(2, 4), stress(4, 4)
+      type(law_points_type) :: points
+      real(dp) :: strains(4, 4)
       integer :: g
 
-      associate (first => self%first(element), rule => self%rules(quad4_enhanced))
-         points = matmul(node_position(quad4_enhanced), transpose(rule%shape(:4, :4)))
-         do g = 1, 4
-            e(:, :, g) = self%materials(self%at_point(element, g))%elasticity
-         end do
-         stress = transpose(values(:4, :))
-         call release_stresses(mesh%coordinates(:, mesh%element_nodes(:4, element)), points, &
-            mesh%element_plane(element) == axisymmetric, e, self%volume(first:first + 3), stress)
-         values(:4, :) = transpose(stress)
-      end associate
+      do g = 1, 4
+         points%tangent(:, :, g) = self%materials(self%at_point(element, g))%elasticity
+      end do
+      points%stress(:4, :) = values(:4, :)
+      strains = self%changes_of_modes(mesh, element, points)
+      do g = 1, 4
+         values(g, :) = values(g, :) + matmul(points%tangent(:, :, g), strains(:, g))
+      end do
    end subroutine release
 
    !> Two points of one material.

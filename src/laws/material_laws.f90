@@ -35,6 +35,9 @@ module material_laws
    !> The law of a material: none by default.
    type :: material_law_type
       integer :: history_count = 0                 !! history variables of a point
+      !> Where the strains of plasticity and of creep begin among these: xx, yy, zz, the angle xy and
+      !> the equivalent one; 0 for none
+      integer :: strains(2) = 0
       real(dp), allocatable :: constants(:)
       type(hardening_type) :: hardening
       type(creep_type) :: creep

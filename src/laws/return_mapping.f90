@@ -1,8 +1,8 @@
 !> Plasticity after von Mises and creep of an isotropic material, by the implicit rule of Euler.
 !>
-!> With the deviator S of the trial stress, which has the inelastic strains of the start, an
-!> increment x of the equivalent plastic strain and b = 3 G y/q, y being that of the creep strain and
-!> q the equivalent stress, everything follows from two numbers, alpha = 1/(1 + b) and g =
+!> With the deviator S of the trial stress, which has the inelastic strains of the start, an increment
+!> x of the equivalent plastic strain and b = 3 G y/q, y being that of the creep strain and q the
+!> equivalent stress, everything follows from two numbers, alpha = 1/(1 + b) and g =
 !> 1/(1 + gamma x):
 !>
 !>    eta = alpha S - g C a0,    N = eta/|eta|,    |eta| = Y + 3 G alpha x + C g x,
@@ -80,6 +80,8 @@ contains
       law%creep = creep
       law%history_count = history_back - 1
       if (hardening%has_back_stress()) law%history_count = history_back + 3
+      if (hardening%yields()) law%strains(1) = history_plastic
+      if (creep%creeps()) law%strains(2) = history_creep
       law%respond => respond
    end function inelastic_law
 

@@ -1,6 +1,7 @@
 !> Why a number has no bound of its error: all reasons, in the order in which one is told where
 !> several hold. Who computes a number says what holds of it; who prints it takes the words.
 module no_estimates
+   use materials, only: has_law
    use model, only: follows_temperatures, model_type
    implicit none
    private
@@ -10,20 +11,20 @@ module no_estimates
    integer, parameter, public :: no_reason = 0            !! there is a bound, or no value
    ! Of the whole run.
    integer, parameter, public :: of_pre_tension = 1, of_branches = 2, of_stored_heat = 3, &
-      of_tables = 4, errors_off = 5
-   integer, parameter, public :: inside_step = 6          !! bounds are made at the ends of steps
-   integer, parameter, public :: slides_far = 7           !! of all that an interface has
-   integer, parameter, public :: out_of_equilibrium = 8   !! of maxima of bodies
+      of_tables = 4, of_history = 5, errors_off = 6
+   integer, parameter, public :: inside_step = 7          !! bounds are made at the ends of steps
+   integer, parameter, public :: slides_far = 8           !! of all that an interface has
+   integer, parameter, public :: out_of_equilibrium = 9   !! of maxima of bodies
    ! Of a peak pressure.
-   integer, parameter, public :: at_corner = 9, turns_round = 10, grows = 11
+   integer, parameter, public :: at_corner = 10, turns_round = 11, grows = 12
    ! Of the increments.
-   integer, parameter, public :: single_increment = 12, not_doubled = 13, no_doubled_edge = 14
+   integer, parameter, public :: single_increment = 13, not_doubled = 14, no_doubled_edge = 15
    ! Of the mesh.
-   integer, parameter, public :: not_on_finer_mesh = 15, no_finer_edge = 16
-   integer, parameter, public :: reason_count = 16
+   integer, parameter, public :: not_on_finer_mesh = 16, no_finer_edge = 17
+   integer, parameter, public :: reason_count = 17
 
    character(*), parameter :: words(reason_count) = [character(36) :: 'pre-tension', 'branches', &
-      'stored heat', 'tables over temperature', 'ERRORS=NO', 'inside a step', &
+      'stored heat', 'tables over temperature', 'plasticity and creep', 'ERRORS=NO', 'inside a step', &
       'slides beyond its contact points', 'heat out of equilibrium', 'peak at a corner', &
       'friction turns round at the peak', 'peak grows with the mesh', 'single increment', &
       'doubled increments have no solution', 'no such edge with doubled increments', &
@@ -48,6 +49,7 @@ contains
       holds(of_branches) = any(model%steps%continuation%is_on)
       holds(of_stored_heat) = any(model%steps%is_transient)
       holds(of_tables) = follows_temperatures(model)
+      holds(of_history) = any(has_law(model%materials))
       reason = first_reason(holds)
    end function reason_of_deck
 

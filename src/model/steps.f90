@@ -86,6 +86,8 @@ module steps
       !> Part of the range of temperatures that an increment of a transient may err by.
       real(dp) :: local_error = 1.0e-3_dp
       logical :: dilates = .false.                   !! DILATATION=YES
+      !> STRAIN LIMIT=, of the growth of plastic strains in an increment
+      real(dp) :: strain_limit = 0.01_dp
       !> *STABILITY at every n-th increment and the last; 0 never
       integer :: stability_frequency = 0
       real(dp) :: largest_change = huge(1.0_dp)      !! DELTMX=, of a temperature in an increment

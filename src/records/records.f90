@@ -126,6 +126,7 @@ module records
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       !> Of a transient: error in time over the range of temperatures, and largest change of one.
       real(dp) :: local_error = 0.0_dp, largest_change = 0.0_dp
+      real(dp) :: strain_growth(2) = 0.0_dp  !! largest of equivalent plastic and creep strain [-]
       logical :: makes_range = .false.       !! whether the range is mostly what it makes itself
       real(dp) :: useful_increment = 0.0_dp  !! shorter ones overshoot beside a jump [time]
       real(dp) :: heat_stored = 0.0_dp       !! by heat capacities; NaN in a steady step [power]

@@ -6,7 +6,7 @@ module increment_attempts
    use constraint_checks, only: check_prescribed
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
-   use errors, only: error_type, set_error, status_no_convergence
+   use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes
    use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, &
@@ -22,6 +22,7 @@ module increment_attempts
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
+   use text, only: percent
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
@@ -58,6 +59,8 @@ contains
          stage%of_increment = clock
          stage%size = clock%step_time - run%control%step_time
          stage%duration = stage%size
+         stage%strains = solves_mechanics(step%analysis)
+         stage%passing%instants = run%control%step_start + [run%control%step_time, clock%step_time]
          if (allocated(run%state%history)) stage%history = run%state%history
          if (step%is_transient) then
             call begin_first_stage(run, model, stage, attempt%before)
@@ -71,6 +74,7 @@ contains
             call solve_stage(run, model, attempt, error)
             call add_attempts(first, attempt%record)
          end if
+         if (.not. allocated(error)) call check_strains(run, model, attempt, error)
          if (run%branch%is_followed .and. .not. allocated(error)) then
             if (any(differ(attempt%next%omega, run%branch%point%omega))) call set_error(error, &
                status_no_convergence, 'the increment leads to another branch')
@@ -82,6 +86,29 @@ contains
             run%control%size_to(clock), attempt%record)
       end associate
    end subroutine attempt_increment
+
+   !> Whether plastic strains grow by no more than the step allows an increment; where increments are
+   !> fixed they may.
+   subroutine check_strains(run, model, attempt, error)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(attempt_type), intent(inout) :: attempt
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: words
+
+      associate (step => model%steps(run%control%step), growth => attempt%record%strain_growth)
+         growth = run%corrections%largest_growth(model, attempt%next, run%state)
+         if (growth(1) <= step%strain_limit) return
+         words = 'plastic strains grow by '//percent(growth(1))
+         if (step%direct) then
+            call attempt%record%warn(words//' in an increment, which DIRECT does not allow to be '// &
+               'cut back')
+         else
+            call set_error(error, status_no_convergence, words//', more than the '// &
+               percent(step%strain_limit)//' of an increment')
+         end if
+      end associate
+   end subroutine check_strains
 
    !> Solves a stage of an increment, mostly the only one; the last one is recorded.
    subroutine solve_stage(run, model, attempt, error)
@@ -187,6 +214,9 @@ contains
          if (solves_mechanics(model%steps(run%control%step)%analysis)) call bodies%reduce(model, &
             run%heat_reductions(run%in_use)%node_rank, error)
       end associate
+      if (.not. (allocated(error) .and. run%corrections%has_laws)) return
+      if (error%status == status_internal) return
+      call set_error(error, status_no_convergence, 'bodies yield without resistance')
    end subroutine renew_operators
 
    !> Begins the trial of a stage, with the reduction of heat that its equation asks for.

@@ -7,8 +7,11 @@
 !> Heat is stored as enthalpy, H(T) = integral of rho c, so that the heat of an increment is a
 !> difference of contents. Heat that strains take up (DILATATION) is corrected in the same way.
 !>
-!> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where one does
-!> not reduce what is left over to 0.3 of the one before, the operators are to be formed again.
+!> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where properties
+!> alone vary and one does not reduce what is left over to 0.3 of the one before, the operators are
+!> to be formed again. Laws of materials need more passes, which still cost less than factors:
+!> operators are formed, with the tangents of the laws, after 25 passes, or three that each leave
+!> more than 0.7.
 module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
@@ -34,6 +37,11 @@ module operator_corrections
    real(dp), parameter :: rounding = 1.0e-13_dp
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
+   ! Of laws.
+   real(dp), parameter :: slow = 0.7_dp         !! part that is left over by a slow pass
+   real(dp), parameter :: grows = 2.0_dp        !! factor at which the mixing starts again
+   real(dp), parameter :: least_rank = 1.0e-8_dp   !! tolerance of the mixing
+   integer, parameter :: most_slow = 3, most_with_operators = 25   !! passes
 
    !> Fields at points, and the elements of the bodies whose materials vary.
    type :: corrections_type
@@ -52,6 +60,9 @@ module operator_corrections
       real(dp), allocatable :: scale(:)            !! (4 nodes) of the values
       type(mixing_type) :: mixing
       real(dp) :: left_over = 0.0_dp               !! of the last pass, in scales
+      integer :: slow_passes = 0                   !! since operators were formed
+      logical, public :: has_laws = .false.        !! whether any material has
+      logical :: law_failed = .false.              !! whether one found no stress
       integer, public :: passes = 0                !! of the stage
       logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
       logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
@@ -66,6 +77,7 @@ module operator_corrections
       procedure :: heat_beyond
       procedure :: true_contents
       procedure :: keep
+      procedure :: largest_growth
       procedure :: find_tangents
    end type corrections_type
 
@@ -90,6 +102,7 @@ contains
       end associate
       if (allocated(initial_force)) self%initial_force = initial_force
       self%corrects = any(follows) .or. any(model%steps%dilates)
+      self%has_laws = any(has_law(model%materials))
       if (.not. any(follows)) return
       allocate (self%points, self%contents)
       self%points%has_inverses = .false.
@@ -115,9 +128,10 @@ contains
       self%passes = 0
       self%renewed_at = 0
       self%left_over = 0.0_dp
-      self%mixing = mixing_type()
+      call start_mixing(self)
       if (allocated(self%scale)) deallocate (self%scale)
       if (allocated(self%strain_before)) deallocate (self%strain_before)
+      self%history%law_interval_type = stage%passing
       self%history%duration = stage%duration
       if (allocated(stage%history)) then
          self%history%before = stage%history
@@ -178,21 +192,51 @@ contains
       last = self%left_over
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
+      if (self%law_failed) then
+         call set_error(error, status_no_convergence, 'a material finds no stress for its strain')
+         return
+      end if
       self%is_settled = self%left_over <= settled
-      self%asks_operators = .not. self%is_settled .and. self%passes > self%renewed_at + 1 .and. &
-         self%left_over > contracts*last .and. size(self%elements) > 0
-      ! Properties at other temperatures are no tangent, which a law has.
-      if (.not. any(has_law(model%materials))) self%asks_operators = self%asks_operators .and. &
-         self%renewed_at == 0
+      self%asks_operators = .not. self%is_settled .and. size(self%elements) > 0 .and. &
+         needs_operators(self, last)
       if (self%is_settled .or. self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
          call set_error(error, status_no_convergence, 'heat and stress of bodies do not follow '// &
-            'their temperatures within '//to_text(most_passes)//' corrections')
+            'their temperatures'//trim(merge(' and strains', '            ', self%has_laws))// &
+            ' within '//to_text(most_passes)//' corrections')
          return
       end if
       x = self%values/self%scale
       self%values = (x + self%mixing%step(x, left_over, spread(1.0_dp, 1, size(x))))*self%scale
    end subroutine correct
+
+   !> Whether operators are to be formed at a solution. Properties at other temperatures are no
+   !> tangent, which a law has: without one they are formed once.
+   logical function needs_operators(self, last)
+      type(corrections_type), intent(inout) :: self
+      real(dp), intent(in) :: last                           ! left over by the pass before
+
+      associate (passes => self%passes - self%renewed_at)
+         if (.not. self%has_laws) then
+            needs_operators = passes > 1 .and. self%renewed_at == 0 .and. &
+               self%left_over > contracts*last
+            return
+         end if
+         if (passes > 1 .and. self%left_over > slow*last) self%slow_passes = self%slow_passes + 1
+         if (passes > 1 .and. self%left_over > grows*last) self%mixing = &
+            mixing_type(rank_tolerance=least_rank)
+         needs_operators = passes > most_with_operators .or. self%slow_passes >= most_slow
+      end associate
+   end function needs_operators
+
+   !> Forgets the passes before.
+   subroutine start_mixing(self)
+      type(corrections_type), intent(inout) :: self
+
+      self%slow_passes = 0
+      self%mixing = mixing_type()
+      if (self%has_laws) self%mixing%rank_tolerance = least_rank
+   end subroutine start_mixing
 
    !> Goes on with operators that were formed at a solution.
    subroutine renew(self, model, bodies, before, at)
@@ -203,7 +247,7 @@ contains
       type(solution_state_type), intent(in) :: at            !! the solution
 
       self%renewed_at = self%passes
-      self%mixing = mixing_type()
+      call start_mixing(self)
       deallocate (self%scale)
       self%heat_before = self%heat_beyond(model, bodies, before%temperature)
       self%values = corrections_of(self, model, bodies, at%temperature, at%displacement)
@@ -223,8 +267,25 @@ contains
       end if
       if (allocated(bodies%operators_at)) next%operators_at = bodies%operators_at
       if (allocated(bodies%tangent)) next%tangent = bodies%tangent
-      if (allocated(self%history%after)) next%history = self%history%after
+      if (allocated(self%history%after) .and. self%stage%strains) next%history = self%history%after
    end subroutine keep
+
+   !> Largest equivalent plastic and creep strains of a state, or their growth since another one.
+   pure function largest_growth(self, model, state, before) result(growth)
+      class(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(in) :: state
+      type(solution_state_type), optional, intent(in) :: before
+      real(dp) :: growth(2)
+
+      growth = 0.0_dp
+      if (.not. allocated(state%history)) return
+      if (present(before)) then
+         growth = self%points%largest_growth(model%mesh, before%history, state%history)
+      else
+         growth = self%points%largest_growth(model%mesh, 0*state%history, state%history)
+      end if
+   end function largest_growth
 
    !> Corrections that temperatures and displacements at the end of a stage ask for.
    function corrections_of(self, model, bodies, temperature, displacement) result(values)
@@ -290,6 +351,7 @@ contains
       forces = 0.0_dp
       if (allocated(self%initial_force)) forces = self%initial_force
       if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
+      self%law_failed = .false.
       call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       warming = temperature - model%initial_temperature
       u = reshape(displacement, shape(u))
@@ -298,6 +360,7 @@ contains
          associate (mesh => model%mesh, e => self%elements(i), nodes => model%mesh%element_nodes( &
             :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
             call self%points%respond(mesh, e, u, warming, self%history, points)
+            self%law_failed = self%law_failed .or. points%failed
             of_nodes = self%points%nodal_forces(mesh, e, points%stress)
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
          end associate
@@ -339,7 +402,9 @@ contains
                model%initial_temperature, self%history, points)
             do g = 1, points%count
                associate (k => 16*(self%points%at_point(e, g) - 1))
-                  tangent(k + 1:k + 16) = [points%tangent(:, :, g)]
+                  ! The part that energy has: operators are symmetric.
+                  tangent(k + 1:k + 16) = [(points%tangent(:, :, g) + transpose( &
+                     points%tangent(:, :, g)))/2]
                end associate
             end do
          end associate

@@ -208,6 +208,7 @@ contains
       step%is_transient = solves_heat(step%analysis) .and. card%lacks('STEADY STATE')
       creep = choice(card, 'CREEP', 'NONE', deck, 'NONE')
       step%direct = is_on(card, 'DIRECT', deck)
+      call take_parameter(card, 'STRAIN LIMIT', deck, step%strain_limit, '>0')
       if (size(card%data) > 0) then
          call build_increments(card%data(1), deck, step)
       else
