@@ -35,6 +35,7 @@ module material_points
       procedure, private :: changes_of_modes
       procedure :: follows_law
       procedure :: largest_growth
+      procedure :: take_strains
       procedure :: heat_flux
       procedure :: add_contents
       procedure :: nodal_forces
@@ -259,12 +260,13 @@ contains
       follows_law = has_law(self%library(self%sections(mesh%element_section(element))%material))
    end function follows_law
 
-   !> Largest growth of the equivalent plastic and creep strains from a history to another one.
+   !> Largest growth of the equivalent plastic and creep strains of the bodies from a history to
+   !> another one.
    pure function largest_growth(self, mesh, before, after) result(growth)
       class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: before(:), after(:)            !! (numbers)
-      real(dp) :: growth(2)
+      real(dp) :: growth(2, mesh%body_count)
       integer :: e, i, k
 
       growth = 0.0_dp
@@ -274,12 +276,35 @@ contains
                if (law%strains(k) == 0) cycle
                do i = self%history_start(e) + law%strains(k) + 3, self%history_start(e + 1) - 1, &
                   law%history_count
-                  growth(k) = max(growth(k), after(i) - before(i))
+                  growth(k, mesh%element_body(e)) = max(growth(k, mesh%element_body(e)), &
+                     after(i) - before(i))
                end do
             end do
          end associate
       end do
    end function largest_growth
+
+   !> Plastic strains of the points of an element, then those of creep, in columns; 0 of none.
+   pure subroutine take_strains(self, mesh, element, remembered, strains)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                         !! which element
+      real(dp), intent(in) :: remembered(:)                  !! (numbers) by all points
+      !> Its points first; xx, yy, zz, the angle xy and the equivalent one of each
+      real(dp), intent(out) :: strains(most, 10)
+      integer :: g, i, k
+
+      strains = 0.0_dp
+      associate (law => self%library(self%sections(mesh%element_section(element))%material)%law)
+         do k = 1, 2
+            if (law%strains(k) == 0) cycle
+            do g = 1, self%rules(mesh%element_kind(element))%count
+               i = self%history_start(element) + (g - 1)*law%history_count + law%strains(k) - 1
+               strains(g, 5*k - 4:5*k) = remembered(i:i + 4)
+            end do
+         end do
+      end associate
+   end subroutine take_strains
 
    !> Stress by thermoelasticity, and the strains without those that are enhanced.
    pure subroutine elastic_stress(self, mesh, element, displacement, temperature, strain, values)

@@ -10,7 +10,7 @@ module quantity_types
       of_points, of_elements, of_sections
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
    public :: needs_storage, needs_dilatation, needs_friction_heat, needs_stability, needs_branch, &
-      needs_sections
+      needs_sections, needs_plasticity, needs_creep, last_need
 
    integer, parameter :: name_length = 24
 
@@ -38,6 +38,9 @@ module quantity_types
    integer, parameter :: needs_stability = 8     !! *STABILITY: /stability in place of /history
    integer, parameter :: needs_branch = 9        !! *CONTINUATION
    integer, parameter :: needs_sections = 10     !! mechanics and *PRE-TENSION SECTION
+   integer, parameter :: needs_plasticity = 11   !! mechanics and *PLASTIC
+   integer, parameter :: needs_creep = 12        !! mechanics and *CREEP
+   integer, parameter :: last_need = needs_creep
 
    type :: quantity_type
       character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors

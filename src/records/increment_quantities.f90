@@ -2,9 +2,10 @@
 module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
-   use quantity_types, only: needs_branch, needs_coupling, needs_dilatation, needs_friction_heat, &
-      needs_heat, needs_mechanics, needs_sections, needs_stability, needs_storage, of_bodies, &
-      of_elements, of_history, of_passes, of_sections, quantity_type
+   use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
+      needs_friction_heat, needs_heat, needs_mechanics, needs_plasticity, needs_sections, &
+      needs_stability, needs_storage, of_bodies, of_elements, of_history, of_passes, of_sections, &
+      quantity_type
    use field_recovery, only: error_record_type
    use records, only: increment_record_type, stability_record_type
    use solution_report, only: iteration_record_type
@@ -68,6 +69,10 @@ module increment_quantities
       description='estimated error of the stress by the mesh, relative; one column per body'), &
       quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
       description='estimated error of the heat flux by the mesh, relative; one column per body'), &
+      quantity_type('largest_plastic_strain', of_bodies, '-', needs_plasticity, &
+      description='largest equivalent plastic strain at a point; one column per body'), &
+      quantity_type('largest_creep_strain', of_bodies, '-', needs_creep, &
+      description='largest equivalent creep strain at a point; one column per body'), &
       quantity_type('increment', of_passes, '-', head='increment', width=12, is_integer=.true., &
       description='increment of the iteration'), &
       quantity_type('iteration', of_passes, '-', head='iteration', width=11, is_integer=.true., &
@@ -216,6 +221,10 @@ contains
       if (quantity%name == 'stress_error') error = record%stress_error
       if (quantity%name == 'heat_flux_error') error = record%heat_flux_error
       allocate (values(0))
+      if (allocated(record%inelastic_strain)) then
+         if (quantity%name == 'largest_plastic_strain') values = record%inelastic_strain(1, :)
+         if (quantity%name == 'largest_creep_strain') values = record%inelastic_strain(2, :)
+      end if
       if (quantity%kind == of_bodies .and. allocated(error%body)) values = error%body
       if (quantity%kind == of_elements .and. allocated(error%element)) values = error%element
       if (quantity%kind == of_sections .and. allocated(record%pre_tension)) values = &

@@ -281,9 +281,9 @@ contains
       growth = 0.0_dp
       if (.not. allocated(state%history)) return
       if (present(before)) then
-         growth = self%points%largest_growth(model%mesh, before%history, state%history)
+         growth = maxval(self%points%largest_growth(model%mesh, before%history, state%history), 2)
       else
-         growth = self%points%largest_growth(model%mesh, 0*state%history, state%history)
+         growth = maxval(self%points%largest_growth(model%mesh, 0*state%history, state%history), 2)
       end if
    end function largest_growth
 
