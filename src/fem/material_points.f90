@@ -36,6 +36,8 @@ module material_points
       procedure :: follows_law
       procedure :: largest_growth
       procedure :: take_strains
+      procedure :: second_start
+      procedure :: difference_of_stages
       procedure :: heat_flux
       procedure :: add_contents
       procedure :: nodal_forces
@@ -283,6 +285,60 @@ contains
          end associate
       end do
    end function largest_growth
+
+   !> History at which the second stage of an increment starts: beyond that of the first one by
+   !> a factor less one. What strain alone changes starts where the first stage ended if strains
+   !> jumped in it.
+   pure function second_start(self, mesh, start, middle, factor, jumps) result(history)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: start(:), middle(:)            !! (numbers) of the first stage
+      real(dp), intent(in) :: factor
+      logical, intent(in) :: jumps
+      real(dp) :: history(size(start))
+      integer :: e, i, k
+
+      history = start + factor*(middle - start)
+      if (.not. jumps) return
+      do e = 1, size(mesh%element_kind)
+         associate (law => self%library(self%sections(mesh%element_section(e))%material)%law)
+            if (.not. allocated(law%of_time)) cycle
+            do i = self%history_start(e), self%history_start(e + 1) - 1
+               k = 1 + modulo(i - self%history_start(e), law%history_count)
+               if (.not. law%of_time(k)) history(i) = middle(i)
+            end do
+         end associate
+      end do
+   end function second_start
+
+   !> Largest difference of the changes of inelastic strain in the two stages of an increment, as an
+   !> equivalent strain: of all, and of creep alone.
+   pure function difference_of_stages(self, mesh, first, second) result(largest)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: first(:), second(:)            !! (numbers) changes in them
+      real(dp) :: largest(2)
+      real(dp) :: strains(most, 10, 2), creep(4), whole(4)
+      integer :: e, g
+
+      largest = 0.0_dp
+      do e = 1, size(mesh%element_kind)
+         if (self%history_start(e + 1) == self%history_start(e)) cycle
+         call self%take_strains(mesh, e, first, strains(:, :, 1))
+         call self%take_strains(mesh, e, second, strains(:, :, 2))
+         do g = 1, self%rules(mesh%element_kind(e))%count
+            creep = strains(g, 6:9, 2) - strains(g, 6:9, 1)
+            whole = creep + strains(g, 1:4, 2) - strains(g, 1:4, 1)
+            largest = max(largest, [equivalent(whole), equivalent(creep)])
+         end do
+      end do
+   contains
+      pure real(dp) function equivalent(strain)
+         real(dp), intent(in) :: strain(4)
+
+         equivalent = sqrt((2*sum(strain(:3)**2) + strain(4)**2)/3)
+      end function equivalent
+   end function difference_of_stages
 
    !> Plastic strains of the points of an element, then those of creep, in columns; 0 of none.
    pure subroutine take_strains(self, mesh, element, remembered, strains)

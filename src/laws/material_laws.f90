@@ -38,6 +38,9 @@ module material_laws
       !> Where the strains of plasticity and of creep begin among these: xx, yy, zz, the angle xy and
       !> the equivalent one; 0 for none
       integer :: strains(2) = 0
+      !> (history_count) variables that change with time; others change with strain alone, and at
+      !> once where that jumps. All where this is unallocated
+      logical, allocatable :: of_time(:)
       real(dp), allocatable :: constants(:)
       type(hardening_type) :: hardening
       type(creep_type) :: creep

@@ -37,8 +37,8 @@ module return_mapping
 
    real(dp), parameter :: weight(4) = [1.0_dp, 1.0_dp, 1.0_dp, 2.0_dp]   !! of a tensor's product
    real(dp), parameter :: to_tensor(4) = [1.0_dp, 1.0_dp, 1.0_dp, 0.5_dp]
-   !> Part of the yield stress by which an elastic stress may be beyond it: the rounding of stresses
-   !> of strains a hundred times the elastic ones
+   !> Part of a stress or of ln alpha that is rounding: of stresses of strains a hundred times the
+   !> elastic ones, and of logarithms of numbers down to epsilon
    real(dp), parameter :: rounding = 1.0e-13_dp
    integer, parameter :: most_passes = 100
 
@@ -82,6 +82,9 @@ contains
       if (hardening%has_back_stress()) law%history_count = history_back + 3
       if (hardening%yields()) law%strains(1) = history_plastic
       if (creep%creeps()) law%strains(2) = history_creep
+      allocate (law%of_time(law%history_count), source=.false.)
+      law%of_time(history_creep:history_creep + 4) = .true.
+      law%of_time([history_work + 1, at_start]) = .true.
       law%respond => respond
    end function inelastic_law
 
@@ -201,14 +204,13 @@ contains
          f = log(b) - log(3*point%shear*there%y/there%q)
          if (f > 0.0_dp) ends(2) = u
          if (f <= 0.0_dp) ends(1) = u
-         slope = (1 + b)/b - (there%y_slope/there%y - 1/there%q)*there%alpha* &
+         slope = (1 + b)/b + (there%y_slope/there%y - 1/there%q)*there%alpha* &
             equivalent_slope(point, there)
-         if (abs(f/slope) <= 4*epsilon(u)*u) return
+         if (abs(f/slope) <= rounding*u) return
          u = u - f/slope
          if (u <= ends(1) .or. u >= ends(2)) u = sum(ends)/2
       end do
-      ! The ends may meet before rounding lets f vanish.
-      there%found = ends(2) - ends(1) <= 1.0e-12_dp*ends(2)
+      there%found = .false.
    end function returned
 
    !> Slope of the equivalent stress by alpha.

@@ -12,7 +12,7 @@ module quantity_types
    public :: needs_storage, needs_dilatation, needs_friction_heat, needs_stability, needs_branch, &
       needs_sections, needs_plasticity, needs_creep, last_need
 
-   integer, parameter :: name_length = 24
+   integer, parameter :: name_length = 25
 
    ! Where a quantity has its numbers; each is a group of the result file, but for the nodes.
    integer, parameter :: of_history = 1     !! an increment: /history

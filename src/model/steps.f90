@@ -85,6 +85,10 @@ module steps
       logical :: is_transient = .false.              !! heat is stored: no STEADY STATE
       !> Part of the range of temperatures that an increment of a transient may err by.
       real(dp) :: local_error = 1.0e-3_dp
+      logical :: is_viscous = .false.                !! *VISCO: mechanics in real time
+      logical :: creeps = .false.                    !! whether materials creep in it
+      !> CETOL=, of the creep strains in an increment by the rates of its stages
+      real(dp) :: creep_tolerance = huge(1.0_dp)
       logical :: dilates = .false.                   !! DILATATION=YES
       !> STRAIN LIMIT=, of the growth of plastic strains in an increment
       real(dp) :: strain_limit = 0.01_dp
@@ -140,7 +144,8 @@ contains
    elemental logical function adapts_increments(step)
       type(step_type), intent(in) :: step
 
-      adapts_increments = step%is_transient .and. .not. step%direct
+      adapts_increments = (step%is_transient .or. step%is_viscous .and. step%scheme%stages == 2) &
+         .and. .not. step%direct
    end function adapts_increments
 
    !> Whether the item of a kind of load is a node.

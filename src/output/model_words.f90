@@ -80,6 +80,8 @@ contains
          select case (model%steps(step)%analysis)
          case (analysis_static)
             analysis = 'mechanics'
+            if (model%steps(step)%is_viscous) analysis = 'mechanics in real time, scheme '// &
+               trim(model%steps(step)%scheme%name)
          case (analysis_heat)
             analysis = 'heat'//storage(step)//', scheme '//trim(model%steps(step)%scheme%name)
          case default

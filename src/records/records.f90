@@ -129,6 +129,9 @@ module records
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       !> Of a transient: error in time over the range of temperatures, and largest change of one.
       real(dp) :: local_error = 0.0_dp, largest_change = 0.0_dp
+      !> Of two stages: error of inelastic strains over the largest elastic one, and largest
+      !> difference of creep strains by their rates
+      real(dp) :: strain_error = 0.0_dp, creep_difference = 0.0_dp
       real(dp) :: strain_growth(2) = 0.0_dp  !! largest of equivalent plastic and creep strain [-]
       !> (2, bodies) largest equivalent plastic and creep strain; unallocated without laws
       real(dp), allocatable :: inelastic_strain(:, :)

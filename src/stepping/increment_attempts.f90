@@ -8,7 +8,7 @@ module increment_attempts
    use coupled_increment, only: differ, judge_solution
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
-   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes
+   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, measure_strains
    use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, &
       warn_of_tables
    use increment_data, only: stage_type, trial_type
@@ -62,7 +62,7 @@ contains
          stage%strains = solves_mechanics(step%analysis)
          stage%passing%instants = run%control%step_start + [run%control%step_time, clock%step_time]
          if (allocated(run%state%history)) stage%history = run%state%history
-         if (step%is_transient) then
+         if (step%is_transient .or. step%is_viscous) then
             call begin_first_stage(run, model, stage, attempt%before)
             start = attempt%before
          end if
@@ -73,6 +73,8 @@ contains
             call begin_second_stage(run, model, start, attempt%before, stage)
             call solve_stage(run, model, attempt, error)
             call add_attempts(first, attempt%record)
+            if (allocated(stage%history) .and. .not. allocated(error)) call measure_strains(run, &
+               model, stage, attempt%before, attempt%next, attempt%record)
          end if
          if (.not. allocated(error)) call check_strains(run, model, attempt, error)
          if (run%branch%is_followed .and. .not. allocated(error)) then

@@ -46,8 +46,8 @@ module operator_corrections
    !> Fields at points, and the elements of the bodies whose materials vary.
    type :: corrections_type
       private
-      !> Integration points, and points of heat contents
-      type(material_points_type), allocatable :: points, contents
+      type(material_points_type), allocatable, public :: points   !! of integration
+      type(material_points_type), allocatable :: contents         !! of heat contents
       integer, allocatable :: elements(:)
       type(stage_type) :: stage                    !! that is corrected
       type(point_history_type) :: history          !! of it
@@ -68,6 +68,8 @@ module operator_corrections
       logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
       integer, public :: renewed_at = 0            !! pass after which they were last, in the stage
       logical, public :: corrects = .false.        !! whether the run has anything to correct
+      !> Largest equivalent stress over 3 G that laws found last, an elastic strain
+      real(dp), public :: elastic_strain = 0.0_dp
    contains
       procedure :: prepare
       procedure :: begin
@@ -352,6 +354,7 @@ contains
       if (allocated(self%initial_force)) forces = self%initial_force
       if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
       self%law_failed = .false.
+      self%elastic_strain = 0.0_dp
       call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       warming = temperature - model%initial_temperature
       u = reshape(displacement, shape(u))
@@ -361,6 +364,9 @@ contains
             :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
             call self%points%respond(mesh, e, u, warming, self%history, points)
             self%law_failed = self%law_failed .or. points%failed
+            if (self%points%follows_law(mesh, e)) self%elastic_strain = max(self%elastic_strain, &
+               maxval(equivalent(points%stress(:points%count, :)))/(3*self%points%materials( &
+               self%points%at_point(e, 1))%elasticity(4, 4)))
             of_nodes = self%points%nodal_forces(mesh, e, points%stress)
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
          end associate
@@ -379,6 +385,15 @@ contains
          if (allocated(bodies%bar_load%value)) sums = sums + bodies%bar_load%multiply(warming)
       end function of_operators
    end function forces_beyond
+
+   !> Von Mises' equivalent stress of points.
+   pure function equivalent(stress)
+      real(dp), intent(in) :: stress(:, :)                   ! (points, 4) [stress]
+      real(dp) :: equivalent(size(stress, 1))
+
+      equivalent = sqrt(((stress(:, 1) - stress(:, 2))**2 + (stress(:, 2) - stress(:, 3))**2 + &
+         (stress(:, 3) - stress(:, 1))**2)/2 + 3*stress(:, 4)**2)
+   end function equivalent
 
    !> Tangents of the stress at a solution, where materials have laws.
    subroutine find_tangents(self, model, at, tangent)

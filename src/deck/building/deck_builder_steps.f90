@@ -59,11 +59,14 @@ contains
                deck%step_place(n) = card%place
                if (n > 1) before = deck%model%steps(n - 1)
                call begin_step(card, n > 1, before, deck, deck%model%steps(n))
-            case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
+            case ('STATIC', 'VISCO', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
                counts%analyses = counts%analyses + 1
                if (counts%analyses > 1) call deck%error(card%place, 'a second analysis in one step')
-               if (n > 0) call build_analysis(card, n, counts, deck, deck%model%steps(n))
+               if (n == 0) cycle
+               deck%model%steps(n)%scheme = controls%scheme
+               if (.not. has_scheme) deck%model%steps(n)%scheme = l_stable_scheme
+               call build_analysis(card, n, counts, deck, deck%model%steps(n))
             case ('END STEP')
                if (counts%analyses > 0) cycle
                deck%analyses_sound = .false.
@@ -99,7 +102,8 @@ contains
          ! Transients have their own scheme until the deck names one.
          associate (step => deck%model%steps(n))
             step%step_controls_type = controls
-            if (step%is_transient .and. .not. has_scheme) step%scheme = l_stable_scheme
+            if ((step%is_transient .or. step%is_viscous) .and. .not. has_scheme) step%scheme = &
+               l_stable_scheme
             if (counts%is_uncoupled .and. .not. has_scheme) step%scheme = explicit_scheme
          end associate
       end do
@@ -203,10 +207,13 @@ contains
       deck%analysis_place(n) = card%place
       errors = deck%error_count()
       step%analysis = analysis_coupled
-      if (card%name == 'STATIC') step%analysis = analysis_static
+      step%is_viscous = card%name == 'VISCO'
+      if (card%name == 'STATIC' .or. step%is_viscous) step%analysis = analysis_static
       if (card%name == 'HEAT TRANSFER') step%analysis = analysis_heat
       step%is_transient = solves_heat(step%analysis) .and. card%lacks('STEADY STATE')
       creep = choice(card, 'CREEP', 'NONE', deck, 'NONE')
+      step%creeps = (step%is_transient .or. step%is_viscous) .and. solves_mechanics( &
+         step%analysis) .and. card%lacks('CREEP')
       step%direct = is_on(card, 'DIRECT', deck)
       call take_parameter(card, 'STRAIN LIMIT', deck, step%strain_limit, '>0')
       if (size(card%data) > 0) then
@@ -222,10 +229,11 @@ contains
       else if (.not. adapts_increments(step)) then
          call fit_increments(card, n, deck, step)
       end if
-      if (counts%has_amplitude .or. .not. step%is_transient) return
+      if (counts%has_amplitude .or. .not. (step%is_transient .or. step%is_viscous)) return
       step%ramped = .false.
-      call deck%note('*'//card%name//' without STEADY STATE: loads without an amplitude act at '// &
-         'once; *STEP, AMPLITUDE=RAMP ramps them')
+      call deck%note('*'//card%name//trim(merge(' without STEADY STATE', '                     ', &
+         step%is_transient))//': loads without an amplitude act at once; *STEP, AMPLITUDE=RAMP '// &
+         'ramps them')
    end subroutine build_analysis
 
    !> Whether an analysis gives its largest increment.
@@ -242,7 +250,14 @@ contains
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
 
-      if (.not. step%is_transient) then
+      call take_parameter(card, 'CETOL', deck, step%creep_tolerance, '>0')
+      if (step%is_viscous) then
+         call take_parameter(card, 'LOCAL ERROR', deck, step%local_error, '>0')
+         if (adapts_increments(step) .and. .not. card%has('LOCAL ERROR')) call deck%note('*VISCO '// &
+            'without LOCAL ERROR=: inelastic strains err in an increment by at most '// &
+            percent(step%local_error)//' of the largest elastic strain')
+         return
+      else if (.not. step%is_transient) then
          if (card%has('DELTMX') .or. card%has('LOCAL ERROR') .or. &
             card%has('DILATATION')) call deck%note('*'//card%name//', STEADY STATE: DELTMX=, '// &
             'LOCAL ERROR= and DILATATION= are ignored, no heat is stored')

@@ -70,7 +70,7 @@ module keywords
    !> How the keywords end that ask for output.
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
-   type(keyword_type), parameter :: known_keywords(91) = [ &
+   type(keyword_type), parameter :: known_keywords(92) = [ &
       keyword_type('HEADING', in_model, 0, many, ''), &
       keyword_type('OPTIONS', in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', in_model, 0, 0, &
@@ -147,6 +147,8 @@ module keywords
          'INC=/AMPLITUDE=/NLGEOM?/PERTURBATION/~NAME=/~UNSYMM?/~EXTRAPOLATION=/'// &
          '~CONVERT SDI=/~DSA?'), &
       keyword_type('STATIC', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER=/STRAIN LIMIT='), &
+      keyword_type('VISCO', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER=/CETOL=/'// &
+         'LOCAL ERROR=/STRAIN LIMIT='), &
       keyword_type('NO ANALYSIS', in_step, 0, 0, ''), &
       keyword_type('STABILITY', in_step, 0, 0, 'FREQUENCY='), &
       keyword_type('TIME POINTS', in_both, 1, many, 'NAME=/TIME=/GENERATE'), &
@@ -154,10 +156,10 @@ module keywords
          'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/~END='), &
       keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', in_step, 0, 1, 'CREEP=/'// &
          stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/DILATATION=/'// &
-         'STRAIN LIMIT='), &
+         'CETOL=/STRAIN LIMIT='), &
       keyword_type('UNCOUPLED TEMPERATURE-DISPLACEMENT', in_step, 0, 1, &
          'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/'// &
-         'STRAIN LIMIT='), &
+         'CETOL=/STRAIN LIMIT='), &
       keyword_type('BOUNDARY', in_both, 1, many, 'OP=/AMPLITUDE=/TYPE=/FIXED'), &
       keyword_type('CLOAD', in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?'), &
       keyword_type('DLOAD', in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?/~CONSTANT RESULTANT='), &
@@ -260,9 +262,9 @@ module keywords
          'materials, elements and sections are the same in all steps'), &
       advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/DYNAMIC '// &
          'TEMPERATURE-DISPLACEMENT/MODAL DYNAMIC/'// &
-         'STEADY STATE DYNAMICS/VISCO/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD/GEOSTATIC/SOILS/'// &
+         'STEADY STATE DYNAMICS/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD/GEOSTATIC/SOILS/'// &
          'MASS DIFFUSION/COUPLED THERMAL-ELECTRICAL/DIRECT CYCLIC', &
-         'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
+         'steps are *STATIC, *VISCO, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
       advice_type(of_parameter, 'SPRING', 'NONLINEAR/ORIENTATION/DEPENDENCIES/COMPLEX STIFFNESS', &
          'springs have one constant'), &
       advice_type(of_parameter, 'EQUATION', 'REMOVE', 'equations hold in all steps'), &
@@ -303,7 +305,7 @@ module keywords
       advice_type(of_parameter, '', 'RIKS', &
          'solutions past a turning point of the load are *CONTINUATION'), &
       advice_type(of_parameter, '', 'MXDEM', 'emissivities are constant; leave it out'), &
-      advice_type(of_parameter, '', 'CREEP', 'materials are linear; leave it out'), &
+      advice_type(of_parameter, '', 'CREEP', 'materials creep in steps with real time; leave it out'), &
       advice_type(of_parameter, '', 'DEPENDENCIES', &
          'values depend on no field; give the rows of one value of it, and 0'), &
       advice_type(of_parameter, '', 'TEMPERATURE', 'the temperature is that of the analysis'), &
