@@ -71,6 +71,7 @@ module increment_data
       real(dp) :: duration = 0.0_dp                        !! dt of its equations [time]
       type(law_interval_type) :: passing                   !! for the laws of materials
       logical :: strains = .true.                          !! whether equilibrium is solved
+      logical :: begins_step = .false.                     !! whether its increment does
       logical :: stores_heat = .false.                     !! whether it is one of a transient
       real(dp), allocatable :: history(:)                  !! h* of the laws of materials, or none
       ! The next three of transients.

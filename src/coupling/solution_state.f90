@@ -37,6 +37,7 @@ module solution_state
       !> for none [force]
       real(dp), allocatable :: forces_beyond(:)
       real(dp), allocatable :: history(:)           !! what all integration points remember, or none
+      real(dp), allocatable :: work(:)   !! (2) of friction and of loads beside these [energy]
       ! The next four where materials vary.
       real(dp), allocatable :: operators_at(:)      !! (nodes) temperatures of the operators
       real(dp), allocatable :: tangent(:)           !! of their stress, or none of elasticity
@@ -88,6 +89,7 @@ contains
       call reals(self, 'operators_at', state%operators_at)
       call reals(self, 'tangent', state%tangent)
       call reals(self, 'history', state%history)
+      call reals(self, 'work', state%work)
       call reals(self, 'corrections', state%corrections)
       call reals(self, 'corrections_before', state%corrections_before)
       call reals(self, 'extremes', state%extremes)

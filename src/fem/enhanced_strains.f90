@@ -49,7 +49,8 @@ contains
       end do
    end subroutine enhance_strains
 
-   !> Enhanced strains that make stresses, those of B u and of temperatures, do no work on the modes.
+   !> Enhanced strains with which stresses, those of B u and of temperatures, do no work on the
+   !> modes.
    pure function released_strains(coordinates, points, is_axisymmetric, e, volumes, stress) &
       result(strains)
       real(dp), intent(in) :: coordinates(:, :)   !! (2, 4) corners [length]

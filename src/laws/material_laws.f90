@@ -27,7 +27,7 @@ module material_laws
    type :: law_interval_type
       real(dp) :: duration = 0.0_dp                !! [time]
       real(dp) :: instants(2) = 0.0_dp !! start and end of the increment, total time [time]
-      logical :: is_first = .true.                 !! whether it begins the increment
+      logical :: is_last = .true.                  !! whether it ends the increment
       !> Part that it has of an increment in real time; 0 of one whose time is the load's
       real(dp) :: real_part = 0.0_dp
    end type law_interval_type
@@ -35,8 +35,8 @@ module material_laws
    !> The law of a material: none by default.
    type :: material_law_type
       integer :: history_count = 0                 !! history variables of a point
-      !> Where the strains of plasticity and of creep begin among these: xx, yy, zz, the angle xy and
-      !> the equivalent one; 0 for none
+      !> Where the strains of plasticity and of creep begin among these: xx, yy, zz, the angle xy
+      !> and the equivalent one; 0 for none
       integer :: strains(2) = 0
       !> (history_count) variables that change with time; others change with strain alone, and at
       !> once where that jumps. All where this is unallocated

@@ -1,9 +1,8 @@
 !> Plasticity after von Mises and creep of an isotropic material, by the implicit rule of Euler.
 !>
-!> With the deviator S of the trial stress, which has the inelastic strains of the start, an increment
-!> x of the equivalent plastic strain and b = 3 G y/q, y being that of the creep strain and q the
-!> equivalent stress, everything follows from two numbers, alpha = 1/(1 + b) and g =
-!> 1/(1 + gamma x):
+!> S is the deviator of the trial stress, which has the inelastic strains of the start; x and y are
+!> the increments of the equivalent plastic and creep strains, q is the equivalent stress and b =
+!> 3 G y/q. Everything follows from two numbers, alpha = 1/(1 + b) and g = 1/(1 + gamma x):
 !>
 !>    eta = alpha S - g C a0,    N = eta/|eta|,    |eta| = Y + 3 G alpha x + C g x,
 !>    s = alpha (S - 3 G x N),   X = C a,   a = g (a0 + x N),
@@ -102,12 +101,12 @@ contains
       do g = 1, points%count
          point%temperature = points%temperature(g)
          point%back = law%hardening%back_constants(point%temperature)
-         if (interval%is_first) history(at_start, g) = history(history_creep + 4, g)
          point%crept = history(at_start, g)
          point%plastic = history(history_plastic + 4, g)
          if (law%hardening%has_back_stress()) point%a0 = history(history_back:, g)
          call respond_point(point, points%stress(g, :), points%tangent(:, :, g), history(:, g), &
             points%failed)
+         if (interval%is_last) history(at_start, g) = history(history_creep + 4, g)
       end do
    end subroutine respond
 

@@ -24,11 +24,12 @@ module no_estimates
    integer, parameter, public :: reason_count = 17
 
    character(*), parameter :: words(reason_count) = [character(36) :: 'pre-tension', 'branches', &
-      'stored heat', 'tables over temperature', 'plasticity and creep', 'ERRORS=NO', 'inside a step', &
-      'slides beyond its contact points', 'heat out of equilibrium', 'peak at a corner', &
-      'friction turns round at the peak', 'peak grows with the mesh', 'single increment', &
-      'doubled increments have no solution', 'no such edge with doubled increments', &
-      'no solution on a finer mesh', 'no such edge on a finer mesh']
+      'stored heat', 'tables over temperature', 'plasticity and creep', 'ERRORS=NO', &
+      'inside a step', 'slides beyond its contact points', 'heat out of equilibrium', &
+      'peak at a corner', 'friction turns round at the peak', 'peak grows with the mesh', &
+      'single increment', 'doubled increments have no solution', &
+      'no such edge with doubled increments', 'no solution on a finer mesh', &
+      'no such edge on a finer mesh']
 
 contains
 

@@ -14,7 +14,8 @@ module model_words
    use text, only: append, counted, string_type, to_text
    implicit none
    private
-   public :: expansion_words, law_words, material_words, friction_words, friction_heat_words, overlap_words
+   public :: expansion_words, law_words, material_words
+   public :: friction_words, friction_heat_words, overlap_words
    public :: open_law_words, closed_law_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
    public :: has_many, first_alike, alike_words
@@ -200,7 +201,7 @@ contains
    end function material_words
 
    !> Plasticity and creep of a material; empty without them. Creep is told as the strain that a
-   !> five-hundredth of the shear modulus makes in a time of 1, which shows constants in wrong units.
+   !> five-hundredth of the shear modulus makes in a time of 1, which shows wrong units.
    pure function law_words(material) result(words)
       type(material_type), intent(in) :: material
       character(:), allocatable :: words

@@ -25,7 +25,7 @@ module results
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, needs_branch, &
       needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, needs_storage, &
       needs_temperature, of_bodies, of_contact_points, of_history, of_interface, of_passes, &
-      of_sections, quantity_type, last_need, needs_creep, needs_plasticity
+      of_sections, quantity_type, last_need, needs_creep, needs_plasticity, needs_laws
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
@@ -352,6 +352,7 @@ contains
          has(needs_sections) = has(needs_mechanics) .and. size(section_nodes(model%couplings)) > 0
          has(needs_plasticity) = has(needs_mechanics) .and. any(model%materials%law%strains(1) > 0)
          has(needs_creep) = has(needs_mechanics) .and. any(model%materials%law%strains(2) > 0)
+         has(needs_laws) = has(needs_plasticity) .or. has(needs_creep)
          has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
             model%interactions, model%contacts)
          has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &

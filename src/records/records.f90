@@ -133,6 +133,9 @@ module records
       !> difference of creep strains by their rates
       real(dp) :: strain_error = 0.0_dp, creep_difference = 0.0_dp
       real(dp) :: strain_growth(2) = 0.0_dp  !! largest of equivalent plastic and creep strain [-]
+      !> Stored, dissipated by plasticity, by creep, by friction, work of loads; unallocated without
+      !> laws, and where mechanics is not solved [energy]
+      real(dp), allocatable :: energies(:)
       !> (2, bodies) largest equivalent plastic and creep strain; unallocated without laws
       real(dp), allocatable :: inelastic_strain(:, :)
       logical :: makes_range = .false.       !! whether the range is mostly what it makes itself

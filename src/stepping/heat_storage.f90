@@ -56,6 +56,7 @@ contains
          end if
       end associate
       if (stage%is_last) return
+      stage%passing%is_last = .false.
       stage%duration = stage_part*stage%size
       stage%size = stage%duration
       stage%clock = run%control%instant_at(model, run%control%step_time + stage%size)
@@ -73,7 +74,7 @@ contains
 
       if (allocated(stage%history)) stage%history = run%corrections%points%second_start( &
          model%mesh, start%history, middle%history, weight, run%control%increments_of_step == 0)
-      stage%passing%is_first = .false.
+      stage%passing%is_last = .true.
       if (stage%stores_heat) then
          stage%temperature = start%temperature + weight*(middle%temperature - start%temperature)
          stage%displacement = start%displacement + weight*(middle%displacement - &

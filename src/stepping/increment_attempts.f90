@@ -6,6 +6,7 @@ module increment_attempts
    use constraint_checks, only: check_prescribed
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
+   use energies, only: add_friction_work, measure_energies
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, measure_strains
@@ -60,6 +61,9 @@ contains
          stage%size = clock%step_time - run%control%step_time
          stage%duration = stage%size
          stage%strains = solves_mechanics(step%analysis)
+         stage%begins_step = run%control%increments_of_step == 0
+         call return_to_elasticity(run, model, stage%begins_step, error)
+         if (allocated(error)) return
          stage%passing%instants = run%control%step_start + [run%control%step_time, clock%step_time]
          if (allocated(run%state%history)) stage%history = run%state%history
          if (step%is_transient .or. step%is_viscous) then
@@ -77,6 +81,8 @@ contains
                model, stage, attempt%before, attempt%next, attempt%record)
          end if
          if (.not. allocated(error)) call check_strains(run, model, attempt, error)
+         if (run%corrections%has_laws .and. stage%strains .and. .not. allocated(error)) call &
+            measure_energies(run, model, attempt%next, attempt%record)
          if (run%branch%is_followed .and. .not. allocated(error)) then
             if (any(differ(attempt%next%omega, run%branch%point%omega))) call set_error(error, &
                status_no_convergence, 'the increment leads to another branch')
@@ -89,8 +95,24 @@ contains
       end associate
    end subroutine attempt_increment
 
-   !> Whether plastic strains grow by no more than the step allows an increment; where increments are
-   !> fixed they may.
+   !> Forms the operators without the tangents of laws where loads may turn round, as a step begins,
+   !> and behind an attempt that failed: bodies that unload are far stiffer than their tangents.
+   !> Errors: as reduce.
+   subroutine return_to_elasticity(run, model, begins_step, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: begins_step
+      type(error_type), allocatable, intent(out) :: error
+      real(dp), allocatable :: none(:)
+
+      if (.not. allocated(run%bodies%tangent)) return
+      if (.not. (begins_step .or. run%control%cut_backs > 0)) return
+      call run%bodies%move_operators(model, run%bodies%operators_at, none)
+      call run%reduce(model, error)
+   end subroutine return_to_elasticity
+
+   !> Whether plastic strains grow by no more than the step allows an increment; where increments
+   !> are fixed they may.
    subroutine check_strains(run, model, attempt, error)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
@@ -103,8 +125,8 @@ contains
          if (growth(1) <= step%strain_limit) return
          words = 'plastic strains grow by '//percent(growth(1))
          if (step%direct) then
-            call attempt%record%warn(words//' in an increment, which DIRECT does not allow to be '// &
-               'cut back')
+            call attempt%record%warn(words//' in an increment, which DIRECT does not '// &
+               'allow to be cut back')
          else
             call set_error(error, status_no_convergence, words//', more than the '// &
                percent(step%strain_limit)//' of an increment')
@@ -137,6 +159,8 @@ contains
          next%force_load = run%loads%nodal_forces()
          call solve_corrected(run, model, attempt, error)
          if (allocated(error)) return
+         if (run%corrections%has_laws .and. solves_mechanics(step%analysis)) call &
+            add_friction_work(run, next)
          if (solves_mechanics(step%analysis)) call warn_of_choices(run, model, &
             attempt%workspace%contact, next, attempt%undecided, record)
          ! Heat that strains take up, T0 beta:eps' over all bodies. Loads that act at once strain

@@ -242,7 +242,7 @@ contains
          if (record%strain_error > allowance*step%local_error) then
             words = 'its inelastic strains err by '//percent(record%strain_error)// &
                ' of the elastic ones'
-         else if (record%creep_difference > allowance*step%creep_tolerance) then
+         else if (record%creep_difference/step%creep_tolerance > allowance) then
             words = 'its creep strains differ by '//to_text(record%creep_difference)// &
                ', more than CETOL='//to_text(step%creep_tolerance)
          else if (record%local_error <= allowance*step%local_error) then

@@ -7,11 +7,11 @@
 !> Heat is stored as enthalpy, H(T) = integral of rho c, so that the heat of an increment is a
 !> difference of contents. Heat that strains take up (DILATATION) is corrected in the same way.
 !>
-!> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where properties
-!> alone vary and one does not reduce what is left over to 0.3 of the one before, the operators are
-!> to be formed again. Laws of materials need more passes, which still cost less than factors:
-!> operators are formed, with the tangents of the laws, after 25 passes, or three that each leave
-!> more than 0.7.
+!> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where
+!> properties alone vary and one does not reduce what is left over to 0.3 of the one before, the
+!> operators are to be formed again. Laws of materials need more passes, which still cost less than
+!> factors: operators are formed, with the tangents of the laws, after 25 passes, or three that each
+!> leave more than 0.7.
 module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
@@ -154,6 +154,8 @@ contains
          associate (n => size(before%temperature))
             if (.not. takes_past) self%heat_before = self%values(n + 1:2*n)
          end associate
+         ! Plastic flow stops where loads turn round: without a time it is not foreseen.
+         if (self%has_laws .and. (stage%begins_step .or. stage%passing%real_part <= 0.0_dp)) return
          if (allocated(before%corrections_before)) self%values = self%values + stage%size/ &
             before%increment_size*(before%corrections - before%corrections_before)
       end if

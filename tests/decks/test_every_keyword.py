@@ -25,6 +25,8 @@ ONE_VALUE = {
     "ELSET, NSET": "stands in the section of both",
     "ELSET, SURFACE": "stands in the section of both",
     "GAP CONDUCTANCE, DEPENDENCIES": "refused",
+    "PLASTIC, DATA TYPE": "PARAMETERS has data of its own",
+    "PLASTIC, NUMBER BACKSTRESSES": "1 is the only one",
     "PART": "no data", "END PART": "no data", "ASSEMBLY": "no data", "END ASSEMBLY": "no data",
     "ASSEMBLY, NAME": "means nothing", "END INSTANCE": "no data",
     "RIGID BODY": "no data", "RIGID BODY, POSITION": "INPUT is the only one",

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 from blocks import write
+from changes import note_changes
 from deck_runs import assert_alike, datasets, run, solve
-from physics import follows, judge, listed, material, mesh
-from scipy.optimize import brentq
+from physics import follows, judge, material, mesh
 
 YOUNG, POISSON = 200e3, 0.3
 A, N = 3.125e-14, 5.0
@@ -29,6 +29,14 @@ def bar(*cards, kind="CPS4", **more):
 def step(analysis, times, *cards, options=""):
     """Return a step."""
     return [f"*STEP, INC=100000{options}", analysis, times, *cards, "*END STEP"]
+
+
+def increments(folder, make, one, other):
+    """Return how many increments a deck takes with each of two values of its cards."""
+    decks = [make(value) for value in (one, other)]
+    note_changes(*decks)
+    return [len(datasets(solve(write(folder / f"{k}.inp", deck)), "history")["history/time"])
+            for k, deck in enumerate(decks)]
 
 
 def pulled(stress, analysis="*STATIC", times="0.05, 1.", options=""):
@@ -143,7 +151,7 @@ def path_error(folder, analysis, increments):
 
 
 def test_path_of_nafems_has_the_order_of_its_scheme(tmp_path):
-    for analysis, order, least in (("*STATIC", 1, 1e-2), ("*VISCO", 2, 1e-4)):
+    for analysis, order, least in (("*STATIC", 1, 2e-2), ("*VISCO", 2, 1e-4)):
         errors = [path_error(tmp_path, analysis, n) for n in (20, 40, 80)]
         assert errors[-1] < least
         assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.15)
@@ -153,19 +161,13 @@ def test_path_of_nafems_has_the_order_of_its_scheme(tmp_path):
 @pytest.mark.changes("STATIC, STRAIN LIMIT")
 def test_limit_of_strain_cuts_increments_back(tmp_path):
     def make(limit):
-        strain = 0.03 - 215.0 / YOUNG
-        cards = bar("*PLASTIC", "200., 0.", "220., 0.04")
-        # The first increments with less than the limit: of size 1, 1/4, 1/16
-        return [*cards, *step(f"*STATIC, STRAIN LIMIT={limit!r}", "1., 1.", "*BOUNDARY",
-                              "BODY.RIGHT, 1, 1, 0.03")], strain
+        return [*bar("*PLASTIC", "200., 0.", "220., 0.04"),
+                *step(f"*STATIC, STRAIN LIMIT={limit!r}", "1., 1.", "*BOUNDARY",
+                      "BODY.RIGHT, 1, 1, 0.03")]
 
-    counts = {}
-    for limit in (0.01, 0.1):
-        cards, _ = make(limit)
-        result = solve(write(tmp_path / f"{limit}.inp", cards))
-        counts[limit] = len(datasets(result, "history")["history/time"])
-    assert counts[0.1] == 1
-    assert counts[0.01] >= 3
+    few, many = increments(tmp_path, make, 0.1, 0.01)
+    assert few == 1
+    assert many >= 3
 
 
 def tube(hill, *steps, kind="CAX8R", elements=20, elastic=(21e3, 0.499)):
@@ -267,47 +269,46 @@ def left(time):
 
 @pytest.mark.changes("VISCO, LOCAL ERROR")
 def test_relaxation_is_as_accurate_as_asked_for(tmp_path):
+    decks = [relaxing(f"*VISCO, LOCAL ERROR={allowed!r}", "1.E-4, 100., 1.E-9")
+             for allowed in (1e-3, 1e-5)]
+    note_changes(*decks)
     errors = []
-    for allowed in (1e-3, 1e-5):
-        result = solve(write(tmp_path / f"{allowed}.inp", relaxing(
-            f"*VISCO, LOCAL ERROR={allowed!r}", "1.E-4, 100., 1.E-9")))
-        found = datasets(result, "VTKHDF/PointData", "history")
-        stress = found["VTKHDF/PointData/stress"].reshape(len(found["history/time"]), -1, 4)[:, 0, 0]
-        errors.append(np.abs(stress[1:] / left(found["history/time"][1:] - 1.0) - 1).max())
+    for k, deck in enumerate(decks):
+        found = datasets(solve(write(tmp_path / f"{k}.inp", deck)), *FILES)
+        times = found["history/time"]
+        stress = found["VTKHDF/PointData/stress"].reshape(len(times), -1, 4)[:, 0, 0]
+        errors.append(np.abs(stress[1:] / left(times[1:] - 1.0) - 1).max())
     assert errors[0] < 1e-3
     assert errors[1] < 0.1 * errors[0]
 
 
 @pytest.mark.changes("VISCO, CETOL")
 def test_creep_tolerance_shortens_increments(tmp_path):
-    counts = [len(datasets(solve(write(tmp_path / f"{allowed}.inp", relaxing(
-        f"*VISCO, CETOL={allowed!r}", "1.E-4, 100., 1.E-9"))), "history")["history/time"])
-        for allowed in (1e-3, 1e-6)]
-    assert counts[1] > 2 * counts[0]
+    few, many = increments(tmp_path, lambda allowed: relaxing(
+        f"*VISCO, LOCAL ERROR=1., CETOL={allowed!r}", "1.E-4, 100., 1.E-9"), 1e-3, 1e-7)
+    assert many > 2 * few
 
 
 @pytest.mark.changes("VISCO, STRAIN LIMIT")
 def test_limit_of_strain_holds_in_real_time(tmp_path):
-    counts = []
-    for limit in (0.01, 0.1):
-        cards = [*bar("*PLASTIC", "200., 0.", "220., 0.04"),
-                 *step(f"*VISCO, STRAIN LIMIT={limit!r}, LOCAL ERROR=1.E3", "1., 1.", "*BOUNDARY",
-                       "BODY.RIGHT, 1, 1, 0.03", options=", AMPLITUDE=RAMP")]
-        counts.append(len(datasets(solve(write(tmp_path / f"{limit}.inp", cards)),
-                                   "history")["history/time"]))
-    assert counts[0] > counts[1] == 1
+    def make(limit):
+        return [*bar("*PLASTIC", "200., 0.", "220., 0.04"),
+                *step(f"*VISCO, STRAIN LIMIT={limit!r}, LOCAL ERROR=1.E3", "1., 1.", "*BOUNDARY",
+                      "BODY.RIGHT, 1, 1, 0.03", options=", AMPLITUDE=RAMP")]
+
+    few, many = increments(tmp_path, make, 0.1, 0.01)
+    assert many > few == 1
 
 
-@pytest.mark.changes("VISCO, DIRECT")
 def test_orders_of_both_schemes_in_relaxation(tmp_path):
     for scheme, order in (("IMPLICIT", 1), ("L-STABLE", 2)):
         errors = []
-        for n in (40, 80, 160):
+        for n in (80, 160):
             result = solve(write(tmp_path / f"{scheme}-{n}.inp", relaxing(
                 "*VISCO, DIRECT", f"{1 / n!r}, 1.", f"*THERMAL SCHEME, TYPE={scheme}")))
             stress = datasets(result, "VTKHDF/PointData")["VTKHDF/PointData/stress"]
             errors.append(abs(stress.reshape(-1, 4)[-1, 0] - left(1.0)))
-        assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.2)
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.2)
 
 
 def test_tube_that_creeps_becomes_stationary(tmp_path):
@@ -320,6 +321,7 @@ def test_tube_that_creeps_becomes_stationary(tmp_path):
 
 
 def test_press_fit_relaxes(tmp_path):
+    # In one-dimensional programs, +- 0.002
     pressures = ((0.1, 73.773), (1.0, 56.350), (10.0, 36.158), (100.0, 21.003), (1000.0, 11.873))
     cards = [*fit("*CREEP", f"{A!r}, {N!r}", steps=[]), *overlap(0.05),
              *step("*STATIC", "1., 1."), *step("*VISCO", "1.E-4, 1000., 1.E-9")]
@@ -331,7 +333,7 @@ def test_bolt_relaxes(tmp_path):
     # ANSYS VM132: a bar at a fixed length, rate 4.8e-30 s^7
     cards = [*bar("*CREEP", "4.8E-30, 7.", elastic=(30e6, 0.3)),
              *step("*STATIC", "1.E-6, 1.E-6", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {1000.0 / 30e6!r}"),
-             *step("*VISCO", "1., 690.", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {1000.0 / 30e6!r}")]
+             *step("*VISCO, LOCAL ERROR=1.E-4", "1., 690.", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {1000.0 / 30e6!r}")]
     judge(tmp_path, cards, [("S11", "BODY", 190.000001, 974.985, 1e-5),
                             ("S11", "BODY", "LAST", 925.026, 1e-5)])
 
@@ -362,13 +364,14 @@ def test_restart_goes_on_bit_for_bit(tmp_path):
     cards = ["*RESTART, WRITE, FREQUENCY=1",
              *fit("*PLASTIC", "100., 0.", "150., 0.01", "*CREEP", f"{A!r}, {N!r}", steps=[]),
              *overlap(0.05), *step("*STATIC", "0.25, 1.", "*CONTACT INTERFERENCE",
-                                   "SHAFT.RIGHT, BODY.LEFT, 0.05"),
-             *step("*VISCO", "0.01, 1.")]
-    whole = solve(write(tmp_path / "whole.inp", cards))
-    deck = write(tmp_path / "again.inp", cards)
-    solve(deck)
-    result = solve(write(tmp_path / "again.inp", ["*RESTART, READ, STEP=1, INC=3", *cards]))
-    assert_alike(datasets(whole, *FILES), datasets(result, *FILES), 0.0)
+                                   "SHAFT.RIGHT, BODY.LEFT, 0.05"), *step("*VISCO", "0.01, 1.")]
+    deck = write(tmp_path / "deck.inp", cards)
+    whole = solve(deck)
+    for time in (0.75, 1.0, 1.01):
+        folder = tmp_path / str(time)
+        process = run("run", "--quiet", deck, "--restart", f"{whole}@{time!r}", "--out", folder)
+        assert process.returncode == 0, process.stderr
+        assert_alike(datasets(whole, *FILES), datasets(folder / whole.name, *FILES), 0.0)
 
 
 def test_what_stays_elastic_answers_as_without_the_cards(tmp_path):
@@ -377,3 +380,44 @@ def test_what_stays_elastic_answers_as_without_the_cards(tmp_path):
         cards = [*fit(*laws, steps=[]), *overlap(0.05), *step("*STATIC", "0.5, 1.")]
         results.append(datasets(solve(write(tmp_path / f"{len(laws)}.inp", cards)), "contact"))
     assert_alike(*results, 1e-8)
+
+
+def energies(result):
+    """Return energies stored, dissipated by plasticity, creep and friction, and the work of loads."""
+    found = datasets(result, "history")
+    return [found[f"history/{name}"] for name in ("ALLSE", "ALLPD", "ALLCD", "ALLFD", "ALLWK")]
+
+
+@pytest.mark.parametrize("kind", ["CPS4", "CPE4I", "CAX8R", "CPE6"])
+def test_work_is_stored_or_dissipated(kind, tmp_path):
+    # A bar that yields, is unloaded, and creeps; it stores what its stress says.
+    gaps = []
+    for n in (20, 40):
+        cards = [*mesh("BODY", [1.0, 1.5, 2.0], [0.0, 0.4, 1.0], kind, skew=0.05),
+                 *law("*PLASTIC", "200., 0.", "300., 0.02", "*CREEP", f"{A!r}, {N!r}"), "*BOUNDARY",
+                 "BODY.BOTTOM, 2", "BODY.LEFT, 1",
+                 *step("*STATIC, DIRECT", f"{1 / n!r}, 1.", "*DSLOAD", "BODY.TOP, P, -280."),
+                 *step("*STATIC, DIRECT", f"{1 / n!r}, 1.", "*DSLOAD", "BODY.TOP, P, -150."),
+                 *step("*VISCO, DIRECT", f"{10 / n!r}, 10.")]
+        stored, plastic, creep, friction, work = energies(
+            solve(write(tmp_path / f"{n}.inp", cards)))
+        assert (friction == 0.0).all()
+        assert plastic[-1] > 0.0
+        assert creep[-1] > 0.0
+        gaps.append(np.abs(work - stored - plastic - creep).max() / work.max())
+    assert gaps[1] < 0.6 * gaps[0]
+    assert gaps[1] < 0.02
+
+
+def test_friction_dissipates_what_slides(tmp_path):
+    # A block under a pressure of 10 that is pushed along by 0.1 with friction 0.3
+    cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPE4"), *law("*PLASTIC", "1.E6"),
+             *mesh("BASE", [-1.0, 3.0], [-1.0, 0.0], "CPE4", first=101), *material("BASE", (YOUNG, 0.3)),
+             "*SURFACE INTERACTION, NAME=RUB", "*FRICTION", "0.3",
+             "*CONTACT PAIR, INTERACTION=RUB, PAIRING=SURFACES", "BODY.BOTTOM, BASE.TOP",
+             "*BOUNDARY", "BASE, 1, 2",
+             *step("*STATIC", "1., 1.", "*DSLOAD", "BODY.TOP, P, 10.", "*BOUNDARY", "BODY.TOP, 1"),
+             *step("*STATIC", "0.1, 1.", "*BOUNDARY", "BODY.TOP, 1, 1, 0.1")]
+    stored, _, _, friction, work = energies(solve(write(tmp_path / "slide.inp", cards)))
+    assert friction[-1] == pytest.approx(0.3 * 10.0 * 0.1, rel=1e-2)
+    assert work[-1] - stored[-1] == pytest.approx(friction[-1], rel=1e-2)

@@ -95,8 +95,8 @@ contains
       end associate
       do k = 1, size(yield%temperature)
          associate (first => yield%first(k), last => yield%first(k + 1) - 1)
-            if (values(2, first) > 0.0_dp) call deck%error(card%data(first)%place(2), 'the first '// &
-               'plastic strain'//trim(merge(' of a temperature', '                 ', &
+            if (values(2, first) > 0.0_dp) call deck%error(card%data(first)%place(2), &
+               'the first plastic strain'//trim(merge(' of a temperature', '                 ', &
                size(yield%temperature) > 1))//' must be 0')
             call check_ascending(card%data(first:last), 2, 'the plastic strains', &
                values(2, first:last), deck)

@@ -253,8 +253,8 @@ contains
       call take_parameter(card, 'CETOL', deck, step%creep_tolerance, '>0')
       if (step%is_viscous) then
          call take_parameter(card, 'LOCAL ERROR', deck, step%local_error, '>0')
-         if (adapts_increments(step) .and. .not. card%has('LOCAL ERROR')) call deck%note('*VISCO '// &
-            'without LOCAL ERROR=: inelastic strains err in an increment by at most '// &
+         if (adapts_increments(step) .and. .not. card%has('LOCAL ERROR')) call deck%note( &
+            '*VISCO without LOCAL ERROR=: inelastic strains err in an increment by at most '// &
             percent(step%local_error)//' of the largest elastic strain')
          return
       else if (.not. step%is_transient) then

@@ -155,8 +155,9 @@ contains
       if (.not. any(deck%model%materials%law%strains(2) > 0)) return
       cards = cards_of(deck%cards, 'CREEP')
       if (.not. any(deck%model%steps%creeps)) then
-         call deck%error(deck%cards%keywords(cards(1))%place, '*CREEP needs a step in real time: '// &
-            '*VISCO, or *COUPLED TEMPERATURE-DISPLACEMENT without STEADY STATE; leave *CREEP out')
+         call deck%error(deck%cards%keywords(cards(1))%place, '*CREEP needs a step in real '// &
+            'time: *VISCO, or *COUPLED TEMPERATURE-DISPLACEMENT without STEADY STATE; leave '// &
+            '*CREEP out')
       else if (.not. all(deck%model%steps%creeps)) then
          call deck%note('*CREEP: materials do not creep in steps without real time, such as '// &
             'step '//to_text(findloc(deck%model%steps%creeps, .false., dim=1)))

@@ -224,8 +224,9 @@ module keywords
       advice_type(refused, 'ELASTIC', 'HYPERELASTIC/ANISOTROPIC HYPERELASTIC/HYPERFOAM/'// &
          'HYPOELASTIC/POROUS ELASTIC/DEFORMATION PLASTICITY/USER MATERIAL', laws), &
       advice_type(refused, '', 'SWELLING/ANNEAL TEMPERATURE/HARDENING/VISCOELASTIC/RATE '// &
-         'DEPENDENT/POTENTIAL/UNIAXIAL TEST DATA/DRUCKER PRAGER/DRUCKER PRAGER HARDENING/DRUCKER PRAGER '// &
-         'CREEP/MOHR COULOMB/MOHR COULOMB HARDENING/CAP PLASTICITY/CAP HARDENING', laws), &
+         'DEPENDENT/POTENTIAL/UNIAXIAL TEST DATA/DRUCKER PRAGER/DRUCKER PRAGER HARDENING/'// &
+         'DRUCKER PRAGER CREEP/MOHR COULOMB/MOHR COULOMB HARDENING/CAP PLASTICITY/'// &
+         'CAP HARDENING', laws), &
       advice_type(refused, '', 'DAMAGE INITIATION/DAMAGE EVOLUTION/DAMAGE STABILIZATION/'// &
          'BRITTLE CRACKING/CONCRETE/CONCRETE DAMAGED PLASTICITY/CONCRETE COMPRESSION HARDENING/'// &
          'CONCRETE COMPRESSION DAMAGE/CONCRETE TENSION STIFFENING/CONCRETE TENSION DAMAGE', &
@@ -305,7 +306,7 @@ module keywords
       advice_type(of_parameter, '', 'RIKS', &
          'solutions past a turning point of the load are *CONTINUATION'), &
       advice_type(of_parameter, '', 'MXDEM', 'emissivities are constant; leave it out'), &
-      advice_type(of_parameter, '', 'CREEP', 'materials creep in steps with real time; leave it out'), &
+      advice_type(of_parameter, '', 'CREEP', 'materials creep in real time; leave it out'), &
       advice_type(of_parameter, '', 'DEPENDENCIES', &
          'values depend on no field; give the rows of one value of it, and 0'), &
       advice_type(of_parameter, '', 'TEMPERATURE', 'the temperature is that of the analysis'), &
