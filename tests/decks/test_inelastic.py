@@ -410,14 +410,16 @@ def test_work_is_stored_or_dissipated(kind, tmp_path):
 
 
 def test_friction_dissipates_what_slides(tmp_path):
-    # A block under a pressure of 10 that is pushed along by 0.1 with friction 0.3
-    cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPE4"), *law("*PLASTIC", "1.E6"),
-             *mesh("BASE", [-1.0, 3.0], [-1.0, 0.0], "CPE4", first=101), *material("BASE", (YOUNG, 0.3)),
-             "*SURFACE INTERACTION, NAME=RUB", "*FRICTION", "0.3",
-             "*CONTACT PAIR, INTERACTION=RUB, PAIRING=SURFACES", "BODY.BOTTOM, BASE.TOP",
-             "*BOUNDARY", "BASE, 1, 2",
-             *step("*STATIC", "1., 1.", "*DSLOAD", "BODY.TOP, P, 10.", "*BOUNDARY", "BODY.TOP, 1"),
-             *step("*STATIC", "0.1, 1.", "*BOUNDARY", "BODY.TOP, 1, 1, 0.1")]
-    stored, _, _, friction, work = energies(solve(write(tmp_path / "slide.inp", cards)))
-    assert friction[-1] == pytest.approx(0.3 * 10.0 * 0.1, rel=1e-2)
+    # A block that is pressed down and pushed along by 0.1 with friction 0.3
+    base = mesh("BASE", [-1.0, 3.0], [-1.0, 0.0], "CPE4", first=101)
+    cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPE4"), *law("*PLASTIC", "1.E6"), *base,
+             *material("BASE", (YOUNG, POISSON)), "*SURFACE INTERACTION, NAME=RUB", "*FRICTION",
+             "0.3", "*CONTACT PAIR, INTERACTION=RUB, PAIRING=SURFACES, NAME=RUB",
+             "BODY.BOTTOM, BASE.TOP", "*BOUNDARY", "BASE, 1, 2",
+             *step("*STATIC", "1., 1.", "*BOUNDARY", "BODY.TOP, 1", "BODY.TOP, 2, 2, -1.E-4"),
+             *step("*STATIC", "0.01, 1.", "*BOUNDARY", "BODY.TOP, 1, 1, 0.1")]
+    result = solve(write(tmp_path / "slide.inp", cards))
+    stored, _, _, friction, work = energies(result)
+    force = datasets(result, "contact")["contact/RUB/normal_force"][-1]
+    assert friction[-1] == pytest.approx(0.3 * force * 0.1, rel=1e-2)
     assert work[-1] - stored[-1] == pytest.approx(friction[-1], rel=1e-2)
