@@ -11,25 +11,25 @@ module no_estimates
    integer, parameter, public :: no_reason = 0            !! there is a bound, or no value
    ! Of the whole run.
    integer, parameter, public :: of_pre_tension = 1, of_branches = 2, of_stored_heat = 3, &
-      of_tables = 4, of_history = 5, errors_off = 6
-   integer, parameter, public :: inside_step = 7          !! bounds are made at the ends of steps
-   integer, parameter, public :: slides_far = 8           !! of all that an interface has
-   integer, parameter, public :: out_of_equilibrium = 9   !! of maxima of bodies
+      of_tables = 4, errors_off = 5
+   integer, parameter, public :: inside_step = 6          !! bounds are made at the ends of steps
+   integer, parameter, public :: slides_far = 7           !! of all that an interface has
+   integer, parameter, public :: out_of_equilibrium = 8   !! of maxima of bodies
    ! Of a peak pressure.
-   integer, parameter, public :: at_corner = 10, turns_round = 11, grows = 12
+   integer, parameter, public :: at_corner = 9, turns_round = 10, grows = 11
    ! Of the increments.
-   integer, parameter, public :: single_increment = 13, not_doubled = 14, no_doubled_edge = 15
+   integer, parameter, public :: single_increment = 12, not_doubled = 13, no_doubled_edge = 14
    ! Of the mesh.
-   integer, parameter, public :: not_on_finer_mesh = 16, no_finer_edge = 17
+   integer, parameter, public :: not_on_finer_mesh = 15, no_finer_edge = 16
+   integer, parameter, public :: of_history = 17          !! of the whole run, too
    integer, parameter, public :: reason_count = 17
 
    character(*), parameter :: words(reason_count) = [character(36) :: 'pre-tension', 'branches', &
-      'stored heat', 'tables over temperature', 'plasticity and creep', 'ERRORS=NO', &
-      'inside a step', 'slides beyond its contact points', 'heat out of equilibrium', &
-      'peak at a corner', 'friction turns round at the peak', 'peak grows with the mesh', &
-      'single increment', 'doubled increments have no solution', &
-      'no such edge with doubled increments', 'no solution on a finer mesh', &
-      'no such edge on a finer mesh']
+      'stored heat', 'tables over temperature', 'ERRORS=NO', 'inside a step', &
+      'slides beyond its contact points', 'heat out of equilibrium', 'peak at a corner', &
+      'friction turns round at the peak', 'peak grows with the mesh', 'single increment', &
+      'doubled increments have no solution', 'no such edge with doubled increments', &
+      'no solution on a finer mesh', 'no such edge on a finer mesh', 'plasticity and creep']
 
 contains
 
@@ -74,7 +74,7 @@ contains
    elemental logical function remains(reason)
       integer, intent(in) :: reason
 
-      remains = reason > no_reason .and. reason <= grows
+      remains = reason > no_reason .and. reason <= grows .or. reason == of_history
    end function remains
 
    !> A reason in words; nothing for none.
