@@ -55,6 +55,7 @@ module summary
       real(dp), allocatable :: heat(:)
       !> Likewise: the largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
+      character(:), allocatable :: cycle           !! what the last cycle did, or none
       real(dp), allocatable :: inelastic_strain(:, :)   !! (2, bodies) as in the record, or none
       type(string_type), allocatable :: steps(:)   !! a line for each step and interface
       character(:), allocatable :: stability                       !! whether it lasts; or empty
@@ -88,6 +89,7 @@ contains
       self%load = record%load
       self%contacts = record%contacts
       self%stability = stability_words(record)
+      if (allocated(record%cycle)) self%cycle = record%cycle
       if (allocated(record%inelastic_strain)) self%inelastic_strain = record%inelastic_strain
       if (allocated(self%load_factor)) deallocate (self%load_factor)
       if (allocated(record%load_factor)) self%load_factor = record%load_factor
@@ -157,6 +159,7 @@ contains
          most_lines = 3 + told*(1 + size(estimated))
          if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
          if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
+         if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
          most_lines = most_lines + count([any(model%materials%law%strains(1) > 0), &
             any(model%materials%law%strains(2) > 0)])
          ! Some of a body's lines are wrapped.
@@ -208,6 +211,7 @@ contains
                maxloc(self%inelastic_strain(i, :), dim=1))))
          end do
       end if
+      if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines
 

@@ -133,6 +133,7 @@ module records
       !> difference of creep strains by their rates
       real(dp) :: strain_error = 0.0_dp, creep_difference = 0.0_dp
       real(dp) :: strain_growth(2) = 0.0_dp  !! largest of equivalent plastic and creep strain [-]
+      character(:), allocatable :: cycle     !! what a cycle did that it ends; unallocated for none
       !> Stored, dissipated by plasticity, by creep, by friction, work of loads; unallocated without
       !> laws, and where mechanics is not solved [energy]
       real(dp), allocatable :: energies(:)

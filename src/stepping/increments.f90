@@ -2,6 +2,7 @@
 module increments
    use balances, only: sound_imbalance
    use branch_steps, only: accept_point, find_point, shorten_step
+   use cycles, only: close_cycle
    use due_output, only: is_nth
    use errors, only: error_type, set_error, status_no_convergence
    use increment_attempts, only: attempt_increment, attempt_type, begin_record
@@ -84,6 +85,7 @@ contains
       if (is_nth(model%steps(record%step)%stability_frequency, record)) run%solved = &
          attempt%workspace%of_motions()
       call run%control%accept(model, clock, record)
+      call close_cycle(run, model, record)
       if (.not. model%steps(run%control%step)%continuation%is_on) return
       call accept_point(run%branch, record%load_factor)
       run%control%branch_ended = run%branch%is_last

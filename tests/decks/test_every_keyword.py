@@ -30,7 +30,7 @@ ONE_VALUE = {
     "PART": "no data", "END PART": "no data", "ASSEMBLY": "no data", "END ASSEMBLY": "no data",
     "ASSEMBLY, NAME": "means nothing", "END INSTANCE": "no data",
     "RIGID BODY": "no data", "RIGID BODY, POSITION": "INPUT is the only one",
-    "COUPLING": "no data", "COUPLING, CONSTRAINT NAME": "means nothing",
+    "CYCLE": "no data", "COUPLING": "no data", "COUPLING, CONSTRAINT NAME": "means nothing",
     "ELCOPY": "no data", "CLEARANCE": "no data", "CONTINUATION": "no data",
     "FIXED POINT": "no data", "INCLUDE": "no data",
     "MATERIAL": "no data", "OPTIONS": "no data", "PHYSICAL CONSTANTS": "no data",

@@ -1,13 +1,14 @@
 """Plasticity and creep: one element, tubes and press fits, against closed forms."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 from blocks import write
 from changes import note_changes
 from deck_runs import assert_alike, datasets, run, solve
-from physics import follows, judge, material, mesh
+from physics import follows, judge, material, mesh, nodes_of
 
 YOUNG, POISSON = 200e3, 0.3
 A, N = 3.125e-14, 5.0
@@ -423,3 +424,99 @@ def test_friction_dissipates_what_slides(tmp_path):
     force = datasets(result, "contact")["contact/RUB/normal_force"][-1]
     assert friction[-1] == pytest.approx(0.3 * force * 0.1, rel=1e-2)
     assert work[-1] - stored[-1] == pytest.approx(friction[-1], rel=1e-2)
+
+
+def bree(tension, thermal, *cycle, rows=40, yield_stress=100.0):
+    """Return Bree's plate of yield stress 100 under a constant tension, with temperatures across
+    it that come and go; parts of the yield stress."""
+    alpha = 1e-5
+    warmth = 2 * thermal * yield_stress / (YOUNG * alpha)
+    ys = [float(y) for y in np.linspace(0.0, 1.0, rows + 1)]
+    plate = mesh("BODY", [0.0, 0.05], ys, "CPS4")
+    nodes = nodes_of(plate)
+    right = [n for n, (x, _) in nodes.items() if x > 0.0]
+    tied = [line for n in right[1:] for line in ("2", f"{n}, 1, 1., {right[0]}, 1, -1.")]
+    hot = [f"{n}, {y * warmth!r}" for n, (_, y) in nodes.items()]
+    return [*plate, *law("*PLASTIC", f"{yield_stress!r}", expansion=alpha), "*EQUATION", *tied,
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", "*BOUNDARY", "BODY.LEFT, 1",
+            "1, 2", *step("*STATIC", "1., 1.", "*CLOAD", f"{right[0]}, 1, {tension * yield_stress!r}"),
+            *step("*STATIC", "0.05, 1.", "*TEMPERATURE", *hot),
+            *step("*STATIC", "0.05, 1.", "*TEMPERATURE", "BODY, 0."), *cycle]
+
+
+def told(folder, cards, name="bree"):
+    """Return what the summary says of the last cycle, and the times of the increments."""
+    deck = write(folder / f"{name}.inp", cards)
+    times = datasets(solve(deck), "history")["history/time"]
+    words = [line.strip() for line in deck.with_suffix(".lst").read_text().splitlines()
+             if re.match(r" +(shakes down|alternates|ratchets by)", line)]
+    return words[0], times
+
+
+@pytest.mark.parametrize(("tension", "thermal", "rate"), [
+    (0.8, 1.5, 0.80911), (0.6, 2.0, 0.42229), (0.3, 4.0, 0.4)])
+def test_bree_ratchets_at_his_rates(tension, thermal, rate, tmp_path):
+    words, _ = told(tmp_path, bree(tension, thermal, "*CYCLE, STEPS=2, REPEAT=6"))
+    assert words.startswith("ratchets by ")
+    assert float(words.split()[2]) == pytest.approx(rate * 100.0 / YOUNG, rel=5e-3)
+
+
+@pytest.mark.parametrize(("tension", "thermal", "verdict"), [
+    (0.4, 0.55, "shakes down"), (0.8, 0.75, "shakes down"), (0.8, 0.85, "ratchets by"),
+    (0.3, 3.2, "alternates"), (0.3, 3.5, "ratchets by"), (0.2, 2.5, "alternates")])
+def test_boundaries_of_bree(tension, thermal, verdict, tmp_path):
+    words, _ = told(tmp_path, bree(tension, thermal, "*CYCLE, STEPS=2, REPEAT=40"))
+    assert words.startswith(verdict)
+
+
+def cycled(*parameters):
+    """Return a bar that is strained to and fro, less plastically each time as it hardens."""
+    ends = [step("*STATIC", "0.2, 1.", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {strain!r}")
+            for strain in (0.003, 0.0)]
+    return [*bar("*PLASTIC", "200., 0.", "700., 0.05"), *ends[0], *ends[1],
+            "*CYCLE, " + ", ".join(parameters)]
+
+
+@pytest.mark.changes("CYCLE, REPEAT", "CYCLE, STEPS")
+def test_cycle_repeats_as_many_steps_as_often_as_it_says(tmp_path):
+    decks = [cycled(f"STEPS={steps}", f"REPEAT={repeat}", "TOLERANCE=0.")
+             for steps, repeat in ((2, 3), (1, 4))]
+    note_changes(*decks)
+    # The second step alone changes nothing when it is repeated.
+    for k, (deck, ends) in enumerate(zip(decks, (8, 3), strict=True)):
+        _, times = told(tmp_path, deck, f"{k}")
+        assert times[-1] == ends
+
+
+@pytest.mark.changes("CYCLE, TOLERANCE")
+def test_cycles_end_where_strains_repeat(tmp_path):
+    decks = [cycled("STEPS=2", "REPEAT=200", f"TOLERANCE={tolerance!r}")
+             for tolerance in (1e-4, 1e-6)]
+    note_changes(*decks)
+    few, many = [told(tmp_path, deck, f"{k}") for k, deck in enumerate(decks)]
+    assert few[1][-1] < many[1][-1] < 400
+
+
+@pytest.mark.changes("CYCLE, UNTIL")
+def test_cycles_wait_for_strains_or_displacements(tmp_path):
+    # Strains of some 1e-3 are told as they are, displacements over the largest.
+    decks = [cycled("STEPS=2", "REPEAT=200", f"UNTIL={until}", "TOLERANCE=1.E-4")
+             for until in ("PE", "U")]
+    note_changes(*decks)
+    strains, displacements = [told(tmp_path, deck, f"{k}")[1][-1] for k, deck in enumerate(decks)]
+    assert strains < displacements < 400
+
+
+def test_steps_behind_a_cycle_follow_it(tmp_path):
+    deck = cycled("STEPS=2", "REPEAT=200", "TOLERANCE=1.E-4")
+    short = told(tmp_path, deck, "short")[1]
+    longer = [*deck, *pulled(100.0, "*STATIC", "0.5, 1."), *pulled(0.0, "*STATIC", "1., 1.")]
+    _, times = told(tmp_path, longer, "longer")
+    assert times[-1] == short[-1] + 2.0
+    whole = solve(write(tmp_path / "kept.inp", ["*RESTART, WRITE, FREQUENCY=1", *longer]))
+    for time in (float(short[-1] - 2.0), float(short[-1] + 0.5)):
+        folder = tmp_path / str(time)
+        process = run("run", "--quiet", tmp_path / "kept.inp", "--restart", f"{whole}@{time!r}",
+                      "--out", folder)
+        assert process.returncode == 0, process.stderr
+        assert_alike(datasets(whole, *FILES), datasets(folder / whole.name, *FILES), 0.0)

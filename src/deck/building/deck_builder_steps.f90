@@ -12,8 +12,8 @@ module deck_builder_steps
    use deck_structure, only: cards_of
    use kinds, only: dp
    use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
-      increment_growth, least_increment, planned_increments, solves_heat, solves_mechanics, &
-      step_controls_type, step_type
+      cycle_type, increment_growth, least_increment, planned_increments, solves_heat, &
+      solves_mechanics, step_controls_type, step_type, until_displacement, until_force, until_strain
    use text, only: percent, to_text
    use time_points, only: time_points_type
    implicit none
@@ -81,6 +81,8 @@ contains
             case ('THERMAL SCHEME')
                has_scheme = .true.
                call build_thermal_scheme(card, deck, controls%scheme)
+            case ('CYCLE')
+               call build_cycle(card, n, deck)
             case ('CONTINUATION')
                if (n > 0) call build_continuation(card, deck, deck%model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
@@ -109,6 +111,34 @@ contains
       end do
       call warn_of_nlgeom(deck, deck%model%steps)
    end subroutine build_steps
+
+   !> Reads *CYCLE, whose steps stand behind it as often as it says: those that end a cycle have it.
+   subroutine build_cycle(card, n, deck)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: n                            ! last step of the first cycle
+      type(deck_type), intent(inout) :: deck
+      type(cycle_type) :: cycle
+      integer :: k, repeats
+
+      cycle%steps = 1
+      repeats = 1
+      call take_parameter(card, 'STEPS', deck, cycle%steps, '>=1')
+      call take_parameter(card, 'REPEAT', deck, repeats, '>=1')
+      call take_parameter(card, 'TOLERANCE', deck, cycle%tolerance, '>=0')
+      select case (choice(card, 'UNTIL', 'PE/U/CFN', deck, 'PE'))
+      case ('U')
+         cycle%until = until_displacement
+      case ('CFN')
+         cycle%until = until_force
+      case default
+         cycle%until = until_strain
+      end select
+      if (deck%has_errors()) return
+      cycle%last = n + repeats*cycle%steps
+      do k = n, cycle%last, cycle%steps
+         deck%model%steps(k)%cycle = cycle
+      end do
+   end subroutine build_cycle
 
    !> Reads a card of a step that asks for output; others are ignored.
    subroutine build_output(card, deck, counts, step)

@@ -70,7 +70,7 @@ module keywords
    !> How the keywords end that ask for output.
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
-   type(keyword_type), parameter :: known_keywords(92) = [ &
+   type(keyword_type), parameter :: known_keywords(93) = [ &
       keyword_type('HEADING', in_model, 0, many, ''), &
       keyword_type('OPTIONS', in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', in_model, 0, 0, &
@@ -146,6 +146,7 @@ module keywords
       keyword_type('STEP', in_both, 0, 0, &
          'INC=/AMPLITUDE=/NLGEOM?/PERTURBATION/~NAME=/~UNSYMM?/~EXTRAPOLATION=/'// &
          '~CONVERT SDI=/~DSA?'), &
+      keyword_type('CYCLE', in_both, 0, 0, 'STEPS=/REPEAT=/UNTIL=/TOLERANCE='), &
       keyword_type('STATIC', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER=/STRAIN LIMIT='), &
       keyword_type('VISCO', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER=/CETOL=/'// &
          'LOCAL ERROR=/STRAIN LIMIT='), &
