@@ -29,7 +29,7 @@ module solution_state
       real(dp), allocatable :: stress_temperature(:)  !! (nodes) of that increment [temperature]
       type(heat_sources_type) :: sources            !! Q of (3.3) and F of films
       real(dp), allocatable :: stored(:)            !! (nodes) rate of stored heat, or none [power]
-      real(dp) :: dilatation = 0.0_dp               !! rate of heat that strains take up [power]
+      real(dp) :: dilatation = 0.0_dp               !! rate of heat that strains take up, inelastic ones less than 0 [power]
       !> Lowest and highest temperature of the transient step so far [temperature]
       real(dp), allocatable :: extremes(:)
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]

@@ -36,6 +36,7 @@ module material_points
       procedure :: follows_law
       procedure :: largest_growth
       procedure :: take_strains
+      procedure :: inelastic_work
       procedure :: second_start
       procedure :: difference_of_stages
       procedure :: heat_flux
@@ -339,6 +340,25 @@ contains
          equivalent = sqrt((2*sum(strain(:3)**2) + strain(4)**2)/3)
       end function equivalent
    end function difference_of_stages
+
+   !> Work of plasticity and creep at the points of an element so far, in columns; 0 of none.
+   pure function inelastic_work(self, mesh, element, remembered) result(work)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                         !! which element
+      real(dp), intent(in) :: remembered(:)                  !! (numbers) by all points
+      real(dp) :: work(most, 2)                              !! its points first [energy/volume]
+      integer :: g, i
+
+      work = 0.0_dp
+      associate (law => self%library(self%sections(mesh%element_section(element))%material)%law)
+         if (law%work == 0) return
+         do g = 1, self%rules(mesh%element_kind(element))%count
+            i = self%history_start(element) + (g - 1)*law%history_count + law%work - 1
+            work(g, :) = remembered(i:i + 1)
+         end do
+      end associate
+   end function inelastic_work
 
    !> Plastic strains of the points of an element, then those of creep, in columns; 0 of none.
    pure subroutine take_strains(self, mesh, element, remembered, strains)

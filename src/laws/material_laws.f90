@@ -38,6 +38,8 @@ module material_laws
       !> Where the strains of plasticity and of creep begin among these: xx, yy, zz, the angle xy
       !> and the equivalent one; 0 for none
       integer :: strains(2) = 0
+      integer :: work = 0 !! where that of both begins, so far [energy/volume]; 0 for none
+      real(dp) :: heat_fraction = 0.0_dp           !! part of this work that heats the body
       !> (history_count) variables that change with time; others change with strain alone, and at
       !> once where that jumps. All where this is unallocated
       logical, allocatable :: of_time(:)

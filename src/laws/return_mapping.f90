@@ -25,7 +25,7 @@ module return_mapping
    use material_laws, only: law_interval_type, law_points_type, material_law_type
    implicit none
    private
-   public :: inelastic_law, history_creep, history_plastic, history_work
+   public :: inelastic_law, history_creep, history_plastic
 
    ! Where a history has what; strains are xx, yy, zz and the angle xy.
    integer, parameter :: history_plastic = 1     !! plastic strain, behind it the equivalent one
@@ -79,6 +79,7 @@ contains
       law%creep = creep
       law%history_count = history_back - 1
       if (hardening%has_back_stress()) law%history_count = history_back + 3
+      law%work = history_work
       if (hardening%yields()) law%strains(1) = history_plastic
       if (creep%creeps()) law%strains(2) = history_creep
       allocate (law%of_time(law%history_count), source=.false.)
@@ -138,7 +139,7 @@ contains
          call find_tangent(point, found, tangent)
          if (.not. is_plane_stress) exit
          associate (normal => found%s(3) + sum(trial(:3))/3)
-            if (abs(normal) <= rounding*max(found%q, abs(sum(trial(:3))/3))) exit
+            if (abs(normal) <= 10*rounding*max(found%q, abs(sum(trial(:3))/3))) exit
             across = across - normal/tangent(3, 3)
          end associate
          found%found = i < most_passes

@@ -6,8 +6,8 @@ module energies
    use material_laws, only: law_points_type
    use material_points, only: point_history_type
    use model, only: model_type
+   use point_rules, only: most => most_points_of_rule
    use records, only: increment_record_type
-   use return_mapping, only: history_work
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use transforms, only: on_nodes
@@ -53,7 +53,8 @@ contains
       type(point_history_type) :: history
       type(law_points_type) :: points
       real(dp) :: u(2, size(state%temperature)), warming(size(state%temperature))
-      integer :: e, g, i
+      real(dp) :: work(most, 2)
+      integer :: e, g
 
       energies = 0.0_dp
       history%before = state%history
@@ -63,16 +64,13 @@ contains
       associate (mesh => model%mesh, fields => run%recovery%integration)
          do e = 1, size(mesh%element_kind)
             call fields%respond(mesh, e, u, warming, history, points)
+            work = fields%inelastic_work(mesh, e, state%history)
             do g = 1, fields%rules(mesh%element_kind(e))%count
                associate (volume => fields%volume(fields%first(e) + g - 1), &
                   s => points%stress(g, :))
                   energies(1) = energies(1) + volume*dot_product(s, matmul(fields%materials( &
                      fields%at_point(e, g))%compliance, s))/2
-                  if (.not. fields%follows_law(mesh, e)) cycle
-                  i = fields%history_start(e) + (g - 1)*(fields%history_start(e + 1) - &
-                     fields%history_start(e))/fields%rules(mesh%element_kind(e))%count + &
-                     history_work - 1
-                  energies(2:3) = energies(2:3) + volume*state%history(i:i + 1)
+                  energies(2:3) = energies(2:3) + volume*work(g, :)
                end associate
             end do
          end do

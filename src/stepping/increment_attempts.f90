@@ -165,6 +165,9 @@ contains
             attempt%workspace%contact, next, attempt%undecided, record)
          ! Heat that strains take up, T0 beta:eps' over all bodies. Loads that act at once strain
          ! bodies within the first stage.
+         next%dilatation = 0.0_dp
+         if (run%corrections%heats .and. step%is_transient) next%dilatation = &
+            -sum(run%corrections%inelastic_heat(model))/attempt%stage%duration
          if (step%dilates) next%dilatation = sum(bodies%dilatation%of_strains( &
             bodies%thermal_load, next%displacement - attempt%before%displacement))/ &
             attempt%stage%size

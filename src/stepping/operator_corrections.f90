@@ -62,6 +62,7 @@ module operator_corrections
       real(dp) :: left_over = 0.0_dp               !! of the last pass, in scales
       integer :: slow_passes = 0                   !! since operators were formed
       logical, public :: has_laws = .false.        !! whether any material has
+      logical, public :: heats = .false.           !! whether inelastic work heats bodies
       logical :: law_failed = .false.              !! whether one found no stress
       integer, public :: passes = 0                !! of the stage
       logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
@@ -80,6 +81,7 @@ module operator_corrections
       procedure :: true_contents
       procedure :: keep
       procedure :: largest_growth
+      procedure :: inelastic_heat
       procedure :: find_tangents
    end type corrections_type
 
@@ -105,6 +107,8 @@ contains
       if (allocated(initial_force)) self%initial_force = initial_force
       self%corrects = any(follows) .or. any(model%steps%dilates)
       self%has_laws = any(has_law(model%materials))
+      self%heats = any(model%materials%law%heat_fraction > 0.0_dp) .and. &
+         any(model%steps%is_transient)
       if (.not. any(follows)) return
       allocate (self%points, self%contents)
       self%points%has_inverses = .false.
@@ -310,8 +314,36 @@ contains
          self%stage%temperature), 0.0_dp, self%follows)
       if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
          bodies%thermal_load, displacement, temperature) - self%strain_before
+      if (self%heats .and. self%stage%strains) values(:n) = values(:n) - self%inelastic_heat(model)
       values(:n) = values(:n)/self%stage%duration
    end function corrections_of
+
+   !> Heat that inelastic work makes in the stage, on the nodes.
+   pure function inelastic_heat(self, model) result(heat)
+      class(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp) :: heat(size(model%mesh%node_number))         !! (nodes) [energy]
+      real(dp) :: work(most, 2)
+      integer :: g, i
+
+      heat = 0.0_dp
+      do i = 1, size(self%elements)
+         associate (mesh => model%mesh, points => self%points, e => self%elements(i))
+            if (.not. points%follows_law(mesh, e)) cycle
+            work = points%inelastic_work(mesh, e, self%history%after) - points%inelastic_work( &
+               mesh, e, self%history%before)
+            associate (rule => points%rules(mesh%element_kind(e)), first => points%first(e), &
+               law => points%library(points%sections(mesh%element_section(e))%material)%law)
+               do g = 1, rule%count
+                  associate (nodes => mesh%element_nodes(:rule%nodes, e))
+                     heat(nodes) = heat(nodes) + law%heat_fraction*sum(work(g, :))* &
+                        points%volume(first + g - 1)*rule%shape(g, :rule%nodes)
+                  end associate
+               end do
+            end associate
+         end associate
+      end do
+   end function inelastic_heat
 
    !> Heat that K conducts beyond the bodies.
    function heat_beyond(self, model, bodies, temperature) result(heat)

@@ -520,3 +520,23 @@ def test_steps_behind_a_cycle_follow_it(tmp_path):
                       "--out", folder)
         assert process.returncode == 0, process.stderr
         assert_alike(datasets(whole, *FILES), datasets(folder / whole.name, *FILES), 0.0)
+
+
+@pytest.mark.changes("INELASTIC HEAT FRACTION")
+def test_inelastic_work_heats_the_body(tmp_path):
+    # An insulated bar of yield stress 200 that is strained by 0.011 and then relaxes by creep.
+    def make(fraction):
+        cards = [*bar("*PLASTIC", "200.", "*CREEP", f"{A!r}, {N!r}", "*INELASTIC HEAT FRACTION",
+                      f"{fraction!r}", conductivity=1.0, density=2.0, specific_heat=0.25), "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.",
+                 *step("*COUPLED TEMPERATURE-DISPLACEMENT", "1.E-7, 1.E-6", "*BOUNDARY",
+                       "BODY.RIGHT, 1, 1, 0.011", options=", AMPLITUDE=RAMP"),
+                 *step("*COUPLED TEMPERATURE-DISPLACEMENT", "1.E-3, 1., 1.E-9", "*BOUNDARY",
+                       "BODY.RIGHT, 1, 1, 0.011")]
+        plastic = 200.0 * (0.011 - 200.0 / YOUNG)
+        creep = (200.0**2 - left(1.0) ** 2) / (2 * YOUNG)
+        return cards, [
+            ("NT", "BODY", 1e-6, 20.0 + fraction * plastic / 0.5, 1e-3),
+            ("NT", "BODY", "LAST", 20.0 + fraction * (plastic + creep) / 0.5, 1e-3),
+            ("heat_imbalance", "", "LAST", 0.0, 1e-8, "ABS")]
+
+    follows(tmp_path, make, 0.9, 0.4)

@@ -1,7 +1,7 @@
 !> *PLASTIC, *CYCLIC HARDENING and *CREEP -> the law of a material.
 module deck_builder_inelastic
    use card_parameters, only: choice, take_parameter
-   use card_values, only: check_ascending, read_rows
+   use card_values, only: check_ascending, read_row, read_rows
    use cards, only: keyword_card_type
    use creep_laws, only: hardens_by_strain
    use deck_context, only: deck_type
@@ -14,6 +14,8 @@ module deck_builder_inelastic
    private
    public :: build_inelasticity, complete_law
 
+   real(dp), parameter :: default_fraction = 0.9_dp   ! of inelastic work, as in Abaqus
+
    character(*), parameter :: table = 'yield stress >0/plastic strain? >=0/temperature?'
    character(*), parameter :: parameters = 'yield stress >0/C >=0/gamma >=0/temperature?'
    character(*), parameter :: powers = 'A >=0/n >0/m?/temperature?'
@@ -25,6 +27,8 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(material_type), intent(inout) :: material
+      real(dp) :: heat(1)
+      logical :: valid
 
       select case (card%name)
       case ('PLASTIC')
@@ -36,6 +40,12 @@ contains
             return
          end if
          call read_table(card, deck, material%law%hardening%yield)
+      case ('INELASTIC HEAT FRACTION')
+         heat = default_fraction
+         if (size(card%data) > 0) call read_row(card%data(1), 'fraction? >=0 =0.9', deck, heat, &
+            valid)
+         material%law%heat_fraction = heat(1)
+         if (heat(1) > 1.0_dp) call deck%error(card%data(1)%place(1), 'the fraction is at most 1')
       case default
          call build_creep(card, deck, material)
       end select
@@ -199,6 +209,7 @@ contains
       integer, intent(in) :: m                               !! its number
       type(deck_type), intent(inout) :: deck
       type(material_type), intent(inout) :: material
+      real(dp) :: fraction
       integer :: k
 
       if (.not. (material%law%hardening%yields() .or. material%law%creep%creeps())) return
@@ -210,7 +221,9 @@ contains
                '*ELASTIC, TYPE=ISOTROPIC')
          end do
       end if
+      fraction = material%law%heat_fraction
       material%law = inelastic_law(material%law%hardening, material%law%creep)
+      material%law%heat_fraction = fraction
    end subroutine complete_law
 
 end module deck_builder_inelastic

@@ -59,11 +59,11 @@ contains
                else if (size(card%data) > 0) then
                   call build_property(card, deck, deck%model%materials(n))
                end if
-            case ('PLASTIC', 'CYCLIC HARDENING', 'CREEP')
+            case ('PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION')
                if (n == 0) then
                   if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')
-               else if (size(card%data) > 0) then
+               else if (size(card%data) > 0 .or. card%name(:1) == 'I') then
                   call build_inelasticity(card, deck, deck%model%materials(n))
                end if
             case default

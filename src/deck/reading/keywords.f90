@@ -70,7 +70,7 @@ module keywords
    !> How the keywords end that ask for output.
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
-   type(keyword_type), parameter :: known_keywords(93) = [ &
+   type(keyword_type), parameter :: known_keywords(94) = [ &
       keyword_type('HEADING', in_model, 0, many, ''), &
       keyword_type('OPTIONS', in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', in_model, 0, 0, &
@@ -98,6 +98,7 @@ module keywords
       keyword_type('PLASTIC', in_model, 1, many, 'HARDENING=/DATA TYPE=/NUMBER BACKSTRESSES='), &
       keyword_type('CYCLIC HARDENING', in_model, 1, many, ''), &
       keyword_type('CREEP', in_model, 1, many, 'LAW='), &
+      keyword_type('INELASTIC HEAT FRACTION', in_model, 0, 1, ''), &
       keyword_type('ORIENTATION', in_model, 1, 2, 'NAME=/SYSTEM='), &
       keyword_type('SOLID SECTION', in_model, 0, 1, &
          'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
