@@ -10,7 +10,7 @@ module creep_laws
    use table_rows, only: find_row
    implicit none
    private
-   public :: creep_type, exp_less_one, hardens_by_time, hardens_by_strain
+   public :: creep_type, exp_less_one, hardens_by_time, hardens_by_strain, log_one_and
 
    integer, parameter :: hardens_by_time = 1, hardens_by_strain = 2
 

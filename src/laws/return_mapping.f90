@@ -19,7 +19,7 @@
 !> J. C. Simo, R. L. Taylor, Comput. Meth. Appl. Mech. Eng. 48 (1985) 101; Int. J. Num. Meth. Eng.
 !> 22 (1986) 649; P. Ellsiepen, S. Hartmann, Int. J. Num. Meth. Eng. 51 (2001) 679.
 module return_mapping
-   use creep_laws, only: creep_type, exp_less_one
+   use creep_laws, only: creep_type, exp_less_one, log_one_and
    use hardening_laws, only: hardening_type
    use kinds, only: dp
    use material_laws, only: law_interval_type, law_points_type, material_law_type
@@ -139,7 +139,7 @@ contains
          call find_tangent(point, found, tangent)
          if (.not. is_plane_stress) exit
          associate (normal => found%s(3) + sum(trial(:3))/3)
-            if (abs(normal) <= 10*rounding*max(found%q, abs(sum(trial(:3))/3))) exit
+            if (abs(normal) <= rounding*max(found%q, abs(sum(trial(:3))/3))) exit
             across = across - normal/tangent(3, 3)
          end associate
          found%found = i < most_passes
@@ -192,9 +192,9 @@ contains
          there%q <= 0.0_dp .or. .not. there%found) return
       call find_creep(point, there)
       if (there%y <= 0.0_dp) return
-      ! ln(b q) = ln(3 G y(q)) for u = ln(1 + b). The stress falls with b.
-      ends = [0.0_dp, log(1 + 3*point%shear*there%y/there%q)]
-      u = ends(2)
+      ! ln(b q) = ln(3 G y(q)) for u = ln(1 + b). The stress falls with b, which is less than at u.
+      u = log_one_and(3*point%shear*there%y/there%q)
+      ends = [0.0_dp, 2*u]
       do i = 1, most_passes
          there%alpha = exp(-u)
          call find_plastic(point, there)

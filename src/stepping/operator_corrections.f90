@@ -61,6 +61,7 @@ module operator_corrections
       type(mixing_type) :: mixing
       real(dp) :: left_over = 0.0_dp               !! of the last pass, in scales
       integer :: slow_passes = 0                   !! since operators were formed
+      real(dp) :: largest_force = 0.0_dp           !! at a node of an element, of stresses [force]
       logical, public :: has_laws = .false.        !! whether any material has
       logical, public :: heats = .false.           !! whether inelastic work heats bodies
       logical :: law_failed = .false.              !! whether one found no stress
@@ -389,6 +390,7 @@ contains
       if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
       self%law_failed = .false.
       self%elastic_strain = 0.0_dp
+      self%largest_force = 0.0_dp
       call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       warming = temperature - model%initial_temperature
       u = reshape(displacement, shape(u))
@@ -402,6 +404,7 @@ contains
                maxval(equivalent(points%stress(:points%count, :)))/(3*self%points%materials( &
                self%points%at_point(e, 1))%elasticity(4, 4)))
             of_nodes = self%points%nodal_forces(mesh, e, points%stress)
+            self%largest_force = max(self%largest_force, maxval(abs(of_nodes(:, :size(nodes)))))
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
          end associate
       end do
@@ -494,9 +497,14 @@ contains
          if (allocated(self%strain_before)) heat = max(heat, maxval(abs( &
             bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
             self%stage%displacement)))/self%stage%duration)
-         force = max(maxval(abs(self%values(2*n + 1:))), least(2))
-         if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
-            maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
+         if (self%has_laws) then
+            ! Inelastic strains may be far larger than the elastic ones.
+            force = max(self%largest_force, least(2))
+         else
+            force = max(maxval(abs(self%values(2*n + 1:))), least(2))
+            if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
+               maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
+         end if
          scale(:2*n) = max(heat, tiny(heat))
          scale(2*n + 1:) = max(force, tiny(force))
       end associate
