@@ -146,25 +146,44 @@ contains
       end if
       if (stage%dilates) self%strain_before = bodies%dilatation%taken_up(bodies%thermal_load, &
          stage%displacement, stage%temperature)
-      goes_on = allocated(before%corrections)
+      goes_on = allocated(before%corrections) .and. .not. foresees(self, before)
       if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
          bodies%has_operators_of(before%operators_at, before%tangent)
       if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
          before%temperature)
       if (.not. goes_on) then
          self%values = corrections_of(self, model, bodies, before%temperature, &
-            before%displacement)
+            foreseen(self, before))
       else
          self%values = before%corrections
          associate (n => size(before%temperature))
             if (.not. takes_past) self%heat_before = self%values(n + 1:2*n)
          end associate
-         ! Plastic flow stops where loads turn round: without a time it is not foreseen.
-         if (self%has_laws .and. (stage%begins_step .or. stage%passing%real_part <= 0.0_dp)) return
          if (allocated(before%corrections_before)) self%values = self%values + stage%size/ &
             before%increment_size*(before%corrections - before%corrections_before)
       end if
    end subroutine begin
+
+   !> Whether laws go on from displacements that go on as they did, whatever the operators were.
+   !> Plastic flow stops where loads turn round: without a time it is not foreseen.
+   pure logical function foresees(self, before)
+      class(corrections_type), intent(in) :: self
+      type(solution_state_type), intent(in) :: before
+
+      foresees = self%has_laws .and. allocated(before%displacement_before) .and. .not. &
+         self%stage%begins_step .and. self%stage%passing%real_part > 0.0_dp
+   end function foresees
+
+   !> Displacements from which a stage begins.
+   pure function foreseen(self, before) result(displacement)
+      class(corrections_type), intent(in) :: self
+      type(solution_state_type), intent(in) :: before
+      real(dp) :: displacement(size(before%displacement))
+
+      displacement = before%displacement
+      if (foresees(self, before)) displacement = displacement + self%stage%size/ &
+         before%increment_size*(displacement - before%displacement_before)
+   end function foreseen
 
    !> Gives a stage its corrections: heat to its equation, forces to its state.
    subroutine give(self, equation, next)
@@ -271,7 +290,9 @@ contains
 
       next%corrections = self%values
       if (allocated(next%corrections_before)) deallocate (next%corrections_before)
-      if (self%renewed_at == 0 .and. allocated(before%corrections)) then
+      if (self%has_laws) then
+         next%displacement_before = before%displacement
+      else if (self%renewed_at == 0 .and. allocated(before%corrections)) then
          next%corrections_before = before%corrections
       end if
       if (allocated(bodies%operators_at)) next%operators_at = bodies%operators_at
