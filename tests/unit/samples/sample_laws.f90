@@ -4,7 +4,7 @@ module sample_laws
    use material_laws, only: law_interval_type, law_points_type, material_law_type
    implicit none
    private
-   public :: counting_law
+   public :: counting_law, failing_law
 
 contains
 
@@ -18,6 +18,24 @@ contains
       law%constants = [part]
       law%respond => respond
    end function counting_law
+
+   !> A law that never finds a stress.
+   function failing_law() result(law)
+      type(material_law_type) :: law
+
+      law%history_count = 1
+      law%respond => fail
+   end function failing_law
+
+   pure subroutine fail(law, points, interval, history)
+      type(material_law_type), intent(in) :: law
+      type(law_points_type), intent(inout) :: points
+      type(law_interval_type), intent(in) :: interval
+      real(dp), intent(inout) :: history(:, :)
+
+      points%failed = .true.
+      history = law%history_count*interval%duration
+   end subroutine fail
 
    pure subroutine respond(law, points, interval, history)
       type(material_law_type), intent(in) :: law
