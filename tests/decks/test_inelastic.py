@@ -540,3 +540,25 @@ def test_inelastic_work_heats_the_body(tmp_path):
             ("heat_imbalance", "", "LAST", 0.0, 1e-8, "ABS")]
 
     follows(tmp_path, make, 0.9, 0.4)
+
+
+def joint_of_esposito(held):
+    """Return the joint of docs/compare.md [mm, MPa, s], with all planes held or its ends free."""
+    hub = mesh("BODY", [float(x) for x in np.linspace(4.51, 5.315, 17)], [0.0, 0.2], "CAX8R", first=101)
+    return [*mesh("SHAFT", [0.0, 1.5, 3.0, 4.5], [0.0, 0.2], "CAX8R"), *hub,
+            *material("SHAFT", (200e3, 0.345)), *law("*CREEP", "1.0083E-16, 3.", elastic=(99.3e3, 0.37)),
+            "*SURFACE INTERACTION, NAME=JOINT",
+            "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR", "0., 0.", "3500., 1.",
+            "*CONTACT PAIR, INTERACTION=JOINT, NAME=FIT", "SHAFT.RIGHT, BODY.LEFT",
+            *overlap(0.01473), "*BOUNDARY", "SHAFT.LEFT, 1",
+            *(["SHAFT, 2", "BODY, 2"] if held else ["SHAFT.BOTTOM, 2", "BODY.BOTTOM, 2"]),
+            *step("*STATIC", "1., 1."), *step("*VISCO", "100., 2.16E8")]
+
+
+def test_disputed_joint_is_that_of_plane_strain(tmp_path):
+    # The independent values are of one radius for both faces, which are 0.2 % apart here.
+    days = ((0, 26.353), (200, 13.271), (1240, 6.041), (2500, 4.315))
+    judge(tmp_path, joint_of_esposito(held=True), [
+        ("pressure", "FIT@0.1", 1.0 + 86400.0 * day, p, 2e-3) for day, p in days])
+    judge(tmp_path, joint_of_esposito(held=False), [
+        ("pressure", "FIT@0.1", "LAST", 4.315 * 5 / 6, 1e-2)], name="free")
