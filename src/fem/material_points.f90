@@ -7,7 +7,7 @@ module material_points
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4, quad4_enhanced
    use enhanced_strains, only: released_strains
    use kinds, only: dp
-   use material_laws, only: law_interval_type, law_points_type
+   use material_laws, only: law_interval_type, law_points_type, material_law_type
    use materials, only: has_law, heat_content, material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
    use point_gradients, only: add_hoop_strain, find_negative_gradient, find_strains, &
@@ -52,6 +52,7 @@ module material_points
    end type point_history_type
 
    integer, parameter :: most_enhancements = 50       ! passes for enhanced strains
+   integer, parameter :: most_searches = 5            ! for the length of a change
    real(dp), parameter :: settled = 1.0e-12_dp        ! part of the strains that they change last
 
 contains
@@ -213,30 +214,64 @@ contains
       type(law_points_type), intent(in) :: elastic           ! without them and without the law
       type(law_points_type), intent(inout) :: points         ! the response
       real(dp), intent(inout) :: numbers(:, :)               ! its history
-      real(dp) :: change(4, 4), strains(4, 4)
-      integer :: g, pass
+      real(dp) :: change(4, 4), part, slope, strains(4, 4)
+      integer :: pass, search
 
       strains = 0.0_dp
-      associate (law => self%library(self%sections(mesh%element_section(element))%material)%law, &
-         first => self%history_start(element))
-         do pass = 1, most_enhancements
-            if (points%failed) return
-            change = self%changes_of_modes(mesh, element, points)
-            strains = strains + change
-            if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + &
-               maxval(abs(elastic%strain(:4, :))))) return
-            points = elastic
-            do g = 1, 4
-               points%strain(g, :) = elastic%strain(g, :) + strains(:, g)
-               points%stress(g, :) = elastic%stress(g, :) + matmul(elastic%tangent(:, :, g), &
-                  strains(:, g))
-            end do
-            numbers = reshape(history%before(first:first + size(numbers) - 1), shape(numbers))
-            call law%respond(law, points, history%law_interval_type, numbers)
+      do pass = 1, most_enhancements
+         if (points%failed) return
+         change = self%changes_of_modes(mesh, element, points)
+         if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + &
+            maxval(abs(elastic%strain(:4, :))))) return
+         slope = work_on(change)
+         part = 1.0_dp
+         do search = 1, most_searches
+            associate (law => self%library(self%sections(mesh%element_section(element))% &
+               material)%law, first => self%history_start(element))
+               call respond_to(law, history%law_interval_type, history%before(first:first + &
+                  size(numbers) - 1), elastic, strains + part*change, points, numbers)
+            end associate
+            ! Beyond the least energy the stresses do work on the change.
+            if (points%failed .or. work_on(change) <= -0.5_dp*slope) exit
+            part = part*slope/(slope - work_on(change))
          end do
-      end associate
+         strains = strains + part*change
+      end do
       points%failed = .true.
+   contains
+      !> Work of the stresses on strains.
+      pure real(dp) function work_on(strain) result(work)
+         real(dp), intent(in) :: strain(4, 4)
+         integer :: g
+
+         work = 0.0_dp
+         do g = 1, 4
+            work = work + self%volume(self%first(element) + g - 1)*dot_product( &
+               points%stress(g, :), strain(:, g))
+         end do
+      end function work_on
    end subroutine enhance
+
+   !> The response of a law to enhanced strains.
+   pure subroutine respond_to(law, interval, before, elastic, strains, points, numbers)
+      type(material_law_type), intent(in) :: law
+      type(law_interval_type), intent(in) :: interval
+      real(dp), intent(in) :: before(:)                      ! history at its start
+      type(law_points_type), intent(in) :: elastic           ! without them and without the law
+      real(dp), intent(in) :: strains(4, 4)                  ! (4, points)
+      type(law_points_type), intent(inout) :: points
+      real(dp), intent(inout) :: numbers(:, :)
+      integer :: g
+
+      points = elastic
+      do g = 1, 4
+         points%strain(g, :) = elastic%strain(g, :) + strains(:, g)
+         points%stress(g, :) = elastic%stress(g, :) + matmul(elastic%tangent(:, :, g), &
+            strains(:, g))
+      end do
+      numbers = reshape(before, shape(numbers))
+      call law%respond(law, points, interval, numbers)
+   end subroutine respond_to
 
    !> Changes of the enhanced strains of an element that its stresses and their tangents ask for.
    pure function changes_of_modes(self, mesh, element, points) result(strains)

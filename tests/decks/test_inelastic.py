@@ -562,3 +562,35 @@ def test_disputed_joint_is_that_of_plane_strain(tmp_path):
         ("pressure", "FIT@0.1", 1.0 + 86400.0 * day, p, 2e-3) for day, p in days])
     judge(tmp_path, joint_of_esposito(held=False), [
         ("pressure", "FIT@0.1", "LAST", 4.315 * 5 / 6, 1e-2)], name="free")
+
+
+def punch(kind, solver="SKYLINE", pairing="NODES"):
+    """Return a stiff punch that is pressed into a block that yields, taken off and pressed again."""
+    xs = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0]
+    block = mesh("BODY", xs, [0.0, 1.0, 2.0, 2.5, 3.0], kind)
+    top = mesh("PUNCH", xs[:5], [3.0, 3.5, 4.0], kind, first=201)
+    return [*block, *top, *law("*PLASTIC", "200., 0.", "300., 0.05"),
+            *material("PUNCH", (600e3, 0.3)), f"*SOLVER, TYPE={solver}",
+            "*SURFACE INTERACTION, NAME=RUB", "*FRICTION", "0.2",
+            f"*CONTACT PAIR, INTERACTION=RUB, PAIRING={pairing}, NAME=RUB",
+            "PUNCH.BOTTOM, BODY.TOP" if pairing == "SURFACES" else "PUNCH.BOTTOM, UNDER",
+            "*SURFACE, NAME=UNDER", *[f"{e}, S3" for e in range(19, 23)],
+            "*BOUNDARY", "BODY.BOTTOM, 2", "BODY.LEFT, 1", "PUNCH.LEFT, 1",
+            *[card for depth in (0.03, 0.0, 0.04) for card in step(
+                "*STATIC", "0.1, 1.", "*BOUNDARY", f"PUNCH.TOP, 2, 2, {-depth!r}")]]
+
+
+@pytest.mark.parametrize("kind", ["CPE4", "CPS4"])
+def test_punch_yields_unloads_and_yields_again(kind, tmp_path):
+    results = {}
+    for solver, pairing in (("SKYLINE", "NODES"), ("MUMPS", "NODES"), ("SKYLINE", "SURFACES")):
+        deck = write(tmp_path / f"{solver}{pairing}.inp", punch(kind, solver, pairing))
+        results[solver, pairing] = datasets(solve(deck), "history", "contact")
+    one, other, mortar = results.values()
+    np.testing.assert_allclose(one["contact/RUB/normal_force"],
+                               other["contact/RUB/normal_force"], rtol=1e-6)
+    force, times = one["contact/RUB/normal_force"], one["history/time"]
+    assert force[np.isclose(times, 1.0)][0] > 0.0
+    assert force[np.isclose(times, 2.0)][0] == 0.0   # a dent is left
+    assert one["history/largest_plastic_strain"].max() > 0.01
+    assert mortar["contact/RUB/normal_force"][-1] == pytest.approx(force[-1], rel=0.05)
