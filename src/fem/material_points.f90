@@ -52,6 +52,7 @@ module material_points
    end type point_history_type
 
    integer, parameter :: most_enhancements = 50       ! passes for enhanced strains
+   integer, parameter :: most_straight = 8            ! of these, with tangents alone
    integer, parameter :: most_searches = 5            ! for the length of a change
    real(dp), parameter :: settled = 1.0e-12_dp        ! part of the strains that they change last
 
@@ -214,6 +215,7 @@ contains
       type(law_points_type), intent(in) :: elastic           ! without them and without the law
       type(law_points_type), intent(inout) :: points         ! the response
       real(dp), intent(inout) :: numbers(:, :)               ! its history
+      type(law_points_type) :: stiffer
       real(dp) :: change(4, 4), part, slope, strains(4, 4)
       integer :: pass, search
 
@@ -221,6 +223,12 @@ contains
       do pass = 1, most_enhancements
          if (points%failed) return
          change = self%changes_of_modes(mesh, element, points)
+         if (pass > most_straight .and. modulo(pass, 2) == 0) then
+            ! Newton's changes go to and fro where points yield and unload by turns.
+            stiffer = points
+            stiffer%tangent = (points%tangent + elastic%tangent)/2
+            change = self%changes_of_modes(mesh, element, stiffer)
+         end if
          if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + &
             maxval(abs(elastic%strain(:4, :))))) return
          slope = work_on(change)

@@ -580,7 +580,7 @@ def punch(kind, solver="SKYLINE", pairing="NODES"):
                 "*STATIC", "0.1, 1.", "*BOUNDARY", f"PUNCH.TOP, 2, 2, {-depth!r}")]]
 
 
-@pytest.mark.parametrize("kind", ["CPE4", "CPS4"])
+@pytest.mark.parametrize("kind", ["CPE4", "CPE4I", "CPS4"])
 def test_punch_yields_unloads_and_yields_again(kind, tmp_path):
     results = {}
     for solver, pairing in (("SKYLINE", "NODES"), ("MUMPS", "NODES"), ("SKYLINE", "SURFACES")):
