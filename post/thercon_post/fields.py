@@ -38,6 +38,8 @@ TITLES = {
     "principal_3": (r"Principal stress $\sigma_3$", "stress"),
     "radial": (r"Radial stress $\sigma_r$", "stress"),
     "hoop": (r"Hoop stress $\sigma_\theta$", "stress"),
+    "plastic_strain": (r"Equivalent plastic strain $\varepsilon_\mathrm{p}$", None),
+    "creep_strain": (r"Equivalent creep strain $\varepsilon_\mathrm{c}$", None),
     "flux_x": ("Heat flux $q_x$", "flux"),
     "flux_y": ("Heat flux $q_y$", "flux"),
     "stress_error": ("Estimated error of stress", "stress"),
@@ -83,10 +85,11 @@ def draw_row(result, row, options):
             draw_elements(axes, result.cells, moved, given, (quantity, scale, options.colours), window)
         else:
             values = fine.values(given.astype(float))
-            if quantity == "von_mises":
+            if quantity in ("von_mises", "plastic_strain", "creep_strain"):
                 values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
             draw_points(axes, grid, fine, values, (quantity, scale, options.colours), inside)
         draw_lines(axes, result.cells, moved)
+        outline_plastic_zone(axes, grid, fine, result.point_data("equivalent_plastic_strain", step))
         title = result.units.label(*TITLES[quantity])
         if figure.axes[0].get_subplotspec().get_gridspec().ncols > 1:  # room for symbol and unit
             title = re.sub(r" (?=[$(]|of )", "\n", title, count=1)
@@ -99,6 +102,14 @@ def draw_row(result, row, options):
         options,
         name_of(result, row, options),
     )
+
+
+def outline_plastic_zone(axes, grid, fine, strain):
+    """Draw where the plastic strain is a hundredth of its largest value."""
+    if strain is not None and np.nanmax(strain) > 0.0:
+        values = np.nan_to_num(fine.values(strain.astype(float)))
+        axes.tricontour(grid, values, levels=[0.01 * np.nanmax(strain)], colors="black",
+                        linewidths=1.0)
 
 
 def mode_factor(cells, displacement):

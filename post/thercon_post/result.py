@@ -34,6 +34,8 @@ FIELD_SOURCES = {
     "principal_3": ("principal_stress", 2),
     "radial": ("radial_stress", None),
     "hoop": ("hoop_stress", None),
+    "plastic_strain": ("equivalent_plastic_strain", None),
+    "creep_strain": ("equivalent_creep_strain", None),
     "flux_x": ("heat_flux", 0),
     "flux_y": ("heat_flux", 1),
     "stress_error": ("stress_error", None),

@@ -23,7 +23,7 @@ module friction_heating
    use steps, only: solves_heat, solves_mechanics
    implicit none
    private
-   public :: friction_heating_type, begin_friction, friction_at_start, nodal_friction_heat, &
+   public :: friction_heating_type, begin_friction, friction_at_start, nodal_friction_heat, slips, &
       slips_before
 
    !> Heats of the increment.

@@ -9,6 +9,7 @@ module increment_data
    use friction_heating, only: friction_heating_type
    use kinds, only: dp
    use load_histories, only: step_clock_type
+   use material_laws, only: law_interval_type
    use solution_report, only: solution_report_type
    use solution_state, only: solution_state_type
    use heat_equation, only: heat_equation_type
@@ -68,6 +69,9 @@ module increment_data
       type(step_clock_type) :: of_increment = step_clock_type()   !! end of the increment
       real(dp) :: size = 0.0_dp                            !! from the end of the one before [time]
       real(dp) :: duration = 0.0_dp                        !! dt of its equations [time]
+      type(law_interval_type) :: passing                   !! for the laws of materials
+      logical :: strains = .true.                          !! whether equilibrium is solved
+      logical :: begins_step = .false.                     !! whether its increment does
       logical :: stores_heat = .false.                     !! whether it is one of a transient
       real(dp), allocatable :: history(:)                  !! h* of the laws of materials, or none
       ! The next three of transients.

@@ -29,7 +29,8 @@ module solution_state
       real(dp), allocatable :: stress_temperature(:)  !! (nodes) of that increment [temperature]
       type(heat_sources_type) :: sources            !! Q of (3.3) and F of films
       real(dp), allocatable :: stored(:)            !! (nodes) rate of stored heat, or none [power]
-      real(dp) :: dilatation = 0.0_dp               !! rate of heat that strains take up [power]
+      !> Rate of heat that strains take up; inelastic ones give it, below 0 [power]
+      real(dp) :: dilatation = 0.0_dp
       !> Lowest and highest temperature of the transient step so far [temperature]
       real(dp), allocatable :: extremes(:)
       real(dp), allocatable :: force_load(:)        !! (2 nodes) applied forces [force]
@@ -37,11 +38,13 @@ module solution_state
       !> for none [force]
       real(dp), allocatable :: forces_beyond(:)
       real(dp), allocatable :: history(:)           !! what all integration points remember, or none
+      real(dp), allocatable :: work(:)   !! (2) of friction and of loads beside these [energy]
       ! The next four where materials vary.
       real(dp), allocatable :: operators_at(:)      !! (nodes) temperatures of the operators
       real(dp), allocatable :: tangent(:)           !! of their stress, or none of elasticity
       !> (4 nodes) corrections of the operators by corrections_type, now and an increment earlier
       real(dp), allocatable :: corrections(:), corrections_before(:)
+      real(dp), allocatable :: displacement_before(:)   !! (2 nodes) where materials have laws
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
       logical :: has_mechanics = .false.            !! whether mechanics was ever solved
       !> Whether the last increment solved heat by a scheme that keeps an imbalance for ever.
@@ -88,8 +91,10 @@ contains
       call reals(self, 'operators_at', state%operators_at)
       call reals(self, 'tangent', state%tangent)
       call reals(self, 'history', state%history)
+      call reals(self, 'work', state%work)
       call reals(self, 'corrections', state%corrections)
       call reals(self, 'corrections_before', state%corrections_before)
+      call reals(self, 'displacement_before', state%displacement_before)
       call reals(self, 'extremes', state%extremes)
       call reals(self, 'displacement', state%displacement)
       call reals(self, 'stress_temperature', state%stress_temperature)

@@ -14,7 +14,7 @@ module enhanced_strains
    use kinds, only: dp
    implicit none
    private
-   public :: enhance_strains, release_stresses
+   public :: enhance_strains, released_strains
 
    integer, parameter :: most_modes = 5
    !> Signs of xi, eta and xi eta at the corners.
@@ -49,16 +49,19 @@ contains
       end do
    end subroutine enhance_strains
 
-   !> Adds to stresses of B u and of temperatures those of the enhanced strains.
-   pure subroutine release_stresses(coordinates, points, is_axisymmetric, e, volumes, stress)
+   !> Enhanced strains with which stresses, those of B u and of temperatures, do no work on the
+   !> modes.
+   pure function released_strains(coordinates, points, is_axisymmetric, e, volumes, stress) &
+      result(strains)
       real(dp), intent(in) :: coordinates(:, :)   !! (2, 4) corners [length]
       real(dp), intent(in) :: points(:, :)        !! (2, 4) xi, eta of the integration points
       logical, intent(in) :: is_axisymmetric      !! whether x is a radius
       real(dp), intent(in) :: e(:, :, :)          !! (4, 4, points, or 1 for all) [stress]
       real(dp), intent(in) :: volumes(:)          !! (4) that the points stand for [length^3]
-      real(dp), intent(inout) :: stress(:, :)     !! (4, points) [stress]
+      real(dp), intent(in) :: stress(:, :)        !! (4, points) without them [stress]
+      real(dp) :: strains(4, 4)                   !! (4, points)
       real(dp) :: modes(4, 4, most_modes), forces(4, 4, most_modes), a(most_modes, 1)
-      integer :: g, i, k, n
+      integer :: g, k, n
 
       call find_modes(coordinates, points, is_axisymmetric, modes, n)
       call stress_modes(modes, e, volumes, forces)
@@ -70,10 +73,9 @@ contains
       end do
       call find_amplitudes(modes, forces, n, a)
       do g = 1, 4
-         i = min(g, size(e, 3))
-         stress(:, g) = stress(:, g) - matmul(e(:, :, i), matmul(modes(:, g, :n), a(:n, 1)))
+         strains(:, g) = -matmul(modes(:, g, :n), a(:n, 1))
       end do
-   end subroutine release_stresses
+   end function released_strains
 
    !> G at the points.
    pure subroutine find_modes(coordinates, points, is_axisymmetric, modes, n)

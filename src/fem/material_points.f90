@@ -5,9 +5,9 @@
 module material_points
    use element_integrals, only: area_factor
    use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4, quad4_enhanced
-   use enhanced_strains, only: release_stresses
+   use enhanced_strains, only: released_strains
    use kinds, only: dp
-   use material_laws, only: law_points_type
+   use material_laws, only: law_interval_type, law_points_type, material_law_type
    use materials, only: has_law, heat_content, material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
    use point_gradients, only: add_hoop_strain, find_negative_gradient, find_strains, &
@@ -32,7 +32,13 @@ module material_points
       procedure :: positions
       procedure :: stress
       procedure :: respond
+      procedure, private :: changes_of_modes
       procedure :: follows_law
+      procedure :: largest_growth
+      procedure :: take_strains
+      procedure :: inelastic_work
+      procedure :: second_start
+      procedure :: difference_of_stages
       procedure :: heat_flux
       procedure :: add_contents
       procedure :: nodal_forces
@@ -40,11 +46,15 @@ module material_points
    end type material_points_type
 
    !> Histories of all points at both ends of a time increment.
-   type :: point_history_type
+   type, extends(law_interval_type) :: point_history_type
       real(dp), allocatable :: before(:)   !! (numbers) at the start; unallocated for none
       real(dp), allocatable :: after(:)    !! (numbers) at the end
-      real(dp) :: duration = 0.0_dp        !! of the increment [time]
    end type point_history_type
+
+   integer, parameter :: most_enhancements = 50       ! passes for enhanced strains
+   integer, parameter :: most_straight = 8            ! of these, with tangents alone
+   integer, parameter :: most_searches = 5            ! for the length of a change
+   real(dp), parameter :: settled = 1.0e-12_dp        ! part of the strains that they change last
 
 contains
 
@@ -150,6 +160,8 @@ contains
       real(dp) :: strain(most, 4)
 
       call elastic_stress(self, mesh, element, displacement, temperature, strain, values)
+      if (mesh%element_kind(element) == quad4_enhanced) call release(self, mesh, element, values)
+      call add_initial_stress(mesh, element, self%rules(mesh%element_kind(element))%count, values)
    end subroutine stress
 
    !> Stress of an element at its points, its tangent and the new history, by the law of its
@@ -164,14 +176,20 @@ contains
       type(law_points_type), intent(inout) :: points
       real(dp) :: numbers(self%library(self%sections(mesh%element_section(element))%material)%law% &
          history_count, self%rules(mesh%element_kind(element))%count)
+      type(law_points_type) :: elastic
       integer :: g
 
-      call elastic_stress(self, mesh, element, displacement, temperature, points%strain, &
-         points%stress)
+      points%failed = .false.
       associate (material => self%library(self%sections(mesh%element_section(element))%material), &
          rule => self%rules(mesh%element_kind(element)), first => self%history_start(element), &
          last => self%history_start(element + 1) - 1)
-         if (.not. has_law(material)) return
+         if (.not. has_law(material)) then
+            call self%stress(mesh, element, displacement, temperature, points%stress)
+            return
+         end if
+         call elastic_stress(self, mesh, element, displacement, temperature, points%strain, &
+            points%stress)
+         call add_initial_stress(mesh, element, rule%count, points%stress)
          points%count = rule%count
          points%plane = mesh%element_plane(element)
          do g = 1, rule%count
@@ -179,11 +197,105 @@ contains
             points%temperature(g) = dot_product(rule%shape(g, :rule%nodes), &
                self%temperature(mesh%element_nodes(:rule%nodes, element)))
          end do
+         if (mesh%element_kind(element) == quad4_enhanced) elastic = points
          numbers = reshape(history%before(first:last), shape(numbers))
-         call material%law%respond(material%law, points, history%duration, numbers)
+         call material%law%respond(material%law, points, history%law_interval_type, numbers)
+         if (mesh%element_kind(element) == quad4_enhanced) call enhance(self, mesh, element, &
+            history, elastic, points, numbers)
          history%after(first:last) = [numbers]
       end associate
    end subroutine respond
+
+   !> Finds the enhanced strains on which the stresses do no work, by Newton's method.
+   pure subroutine enhance(self, mesh, element, history, elastic, points, numbers)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      type(point_history_type), intent(in) :: history
+      type(law_points_type), intent(in) :: elastic           ! without them and without the law
+      type(law_points_type), intent(inout) :: points         ! the response
+      real(dp), intent(inout) :: numbers(:, :)               ! its history
+      type(law_points_type) :: stiffer
+      real(dp) :: change(4, 4), part, slope, strains(4, 4)
+      integer :: pass, search
+
+      strains = 0.0_dp
+      do pass = 1, most_enhancements
+         if (points%failed) return
+         change = self%changes_of_modes(mesh, element, points)
+         if (pass > most_straight .and. modulo(pass, 2) == 0) then
+            ! Newton's changes go to and fro where points yield and unload by turns.
+            stiffer = points
+            stiffer%tangent = (points%tangent + elastic%tangent)/2
+            change = self%changes_of_modes(mesh, element, stiffer)
+         end if
+         if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + &
+            maxval(abs(elastic%strain(:4, :))))) return
+         slope = work_on(change)
+         part = 1.0_dp
+         do search = 1, most_searches
+            associate (law => self%library(self%sections(mesh%element_section(element))% &
+               material)%law, first => self%history_start(element))
+               call respond_to(law, history%law_interval_type, history%before(first:first + &
+                  size(numbers) - 1), elastic, strains + part*change, points, numbers)
+            end associate
+            ! Beyond the least energy the stresses do work on the change.
+            if (points%failed .or. work_on(change) <= -0.5_dp*slope) exit
+            part = part*slope/(slope - work_on(change))
+         end do
+         strains = strains + part*change
+      end do
+      points%failed = .true.
+   contains
+      !> Work of the stresses on strains.
+      pure real(dp) function work_on(strain) result(work)
+         real(dp), intent(in) :: strain(4, 4)
+         integer :: g
+
+         work = 0.0_dp
+         do g = 1, 4
+            work = work + self%volume(self%first(element) + g - 1)*dot_product( &
+               points%stress(g, :), strain(:, g))
+         end do
+      end function work_on
+   end subroutine enhance
+
+   !> The response of a law to enhanced strains.
+   pure subroutine respond_to(law, interval, before, elastic, strains, points, numbers)
+      type(material_law_type), intent(in) :: law
+      type(law_interval_type), intent(in) :: interval
+      real(dp), intent(in) :: before(:)                      ! history at its start
+      type(law_points_type), intent(in) :: elastic           ! without them and without the law
+      real(dp), intent(in) :: strains(4, 4)                  ! (4, points)
+      type(law_points_type), intent(inout) :: points
+      real(dp), intent(inout) :: numbers(:, :)
+      integer :: g
+
+      points = elastic
+      do g = 1, 4
+         points%strain(g, :) = elastic%strain(g, :) + strains(:, g)
+         points%stress(g, :) = elastic%stress(g, :) + matmul(elastic%tangent(:, :, g), &
+            strains(:, g))
+      end do
+      numbers = reshape(before, shape(numbers))
+      call law%respond(law, points, interval, numbers)
+   end subroutine respond_to
+
+   !> Changes of the enhanced strains of an element that its stresses and their tangents ask for.
+   pure function changes_of_modes(self, mesh, element, points) result(strains)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                         !! which element
+      type(law_points_type), intent(in) :: points            !! its response
+      real(dp) :: strains(4, 4)                              !! (4, points)
+
+      associate (first => self%first(element), rule => self%rules(quad4_enhanced))
+         strains = released_strains(mesh%coordinates(:, mesh%element_nodes(:4, element)), &
+            matmul(node_position(quad4_enhanced), transpose(rule%shape(:4, :4))), &
+            mesh%element_plane(element) == axisymmetric, points%tangent(:, :, :4), &
+            self%volume(first:first + 3), transpose(points%stress(:4, :)))
+      end associate
+   end function changes_of_modes
 
    !> Whether an element responds by a law beyond thermoelasticity.
    pure logical function follows_law(self, mesh, element)
@@ -193,6 +305,125 @@ contains
 
       follows_law = has_law(self%library(self%sections(mesh%element_section(element))%material))
    end function follows_law
+
+   !> Largest growth of the equivalent plastic and creep strains of the bodies from a history to
+   !> another one.
+   pure function largest_growth(self, mesh, before, after) result(growth)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: before(:), after(:)            !! (numbers)
+      real(dp) :: growth(2, mesh%body_count)
+      integer :: e, i, k
+
+      growth = 0.0_dp
+      do e = 1, size(mesh%element_kind)
+         associate (law => self%library(self%sections(mesh%element_section(e))%material)%law)
+            do k = 1, 2
+               if (law%strains(k) == 0) cycle
+               do i = self%history_start(e) + law%strains(k) + 3, self%history_start(e + 1) - 1, &
+                  law%history_count
+                  growth(k, mesh%element_body(e)) = max(growth(k, mesh%element_body(e)), &
+                     after(i) - before(i))
+               end do
+            end do
+         end associate
+      end do
+   end function largest_growth
+
+   !> History at which the second stage of an increment starts: beyond that of the first one by
+   !> a factor less one. What strain alone changes starts where the first stage ended if strains
+   !> jumped in it.
+   pure function second_start(self, mesh, start, middle, factor, jumps) result(history)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: start(:), middle(:)            !! (numbers) of the first stage
+      real(dp), intent(in) :: factor
+      logical, intent(in) :: jumps
+      real(dp) :: history(size(start))
+      integer :: e, i, k
+
+      history = start + factor*(middle - start)
+      if (.not. jumps) return
+      do e = 1, size(mesh%element_kind)
+         associate (law => self%library(self%sections(mesh%element_section(e))%material)%law)
+            if (.not. allocated(law%of_time)) cycle
+            do i = self%history_start(e), self%history_start(e + 1) - 1
+               k = 1 + modulo(i - self%history_start(e), law%history_count)
+               if (.not. law%of_time(k)) history(i) = middle(i)
+            end do
+         end associate
+      end do
+   end function second_start
+
+   !> Largest difference of the changes of inelastic strain in the two stages of an increment, as an
+   !> equivalent strain: of all, and of creep alone.
+   pure function difference_of_stages(self, mesh, first, second) result(largest)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: first(:), second(:)            !! (numbers) changes in them
+      real(dp) :: largest(2)
+      real(dp) :: strains(most, 10, 2), creep(4), whole(4)
+      integer :: e, g
+
+      largest = 0.0_dp
+      do e = 1, size(mesh%element_kind)
+         if (self%history_start(e + 1) == self%history_start(e)) cycle
+         call self%take_strains(mesh, e, first, strains(:, :, 1))
+         call self%take_strains(mesh, e, second, strains(:, :, 2))
+         do g = 1, self%rules(mesh%element_kind(e))%count
+            creep = strains(g, 6:9, 2) - strains(g, 6:9, 1)
+            whole = creep + strains(g, 1:4, 2) - strains(g, 1:4, 1)
+            largest = max(largest, [equivalent(whole), equivalent(creep)])
+         end do
+      end do
+   contains
+      pure real(dp) function equivalent(strain)
+         real(dp), intent(in) :: strain(4)
+
+         equivalent = sqrt((2*sum(strain(:3)**2) + strain(4)**2)/3)
+      end function equivalent
+   end function difference_of_stages
+
+   !> Work of plasticity and creep at the points of an element so far, in columns; 0 of none.
+   pure function inelastic_work(self, mesh, element, remembered) result(work)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                         !! which element
+      real(dp), intent(in) :: remembered(:)                  !! (numbers) by all points
+      real(dp) :: work(most, 2)                              !! its points first [energy/volume]
+      integer :: g, i
+
+      work = 0.0_dp
+      associate (law => self%library(self%sections(mesh%element_section(element))%material)%law)
+         if (law%work == 0) return
+         do g = 1, self%rules(mesh%element_kind(element))%count
+            i = self%history_start(element) + (g - 1)*law%history_count + law%work - 1
+            work(g, :) = remembered(i:i + 1)
+         end do
+      end associate
+   end function inelastic_work
+
+   !> Plastic strains of the points of an element, then those of creep, in columns; 0 of none.
+   pure subroutine take_strains(self, mesh, element, remembered, strains)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element                         !! which element
+      real(dp), intent(in) :: remembered(:)                  !! (numbers) by all points
+      !> Its points first; xx, yy, zz, the angle xy and the equivalent one of each
+      real(dp), intent(out) :: strains(most, 10)
+      integer :: g, i, k
+
+      strains = 0.0_dp
+      associate (law => self%library(self%sections(mesh%element_section(element))%material)%law)
+         do k = 1, 2
+            if (law%strains(k) == 0) cycle
+            do g = 1, self%rules(mesh%element_kind(element))%count
+               i = self%history_start(element) + (g - 1)*law%history_count + law%strains(k) - 1
+               strains(g, 5*k - 4:5*k) = remembered(i:i + 4)
+            end do
+         end do
+      end associate
+   end subroutine take_strains
 
    !> Stress by thermoelasticity, and the strains without those that are enhanced.
    pure subroutine elastic_stress(self, mesh, element, displacement, temperature, strain, values)
@@ -232,13 +463,20 @@ contains
                   self%materials(self%at_point(element, g))%thermal_stress
             end do
          end if
-         if (kind == quad4_enhanced) call release(self, mesh, element, values)
-         if (.not. allocated(mesh%initial_stress)) return
-         do g = 1, n
-            values(g, :) = values(g, :) + mesh%initial_stress(:, element)
-         end do
       end associate
    end subroutine elastic_stress
+
+   pure subroutine add_initial_stress(mesh, element, n, values)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element, n              ! number of its points
+      real(dp), intent(inout) :: values(most, 4)
+      integer :: g
+
+      if (.not. allocated(mesh%initial_stress)) return
+      do g = 1, n
+         values(g, :) = values(g, :) + mesh%initial_stress(:, element)
+      end do
+   end subroutine add_initial_stress
 
    !> Adds the stresses of enhanced strains.
    pure subroutine release(self, mesh, element, values)
@@ -246,19 +484,18 @@ contains
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element
       real(dp), intent(inout) :: values(most, 4)
-      real(dp) :: e(4, 4, 4), points(2, 4), stress(4, 4)
+      type(law_points_type) :: points
+      real(dp) :: strains(4, 4)
       integer :: g
 
-      associate (first => self%first(element), rule => self%rules(quad4_enhanced))
-         points = matmul(node_position(quad4_enhanced), transpose(rule%shape(:4, :4)))
-         do g = 1, 4
-            e(:, :, g) = self%materials(self%at_point(element, g))%elasticity
-         end do
-         stress = transpose(values(:4, :))
-         call release_stresses(mesh%coordinates(:, mesh%element_nodes(:4, element)), points, &
-            mesh%element_plane(element) == axisymmetric, e, self%volume(first:first + 3), stress)
-         values(:4, :) = transpose(stress)
-      end associate
+      do g = 1, 4
+         points%tangent(:, :, g) = self%materials(self%at_point(element, g))%elasticity
+      end do
+      points%stress(:4, :) = values(:4, :)
+      strains = self%changes_of_modes(mesh, element, points)
+      do g = 1, 4
+         values(g, :) = values(g, :) + matmul(points%tangent(:, :, g), strains(:, g))
+      end do
    end subroutine release
 
    !> Two points of one material.

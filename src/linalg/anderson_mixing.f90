@@ -15,10 +15,11 @@ module anderson_mixing
 
    !> What the mixing remembers.
    type :: mixing_type
-      private
-      real(dp), allocatable :: last_x(:), last_f(:)        !! (n) of the last pass
-      real(dp), allocatable :: x_changes(:, :)             !! (n, changes) dX
-      real(dp), allocatable :: f_changes(:, :)             !! (n, changes) dF
+      !> Part of the largest singular value of dF below which a direction is dropped
+      real(dp) :: rank_tolerance = 1.0e-14_dp
+      real(dp), allocatable, private :: last_x(:), last_f(:) !! (n) of the last pass
+      real(dp), allocatable, private :: x_changes(:, :)             !! (n, changes) dX
+      real(dp), allocatable, private :: f_changes(:, :)             !! (n, changes) dF
    contains
       procedure :: step
    end type mixing_type
@@ -37,7 +38,7 @@ contains
       call remember(self, x, f)
       step = g*f
       if (size(self%f_changes, 2) == 0) return
-      weights = least_squares(self%f_changes, f)
+      weights = least_squares(self%f_changes, f, self%rank_tolerance)
       step = step - matmul(self%x_changes, weights) - g*matmul(self%f_changes, weights)
    end function step
 

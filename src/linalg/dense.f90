@@ -205,22 +205,25 @@ contains
 
    !> The shortest x for which |matrix x - rhs| is least; columns that depend on others to rounding
    !> do not count. 0 where matrix or right-hand side overflowed.
-   function least_squares(matrix, rhs) result(x)
+   function least_squares(matrix, rhs, tolerance) result(x)
       real(dp), intent(in) :: matrix(:, :)   !! (m, n), m and n > 0
       real(dp), intent(in) :: rhs(:)         !! (m)
+      real(dp), intent(in), optional :: tolerance !! of the rank, in place of that of rounding
       real(dp) :: x(size(matrix, 2))         !! (n)
-      real(dp) :: copy(size(matrix, 1), size(matrix, 2)), work(4*size(matrix, 2) + 64)
+      real(dp) :: least, copy(size(matrix, 1), size(matrix, 2)), work(4*size(matrix, 2) + 64)
       real(dp) :: solution(max(size(matrix, 1), size(matrix, 2)), 1)
       integer :: free(size(matrix, 2)), info, rank
 
       x = 0.0_dp
       if (.not. (all(ieee_is_finite(matrix)) .and. all(ieee_is_finite(rhs)))) return
+      least = lost
+      if (present(tolerance)) least = tolerance
       copy = matrix
       solution = 0.0_dp
       solution(:size(rhs), 1) = rhs
       free = 0
       call dgelsy(size(matrix, 1), size(matrix, 2), 1, copy, size(matrix, 1), solution, &
-         size(solution), free, lost, rank, work, size(work), info)
+         size(solution), free, least, rank, work, size(work), info)
       x = solution(:size(x), 1)
    end function least_squares
 

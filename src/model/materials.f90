@@ -6,6 +6,7 @@ module materials
    use kinds, only: dp
    use material_laws, only: material_law_type
    use named_items, only: named_type
+   use table_rows, only: find_row, row_below
    implicit none
    private
    public :: material_type, properties_type, section_type, property_type, orientation_type
@@ -228,27 +229,12 @@ contains
       real(dp) :: part
       integer :: k, row
 
-      associate (rows => property%temperature)
-         row = row_below(rows, temperature)
-         part = 0.0_dp
-         if (row > 0 .and. row < size(rows)) part = (temperature - rows(row))/ &
-            (rows(row + 1) - rows(row))
-         do k = 1, size(property%values, 1)
-            values(k) = property%values(k, max(row, 1))
-            if (part > 0.0_dp) values(k) = values(k) + part*(property%values(k, row + 1) - &
-               values(k))
-         end do
-      end associate
-   end subroutine interpolate
-
-   !> The last row not above a temperature, or 0.
-   pure integer function row_below(rows, temperature) result(row)
-      real(dp), intent(in) :: rows(:), temperature
-
-      do row = size(rows), 1, -1
-         if (rows(row) <= temperature) return
+      call find_row(property%temperature, temperature, row, part)
+      do k = 1, size(property%values, 1)
+         values(k) = property%values(k, row)
+         if (part > 0.0_dp) values(k) = values(k) + part*(property%values(k, row + 1) - values(k))
       end do
-   end function row_below
+   end subroutine interpolate
 
    !> Strain along axes 1, 2, 3 that temperatures make from the initial one on, and its slope. The
    !> coefficients of a table are secants from ZERO= on:

@@ -1,6 +1,7 @@
 !> Why a number has no uncertainty: all reasons, in the order in which one is told where several
 !> hold. Who computes a number says what holds of it; who prints it takes the words.
 module no_estimates
+   use materials, only: has_law
    use model, only: follows_temperatures, model_type, uncertainty_full, uncertainty_last, &
       uncertainty_no
    implicit none
@@ -34,13 +35,14 @@ contains
       reason = findloc(holds, .true., dim=1)
    end function first_reason
 
-   !> Why nothing in a run has an uncertainty. Where heat is stored, properties follow temperatures
-   !> or bolts are tightened, errors of the mesh build up along the path.
+   !> Why nothing in a run has an uncertainty. Where heat is stored, materials remember, properties
+   !> follow temperatures or bolts are tightened, errors of the mesh build up along the path.
    pure integer function reason_of_run(model) result(reason)
       type(model_type), intent(in) :: model
       logical :: follows_path, holds(reason_count)
 
-      follows_path = any(model%steps%is_transient) .or. follows_temperatures(model)
+      follows_path = any(model%steps%is_transient) .or. follows_temperatures(model) .or. &
+         any(has_law(model%materials))
       if (allocated(model%couplings)) follows_path = follows_path .or. &
          any(model%couplings%is_section())
       holds = .false.

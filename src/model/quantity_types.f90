@@ -10,9 +10,9 @@ module quantity_types
       of_points, of_elements, of_sections
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
    public :: needs_storage, needs_dilatation, needs_friction_heat, needs_stability, needs_branch, &
-      needs_sections
+      needs_sections, needs_plasticity, needs_creep, needs_laws, last_need
 
-   integer, parameter :: name_length = 24
+   integer, parameter :: name_length = 25
 
    ! Where a quantity has its numbers; each is a group of the result file, but for the nodes.
    integer, parameter :: of_history = 1     !! an increment: /history
@@ -38,6 +38,10 @@ module quantity_types
    integer, parameter :: needs_stability = 8     !! *STABILITY: /stability in place of /history
    integer, parameter :: needs_branch = 9        !! *CONTINUATION
    integer, parameter :: needs_sections = 10     !! mechanics and *PRE-TENSION SECTION
+   integer, parameter :: needs_plasticity = 11   !! mechanics and *PLASTIC
+   integer, parameter :: needs_creep = 12        !! mechanics and *CREEP
+   integer, parameter :: needs_laws = 13         !! one of both
+   integer, parameter :: last_need = needs_laws
 
    type :: quantity_type
       character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors

@@ -15,6 +15,7 @@ module steps
    public :: load_film_coefficient, load_film_sink, load_temperature, acts_on_nodes, loaded_side
    public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
    public :: solves_heat, solves_mechanics, adapts_increments
+   public :: cycle_type, until_strain, until_displacement, until_force
    public :: least_increment, increment_growth, planned_increments
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
@@ -79,13 +80,33 @@ module steps
       logical :: overlays_restarts = .false. !! whether only the last one of each step is kept
    end type step_controls_type
 
+   ! What *CYCLE waits for, by UNTIL=.
+   integer, parameter :: until_strain = 1         !! inelastic strains
+   integer, parameter :: until_displacement = 2
+   integer, parameter :: until_force = 3          !! forces of the contact points
+
+   !> *CYCLE, of a step with which a cycle ends.
+   type :: cycle_type
+      integer :: steps = 0                        !! steps of a cycle; 0: none ends with the step
+      integer :: last = 0                         !! last step of the last cycle
+      integer :: until = until_strain
+      real(dp) :: tolerance = 1.0e-6_dp           !! change that is none
+   end type cycle_type
+
    !> One *STEP. Loads are those that its own cards give; what earlier steps gave stays (OP=MOD).
    type, extends(step_controls_type) :: step_type
       integer :: analysis = analysis_static          !! one of the analysis_* constants
       logical :: is_transient = .false.              !! heat is stored: no STEADY STATE
       !> Part of the range of temperatures that an increment of a transient may err by.
       real(dp) :: local_error = 1.0e-3_dp
+      type(cycle_type) :: cycle
+      logical :: is_viscous = .false.                !! *VISCO: mechanics in real time
+      logical :: creeps = .false.                    !! whether materials creep in it
+      !> CETOL=, of the creep strains in an increment by the rates of its stages
+      real(dp) :: creep_tolerance = huge(1.0_dp)
       logical :: dilates = .false.                   !! DILATATION=YES
+      !> STRAIN LIMIT=, of the growth of plastic strains in an increment
+      real(dp) :: strain_limit = 0.01_dp
       !> *STABILITY at every n-th increment and the last; 0 never
       integer :: stability_frequency = 0
       real(dp) :: largest_change = huge(1.0_dp)      !! DELTMX=, of a temperature in an increment
@@ -138,7 +159,8 @@ contains
    elemental logical function adapts_increments(step)
       type(step_type), intent(in) :: step
 
-      adapts_increments = step%is_transient .and. .not. step%direct
+      adapts_increments = (step%is_transient .or. step%is_viscous .and. step%scheme%stages == 2) &
+         .and. .not. step%direct
    end function adapts_increments
 
    !> Whether the item of a kind of load is a node.

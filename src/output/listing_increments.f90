@@ -211,7 +211,7 @@ contains
       integer :: b, bodies, i
 
       if (.not. record%last_of_step) return
-      errors = pack(quantities, quantities%kind == of_bodies)
+      errors = pack(quantities, quantities%kind == of_bodies .and. len_trim(quantities%label) > 0)
       bodies = 0
       do i = 1, size(errors)
          bodies = max(bodies, size(part_values(errors(i), record)))

@@ -14,7 +14,8 @@ module model_words
    use text, only: append, counted, string_type, to_text
    implicit none
    private
-   public :: expansion_words, material_words, friction_words, friction_heat_words, overlap_words
+   public :: expansion_words, law_words, material_words
+   public :: friction_words, friction_heat_words, overlap_words
    public :: open_law_words, closed_law_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
    public :: has_many, first_alike, alike_words
@@ -80,6 +81,8 @@ contains
          select case (model%steps(step)%analysis)
          case (analysis_static)
             analysis = 'mechanics'
+            if (model%steps(step)%is_viscous) analysis = 'mechanics in real time, scheme '// &
+               trim(model%steps(step)%scheme%name)
          case (analysis_heat)
             analysis = 'heat'//storage(step)//', scheme '//trim(model%steps(step)%scheme%name)
          case default
@@ -196,6 +199,39 @@ contains
       end if
       if (words == '') words = 'no constants'
    end function material_words
+
+   !> Plasticity and creep of a material; empty without them. Creep is told as the strain that a
+   !> five-hundredth of the shear modulus makes in a time of 1, which shows wrong units.
+   pure function law_words(material) result(words)
+      type(material_type), intent(in) :: material
+      character(:), allocatable :: words
+      real(dp) :: slope, strain, stress, temperature
+
+      words = ''
+      associate (hardening => material%law%hardening, creep => material%law%creep)
+         if (hardening%yields()) then
+            associate (n => size(hardening%yield%stress))
+               words = 'yields at '//to_text(hardening%yield%stress(1))
+               if (n > 1) words = words//', last row '//to_text(hardening%yield%stress(n))// &
+                  ' at plastic strain '//to_text(hardening%yield%strain(n))
+               if (size(hardening%yield%temperature) > 1) words = words//', temperatures '// &
+                  from_to(hardening%yield%temperature([1, size(hardening%yield%temperature)]))
+               if (hardening%has_back_stress()) words = words//', back stress with C '// &
+                  to_text(hardening%back(1, 1))//' and gamma '//to_text(hardening%back(2, 1))
+            end associate
+         end if
+         if (creep%creeps()) then
+            if (words /= '') words = words//'; '
+            temperature = creep%temperature(1)
+            slope = 0.0_dp
+            stress = material%elasticity(4, 4)/500
+            call creep%find_strain(stress, temperature, 0.0_dp, [0.0_dp, 1.0_dp], strain, slope)
+            words = words//'creeps by '//to_text(strain)//' in a time of 1 under '//to_text(stress)
+            if (size(creep%temperature) > 1) words = words//' at temperature '// &
+               to_text(temperature)
+         end if
+      end associate
+   end function law_words
 
    !> What a table of expansion coefficients means: strains at its ends from the initial temperature
    !> of the material's first element on; empty without a table.

@@ -27,7 +27,7 @@ module results
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
-      of_passes, of_sections, quantity_type
+      of_passes, of_sections, quantity_type, last_need, needs_creep, needs_plasticity, needs_laws
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
@@ -142,7 +142,7 @@ contains
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(quantity_type), allocatable :: of_cuts(:), of_history_alone(:), of_stability(:)
-      logical :: has(0:needs_sections)
+      logical :: has(0:last_need)
       integer :: i, expected, n
 
       call start_hdf5(error)
@@ -347,7 +347,7 @@ contains
    pure function what_is_solved(model, has_contact) result(has)
       type(model_type), intent(in) :: model
       logical, intent(in) :: has_contact
-      logical :: has(0:needs_sections)
+      logical :: has(0:last_need)
 
       associate (analysis => model%steps%analysis)
          has(needs_nothing) = .true.
@@ -359,6 +359,9 @@ contains
          has(needs_stability) = any(model%steps%stability_frequency > 0)
          has(needs_branch) = any(model%steps%continuation%is_on)
          has(needs_sections) = has(needs_mechanics) .and. size(section_nodes(model%couplings)) > 0
+         has(needs_plasticity) = has(needs_mechanics) .and. any(model%materials%law%strains(1) > 0)
+         has(needs_creep) = has(needs_mechanics) .and. any(model%materials%law%strains(2) > 0)
+         has(needs_laws) = has(needs_plasticity) .or. has(needs_creep)
          has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
             model%interactions, model%contacts)
          has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &

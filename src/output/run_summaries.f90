@@ -5,8 +5,8 @@ module run_summaries
    use hdf5_writer, only: hdf5_writer_type
    use kinds, only: dp, long
    use model, only: model_type
-   use model_words, only: alike_words, expansion_words, first_alike, from_to, material_words, &
-      section_words, step_words
+   use model_words, only: alike_words, expansion_words, first_alike, from_to, law_words, &
+      material_words, section_words, step_words
    use run_sizes, only: run_seconds_type, run_size_type
    use text, only: or_blank, string_type, to_text
    implicit none
@@ -130,6 +130,8 @@ contains
       do i = 1, size(model%materials)
          call add(entries, in_both, 'material '//model%materials(i)%name, &
             material_words(model%materials(i)))
+         if (law_words(model%materials(i)) /= '') call add(entries, in_both, 'law of '// &
+            model%materials(i)%name, law_words(model%materials(i)))
          if (expansion_words(model, i) /= '') call add(entries, in_both, 'strain of '// &
             model%materials(i)%name, expansion_words(model, i))
       end do

@@ -35,6 +35,8 @@ module summary
    character(*), parameter :: step_head = '  step           time   normal force      heat rate'// &
       '  peak pressure  closed'
    character(field_width), parameter :: displacement_name = 'displacement up to'
+   character(*), parameter :: strain_names(2) = [character(field_width) :: &
+      'plastic strain up to', 'creep strain up to']
    character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
       'highest temperature', 'heat in', 'heat out']
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
@@ -53,6 +55,8 @@ module summary
       real(dp), allocatable :: heat(:)
       !> Likewise: the largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
+      character(:), allocatable :: cycle           !! what the last cycle did, or none
+      real(dp), allocatable :: inelastic_strain(:, :)   !! (2, bodies) as in the record, or none
       type(string_type), allocatable :: steps(:)   !! a line for each step and interface
       character(:), allocatable :: stability                       !! whether it lasts; or empty
       real(dp), allocatable :: load_factor   !! of a point of a branch
@@ -85,6 +89,8 @@ contains
       self%load = record%load
       self%contacts = record%contacts
       self%stability = stability_words(record)
+      if (allocated(record%cycle)) self%cycle = record%cycle
+      if (allocated(record%inelastic_strain)) self%inelastic_strain = record%inelastic_strain
       if (allocated(self%load_factor)) deallocate (self%load_factor)
       if (allocated(record%load_factor)) self%load_factor = record%load_factor
       if (record%is_fold) then
@@ -153,6 +159,9 @@ contains
          most_lines = 3 + told*(1 + size(estimated))
          if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
          if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
+         if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
+         most_lines = most_lines + count([any(model%materials%law%strains(1) > 0), &
+            any(model%materials%law%strains(2) > 0)])
          ! Some of a body's lines are wrapped.
          if (reason_of_run(model) == no_reason) most_lines = most_lines + &
             merge(1, bodies, has_many(bodies))*2*(1 + size(maxima))
@@ -195,6 +204,14 @@ contains
             end do
          end if
       end if
+      if (allocated(self%inelastic_strain)) then
+         do i = 1, size(strain_names)
+            if (maxval(self%inelastic_strain(i, :)) > 0.0_dp) call append(lines, summary_line( &
+               strain_names(i), maxval(self%inelastic_strain(i, :)), '', '', 'body '//to_text( &
+               maxloc(self%inelastic_strain(i, :), dim=1))))
+         end do
+      end if
+      if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines
 

@@ -2,8 +2,8 @@
 !> by those of the result file.
 module field_quantities
    use kinds, only: dp
-   use quantity_types, only: needs_heat, needs_mechanics, needs_stability, needs_temperature, &
-      of_bodies, of_elements, of_nodes, of_points, quantity_type
+   use quantity_types, only: needs_creep, needs_heat, needs_plasticity, needs_mechanics, &
+      needs_stability, needs_temperature, of_bodies, of_elements, of_nodes, of_points, quantity_type
    use records, only: field_record_type
    implicit none
    private
@@ -18,6 +18,16 @@ module field_quantities
       quantity_type('S33', of_nodes, 'stress', needs_mechanics), &
       quantity_type('S12', of_nodes, 'stress', needs_mechanics), &
       quantity_type('MISES', of_nodes, 'stress', needs_mechanics), &
+      quantity_type('PEEQ', of_nodes, '-', needs_plasticity), &
+      quantity_type('PE11', of_nodes, '-', needs_plasticity), &
+      quantity_type('PE22', of_nodes, '-', needs_plasticity), &
+      quantity_type('PE33', of_nodes, '-', needs_plasticity), &
+      quantity_type('PE12', of_nodes, '-', needs_plasticity), &
+      quantity_type('CEEQ', of_nodes, '-', needs_creep), &
+      quantity_type('CE11', of_nodes, '-', needs_creep), &
+      quantity_type('CE22', of_nodes, '-', needs_creep), &
+      quantity_type('CE33', of_nodes, '-', needs_creep), &
+      quantity_type('CE12', of_nodes, '-', needs_creep), &
       quantity_type('HFL1', of_nodes, 'power/length^2', needs_heat), &
       quantity_type('HFL2', of_nodes, 'power/length^2', needs_heat), &
       quantity_type('RF1', of_nodes, 'stress length^2', needs_mechanics), &
@@ -35,6 +45,14 @@ module field_quantities
       description='stress along the radius: from the axis, in plane models from the origin'), &
       quantity_type('hoop_stress', of_points, 'stress', needs_mechanics, &
       description='stress around the axis, in plane models around the origin'), &
+      quantity_type('plastic_strain', of_points, '-', needs_plasticity, values=4, &
+      description='plastic strain, xy the angle', components='xx yy zz xy'), &
+      quantity_type('equivalent_plastic_strain', of_points, '-', needs_plasticity, &
+      description='equivalent plastic strain so far'), &
+      quantity_type('creep_strain', of_points, '-', needs_creep, values=4, &
+      description='creep strain, xy the angle', components='xx yy zz xy'), &
+      quantity_type('equivalent_creep_strain', of_points, '-', needs_creep, &
+      description='equivalent creep strain so far'), &
       quantity_type('temperature', of_points, 'temperature', needs_temperature, head='temp.', &
       is_traded=.true., description='temperature'), &
       quantity_type('heat_flux', of_points, 'power/length^2', needs_heat, values=3, &
@@ -82,7 +100,7 @@ contains
       case ('NT', 'temperature')
          if (allocated(fields%temperature)) values = fields%temperature(point_node)
       case ('S11', 'S22', 'S33', 'S12')
-         values = rows(fields%stress, [findloc(['11', '22', '33', '12'], name(2:3), dim=1)])
+         values = rows(fields%stress, [place_in_tensor(name(2:3))])
       case ('stress')
          values = rows(fields%stress, [1, 2, 3, 4])
       case ('MISES', 'von_mises')
@@ -96,6 +114,18 @@ contains
          values = rows(fields%stress, [3])
          if (present(radial) .and. allocated(fields%stress)) values = fields%stress(1, :) + &
             fields%stress(2, :) - along(fields%stress, radial)
+      case ('PE11', 'PE22', 'PE33', 'PE12')
+         values = rows(fields%inelastic_strain, [place_in_tensor(name(3:4))])
+      case ('PEEQ', 'equivalent_plastic_strain')
+         values = rows(fields%inelastic_strain, [5])
+      case ('plastic_strain')
+         values = rows(fields%inelastic_strain, [1, 2, 3, 4])
+      case ('CE11', 'CE22', 'CE33', 'CE12')
+         values = rows(fields%inelastic_strain, [5 + place_in_tensor(name(3:4))])
+      case ('CEEQ', 'equivalent_creep_strain')
+         values = rows(fields%inelastic_strain, [10])
+      case ('creep_strain')
+         values = rows(fields%inelastic_strain, [6, 7, 8, 9])
       case ('HFL1', 'HFL2')
          values = rows(fields%heat_flux, [index('12', name(4:4))])
       case ('heat_flux')
@@ -107,6 +137,13 @@ contains
       case default   ! not known: none
       end select
    end function point_values
+
+   !> Row of a component such as 12.
+   pure integer function place_in_tensor(component)
+      character(2), intent(in) :: component
+
+      place_in_tensor = findloc(['11', '22', '33', '12'], component, dim=1)
+   end function place_in_tensor
 
    !> Rows of a field one beside the other, row 0 being zeros; of some indexes, or of all.
    pure function rows(field, components, indexes) result(values)

@@ -2,9 +2,10 @@
 module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
-   use quantity_types, only: needs_branch, needs_coupling, needs_dilatation, needs_friction_heat, &
-      needs_heat, needs_mechanics, needs_sections, needs_stability, needs_storage, of_bodies, &
-      of_elements, of_history, of_passes, of_sections, quantity_type
+   use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
+      needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_plasticity, &
+      needs_sections, needs_stability, needs_storage, of_bodies, of_elements, of_history, &
+      of_passes, of_sections, quantity_type
    use field_recovery, only: error_record_type
    use records, only: increment_record_type, stability_record_type
    use solution_report, only: iteration_record_type
@@ -53,6 +54,16 @@ module increment_quantities
       description='real part of the eigenvalue of U'' that is largest in modulus'), &
       quantity_type('coupling_gain_max', of_history, '-', needs_coupling, &
       label='largest real eigenvalue', description='largest real eigenvalue of U'''), &
+      quantity_type('ALLSE', of_history, 'stress length^3', needs_laws, &
+      description='elastic energy that is stored'), &
+      quantity_type('ALLPD', of_history, 'stress length^3', needs_laws, &
+      description='energy that plasticity dissipated so far'), &
+      quantity_type('ALLCD', of_history, 'stress length^3', needs_laws, &
+      description='energy that creep dissipated so far'), &
+      quantity_type('ALLFD', of_history, 'stress length^3', needs_laws, &
+      description='energy that friction dissipated so far'), &
+      quantity_type('ALLWK', of_history, 'stress length^3', needs_laws, &
+      description='work of loads and supports so far'), &
       quantity_type('unstable_modes', of_history, '-', needs_stability, &
       description='small motions of the state that grow'), &
       quantity_type('certain', of_history, '-', needs_stability, is_integer=.true., &
@@ -74,6 +85,10 @@ module increment_quantities
       description='estimated error of the stress by the mesh, relative; one column per body'), &
       quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
       description='estimated error of the heat flux by the mesh, relative; one column per body'), &
+      quantity_type('largest_plastic_strain', of_bodies, '-', needs_plasticity, &
+      description='largest equivalent plastic strain at a point; one column per body'), &
+      quantity_type('largest_creep_strain', of_bodies, '-', needs_creep, &
+      description='largest equivalent creep strain at a point; one column per body'), &
       quantity_type('increment', of_passes, '-', head='increment', width=12, is_integer=.true., &
       description='increment of the iteration'), &
       quantity_type('iteration', of_passes, '-', head='iteration', width=11, is_integer=.true., &
@@ -120,6 +135,10 @@ contains
          if (passes > 0) value = record%iterations(passes)%residual
       case ('residual_floor')
          value = record%residual_floor
+      case ('ALLSE', 'ALLPD', 'ALLCD', 'ALLFD', 'ALLWK')
+         value = ieee_value(value, ieee_quiet_nan)
+         if (allocated(record%energies)) value = record%energies(findloc(['SE', 'PD', 'CD', 'FD', &
+            'WK'], name(4:5), dim=1))
       case ('heat_in')
          value = record%heat_in
       case ('heat_out')
@@ -226,6 +245,10 @@ contains
       if (quantity%name == 'stress_error') error = record%stress_error
       if (quantity%name == 'heat_flux_error') error = record%heat_flux_error
       allocate (values(0))
+      if (allocated(record%inelastic_strain)) then
+         if (quantity%name == 'largest_plastic_strain') values = record%inelastic_strain(1, :)
+         if (quantity%name == 'largest_creep_strain') values = record%inelastic_strain(2, :)
+      end if
       if (quantity%kind == of_bodies .and. allocated(error%body)) values = error%body
       if (quantity%kind == of_elements .and. allocated(error%element)) values = error%element
       if (quantity%kind == of_sections .and. allocated(record%pre_tension)) values = &

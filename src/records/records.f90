@@ -89,6 +89,9 @@ module records
       real(dp), allocatable :: reaction_heat(:)
       !> (nodes) the same with loads and films, without what crosses the contacts [power]
       real(dp), allocatable :: external_heat(:)
+      !> (10, points) plastic strain xx, yy, zz, the angle xy and the equivalent one, then those of
+      !> creep; unallocated without laws and where nothing needs it
+      real(dp), allocatable :: inelastic_strain(:, :)
       ! Of the fastest small motion, where stability is analysed.
       real(dp), allocatable :: mode_temperature(:)      !! (nodes) the largest 1
       real(dp), allocatable :: mode_displacement(:, :)  !! (2, nodes) [length/temperature]
@@ -125,6 +128,16 @@ module records
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       !> Of a transient: error in time over the range of temperatures, and largest change of one.
       real(dp) :: local_error = 0.0_dp, largest_change = 0.0_dp
+      !> Of two stages: error of inelastic strains over the largest elastic one, and largest
+      !> difference of creep strains by their rates
+      real(dp) :: strain_error = 0.0_dp, creep_difference = 0.0_dp
+      real(dp) :: strain_growth(2) = 0.0_dp  !! largest of equivalent plastic and creep strain [-]
+      character(:), allocatable :: cycle     !! what a cycle did that it ends; unallocated for none
+      !> Stored, dissipated by plasticity, by creep, by friction, work of loads; unallocated without
+      !> laws, and where mechanics is not solved [energy]
+      real(dp), allocatable :: energies(:)
+      !> (2, bodies) largest equivalent plastic and creep strain; unallocated without laws
+      real(dp), allocatable :: inelastic_strain(:, :)
       logical :: makes_range = .false.       !! whether the range is mostly what it makes itself
       real(dp) :: useful_increment = 0.0_dp  !! shorter ones overshoot beside a jump [time]
       real(dp) :: heat_stored = 0.0_dp       !! by heat capacities; NaN in a steady step [power]

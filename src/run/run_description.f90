@@ -72,6 +72,10 @@ contains
       run%reasons = ''
       call name('elasticity', has_mechanics, steps_that(solves_mechanics(model%steps%analysis)), &
          'no step but *HEAT TRANSFER')
+      if (any(model%materials%law%strains(1) > 0)) call name('plasticity', has_mechanics, &
+         '*PLASTIC', 'no step but *HEAT TRANSFER')
+      if (any(model%materials%law%strains(2) > 0)) call name('creep', any(model%steps%creeps), &
+         '*CREEP in real time', 'no step in real time')
       call name('heat', has_heat, steps_that(solves_heat(model%steps%analysis)), &
          'no step solves temperatures')
       call name('contact', has_contact, '*CONTACT PAIR', 'no *CONTACT PAIR')

@@ -76,10 +76,8 @@ contains
       if (data%equation%duration > 0.0_dp) then
          rates%stored = next%stored
          record%heat_stored = sum(next%stored)
-         if (model%steps(record%step)%dilates) then
-            record%heat_dilatation = next%dilatation
-            record%heat_stored = record%heat_stored - next%dilatation
-         end if
+         if (model%steps(record%step)%dilates) record%heat_dilatation = next%dilatation
+         record%heat_stored = record%heat_stored - next%dilatation
       end if
       if (allocated(data%friction%heat)) then
          rates%friction_heat = data%friction%entering()

@@ -42,6 +42,7 @@ module discretisation_errors
    contains
       procedure :: prepare
       procedure :: recover_stress
+      procedure :: recover_strains
       procedure :: recover_heat_flux
    end type recovery_type
 
@@ -175,6 +176,28 @@ contains
          end associate
       end do
    end subroutine follow_laws
+
+   !> Inelastic strains, averaged at the points, of what the integration points remember.
+   pure subroutine recover_strains(self, model, remembered, strains)
+      class(recovery_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: remembered(:)                !! by all points
+      real(dp), allocatable, intent(out) :: strains(:, :)  !! (10, points) as in the record
+      real(dp) :: samples(10, self%samples%first(size(self%samples%first)) - 1), there(most, 10)
+      integer :: e, n
+
+      do e = 1, size(model%mesh%element_kind)
+         call self%integration%take_strains(model%mesh, e, remembered, there)
+         associate (kind => model%mesh%element_kind(e), first => self%samples%first(e))
+            n = recovery_count(kind)
+            samples(:, first:first + n - 1) = transpose(matmul(self%fits(:n, :point_count(kind), &
+               kind), there(:point_count(kind), :)))
+         end associate
+      end do
+      strains = average_samples(model%mesh, self%points, samples)
+      ! What is extrapolated to a node behind the plastic zone may be below 0.
+      strains([5, 10], :) = max(strains([5, 10], :), 0.0_dp)
+   end subroutine recover_strains
 
    !> Stress by the law of a material at the points at which errors are integrated.
    pure subroutine take_fit(self, mesh, e, samples, values)

@@ -23,7 +23,7 @@ module heat_storage
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: begin_first_stage, begin_second_stage, begin_storage, measure_changes
+   public :: begin_first_stage, begin_second_stage, begin_storage, measure_changes, measure_strains
 
    real(dp), parameter :: own = 2.0_dp   !! growth of the range that an increment makes itself
    !> Part of the largest temperature below which a range is that of rounding.
@@ -31,7 +31,7 @@ module heat_storage
 
 contains
 
-   !> The first stage of an increment that stores heat, and the state that it finds.
+   !> The first stage of an increment in real time, and the state that it finds.
    subroutine begin_first_stage(run, model, stage, start)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
@@ -41,17 +41,22 @@ contains
       associate (step => model%steps(run%control%step))
          stage%size = run%control%size_to(stage%clock)
          stage%duration = stage%size
-         stage%stores_heat = .true.
-         stage%dilates = step%dilates
-         if (run%control%increments_of_step == 0) call begin_storage(run, model, start)
-         if (run%corrections%corrects) stage%content = run%corrections%true_contents(model, &
-            start%temperature)
-         stage%jump = start%temperature - run%state%temperature
-         stage%temperature = start%temperature
-         stage%displacement = start%displacement
          stage%is_last = step%scheme%stages /= 2
+         stage%passing%real_part = merge(merge(1.0_dp, stage_part, stage%is_last), 0.0_dp, &
+            step%creeps)
+         if (step%is_transient) then
+            stage%stores_heat = .true.
+            stage%dilates = step%dilates
+            if (run%control%increments_of_step == 0) call begin_storage(run, model, start)
+            if (run%corrections%corrects) stage%content = run%corrections%true_contents(model, &
+               start%temperature)
+            stage%jump = start%temperature - run%state%temperature
+            stage%temperature = start%temperature
+            stage%displacement = start%displacement
+         end if
       end associate
       if (stage%is_last) return
+      stage%passing%is_last = .false.
       stage%duration = stage_part*stage%size
       stage%size = stage%duration
       stage%clock = run%control%instant_at(model, run%control%step_time + stage%size)
@@ -67,12 +72,16 @@ contains
       type(stage_type), intent(inout) :: stage
       real(dp), parameter :: weight = 1/stage_part - 1
 
-      stage%temperature = start%temperature + weight*(middle%temperature - start%temperature)
-      stage%displacement = start%displacement + weight*(middle%displacement - start%displacement)
-      if (allocated(stage%history)) stage%history = stage%history + weight*(middle%history - &
-         stage%history)
-      if (run%corrections%corrects) stage%content = stage%content + weight* &
-         (run%corrections%true_contents(model, middle%temperature) - stage%content)
+      if (allocated(stage%history)) stage%history = run%corrections%points%second_start( &
+         model%mesh, start%history, middle%history, weight, run%control%increments_of_step == 0)
+      stage%passing%is_last = .true.
+      if (stage%stores_heat) then
+         stage%temperature = start%temperature + weight*(middle%temperature - start%temperature)
+         stage%displacement = start%displacement + weight*(middle%displacement - &
+            start%displacement)
+         if (run%corrections%corrects) stage%content = stage%content + weight* &
+            (run%corrections%true_contents(model, middle%temperature) - stage%content)
+      end if
       if (allocated(run%bodies%points%heated)) stage%slip_before = slips_before(run%bodies, &
          middle%contact)
       stage%size = stage%of_increment%step_time - stage%clock%step_time
@@ -121,6 +130,24 @@ contains
       end associate
       state%extremes = extremes_of(model, state%temperature)
    end subroutine begin_storage
+
+   !> Measures an increment of two stages: error of its inelastic strains and difference of their
+   !> rates. Strains that jump with the loads have no rate.
+   subroutine measure_strains(run, model, stage, middle, next, record)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(stage_type), intent(in) :: stage                  !! the second one
+      type(solution_state_type), intent(in) :: middle        !! state at its start
+      type(solution_state_type), intent(in) :: next          !! and at its end
+      type(increment_record_type), intent(inout) :: record
+      real(dp) :: largest(2)
+
+      largest = run%corrections%points%difference_of_stages(model%mesh, middle%history - &
+         run%state%history, next%history - stage%history)
+      if (run%control%increments_of_step == 0) largest(1) = largest(2)
+      record%strain_error = largest(1)/max(run%corrections%elastic_strain, tiny(largest))
+      record%creep_difference = largest(2)/stage_part
+   end subroutine measure_strains
 
    !> Measures an increment: error and largest change of its temperatures.
    subroutine measure_changes(run, model, start, stored, next, record)

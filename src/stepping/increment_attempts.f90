@@ -6,9 +6,10 @@ module increment_attempts
    use constraint_checks, only: check_prescribed
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
-   use errors, only: error_type, set_error, status_no_convergence
+   use energies, only: add_friction_work, measure_energies
+   use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
-   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes
+   use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, measure_strains
    use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, &
       warn_of_tables
    use increment_data, only: stage_type, trial_type
@@ -22,6 +23,7 @@ module increment_attempts
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
+   use text, only: percent
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
@@ -58,8 +60,13 @@ contains
          stage%of_increment = clock
          stage%size = clock%step_time - run%control%step_time
          stage%duration = stage%size
+         stage%strains = solves_mechanics(step%analysis)
+         stage%begins_step = run%control%increments_of_step == 0
+         call return_to_elasticity(run, model, stage%begins_step, error)
+         if (allocated(error)) return
+         stage%passing%instants = run%control%step_start + [run%control%step_time, clock%step_time]
          if (allocated(run%state%history)) stage%history = run%state%history
-         if (step%is_transient) then
+         if (step%is_transient .or. step%is_viscous) then
             call begin_first_stage(run, model, stage, attempt%before)
             start = attempt%before
          end if
@@ -70,7 +77,12 @@ contains
             call begin_second_stage(run, model, start, attempt%before, stage)
             call solve_stage(run, model, attempt, error)
             call add_attempts(first, attempt%record)
+            if (allocated(stage%history) .and. .not. allocated(error)) call measure_strains(run, &
+               model, stage, attempt%before, attempt%next, attempt%record)
          end if
+         if (.not. allocated(error)) call check_strains(run, model, attempt, error)
+         if (run%corrections%has_laws .and. stage%strains .and. .not. allocated(error)) call &
+            measure_energies(run, model, attempt%next, attempt%record)
          if (run%branch%is_followed .and. .not. allocated(error)) then
             if (any(differ(attempt%next%omega, run%branch%point%omega))) call set_error(error, &
                status_no_convergence, 'the increment leads to another branch')
@@ -82,6 +94,45 @@ contains
             run%control%size_to(clock), attempt%record)
       end associate
    end subroutine attempt_increment
+
+   !> Forms the operators without the tangents of laws where loads may turn round, as a step begins,
+   !> and behind an attempt that failed: bodies that unload are far stiffer than their tangents.
+   !> Errors: as reduce.
+   subroutine return_to_elasticity(run, model, begins_step, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: begins_step
+      type(error_type), allocatable, intent(out) :: error
+      real(dp), allocatable :: none(:)
+
+      if (.not. allocated(run%bodies%tangent)) return
+      if (.not. (begins_step .or. run%control%cut_backs > 0)) return
+      call run%bodies%move_operators(model, run%bodies%operators_at, none)
+      call run%reduce(model, error)
+   end subroutine return_to_elasticity
+
+   !> Whether plastic strains grow by no more than the step allows an increment; where increments
+   !> are fixed they may.
+   subroutine check_strains(run, model, attempt, error)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(attempt_type), intent(inout) :: attempt
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: words
+
+      associate (step => model%steps(run%control%step), growth => attempt%record%strain_growth)
+         growth = run%corrections%largest_growth(model, attempt%next, run%state)
+         if (growth(1) <= step%strain_limit) return
+         words = 'plastic strains grow by '//percent(growth(1))
+         if (step%direct) then
+            call attempt%record%warn(words//' in an increment, which DIRECT does not '// &
+               'allow to be cut back')
+         else
+            call set_error(error, status_no_convergence, words//', more than the '// &
+               percent(step%strain_limit)//' of an increment')
+         end if
+      end associate
+   end subroutine check_strains
 
    !> Solves a stage of an increment, mostly the only one; the last one is recorded.
    subroutine solve_stage(run, model, attempt, error)
@@ -108,10 +159,15 @@ contains
          next%force_load = run%loads%nodal_forces()
          call solve_corrected(run, model, attempt, error)
          if (allocated(error)) return
+         if (run%corrections%has_laws .and. solves_mechanics(step%analysis)) call &
+            add_friction_work(run, next)
          if (solves_mechanics(step%analysis)) call warn_of_choices(run, model, &
             attempt%workspace%contact, next, attempt%undecided, record)
          ! Heat that strains take up, T0 beta:eps' over all bodies. Loads that act at once strain
          ! bodies within the first stage.
+         next%dilatation = 0.0_dp
+         if (run%corrections%heats .and. step%is_transient) next%dilatation = &
+            -sum(run%corrections%inelastic_heat(model))/attempt%stage%duration
          if (step%dilates) next%dilatation = sum(bodies%dilatation%of_strains( &
             bodies%thermal_load, next%displacement - attempt%before%displacement))/ &
             attempt%stage%size
@@ -187,6 +243,9 @@ contains
          if (solves_mechanics(model%steps(run%control%step)%analysis)) call bodies%reduce(model, &
             run%heat_reductions(run%in_use)%node_rank, error)
       end associate
+      if (.not. (allocated(error) .and. run%corrections%has_laws)) return
+      if (error%status == status_internal) return
+      call set_error(error, status_no_convergence, 'bodies yield without resistance')
    end subroutine renew_operators
 
    !> Begins the trial of a stage, with the reduction of heat that its equation asks for.

@@ -223,7 +223,8 @@ contains
       type(step_type), intent(in) :: step
       type(increment_record_type), intent(in) :: record
 
-      excess = max(record%local_error/step%local_error, (record%largest_change/ &
+      excess = max(record%local_error/step%local_error, record%strain_error/step%local_error, &
+         record%creep_difference/step%creep_tolerance, (record%largest_change/ &
          step%largest_change)**2)
    end function excess
 
@@ -238,9 +239,16 @@ contains
 
       associate (step => model%steps(self%step))
          words = 'its temperatures err by '//percent(record%local_error)//' of their range'
-         if (record%local_error <= allowance*step%local_error) words = &
-            'a temperature changes by '//to_text(record%largest_change)//', more than DELTMX='// &
-            to_text(step%largest_change)
+         if (record%strain_error > allowance*step%local_error) then
+            words = 'its inelastic strains err by '//percent(record%strain_error)// &
+               ' of the elastic ones'
+         else if (record%creep_difference/step%creep_tolerance > allowance) then
+            words = 'its creep strains differ by '//to_text(record%creep_difference)// &
+               ', more than CETOL='//to_text(step%creep_tolerance)
+         else if (record%local_error <= allowance*step%local_error) then
+            words = 'a temperature changes by '//to_text(record%largest_change)// &
+               ', more than DELTMX='//to_text(step%largest_change)
+         end if
          call halve(self, step, increment_size*sqrt(aim/excess(step, record)), &
             self%useful_size(step, record))
       end associate

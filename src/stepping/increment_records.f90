@@ -80,6 +80,12 @@ contains
             if (recovers) call recovery%recover_stress(model, record%fields%displacement, &
                next%stress_temperature - model%initial_temperature, next%history, &
                record%fields%stress, record%stress_error)
+            if (allocated(next%history)) then
+               record%inelastic_strain = recovery%integration%largest_growth(model%mesh, &
+                  0*next%history, next%history)
+               if (recovers) call recovery%recover_strains(model, next%history, &
+                  record%fields%inelastic_strain)
+            end if
          end if
          ! The last places of the displacements change omega by more than the tolerance.
          if (allocated(record%iterations) .and. record%residual_floor > &

@@ -2,6 +2,7 @@
 module increments
    use balances, only: sound_imbalance
    use branch_steps, only: accept_point, find_point, shorten_step
+   use cycles, only: close_cycle
    use due_output, only: is_nth
    use errors, only: error_type, set_error, status_no_convergence
    use increment_attempts, only: attempt_increment, attempt_type, begin_record
@@ -12,7 +13,7 @@ module increments
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: adapts_increments, solves_heat
-   use text, only: append, counted, to_text
+   use text, only: append, counted, percent, to_text
    use touch_instants, only: touch_search_type
    implicit none
    private
@@ -84,6 +85,7 @@ contains
       if (is_nth(model%steps(record%step)%stability_frequency, record)) run%solved = &
          attempt%workspace%of_motions()
       call run%control%accept(model, clock, record)
+      call close_cycle(run, model, record)
       if (.not. model%steps(run%control%step)%continuation%is_on) return
       call accept_point(run%branch, record%load_factor)
       run%control%branch_ended = run%branch%is_last
@@ -119,6 +121,7 @@ contains
          end if
          if (run%branch%points == 0) error%message = error%message//'; '// &
             run%control%why_not_again(model, increment_size)
+         error%message = error%message//words_of_collapse(run, model)
          if (run%branch%points == 0 .and. allocated(run%runaway) .and. &
             record%time < run%runaway_time) error%message = error%message// &
             '; an increment to time '//to_text(run%runaway_time)//' ended in '//run%runaway
@@ -126,6 +129,25 @@ contains
       error%message = 'increment '//to_text(record%increment)//' (time '// &
          to_text(record%time)//'): '//error%message
    end subroutine try_again
+
+   !> What a run was carrying last before bodies that have yielded found no equilibrium; nothing for
+   !> others.
+   function words_of_collapse(run, model) result(words)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      character(:), allocatable :: words
+      real(dp) :: growth(2)
+
+      words = ''
+      if (.not. allocated(run%state%history)) return
+      growth = run%corrections%largest_growth(model, run%state)
+      if (growth(1) <= 0.0_dp) return
+      associate (control => run%control)
+         words = '; collapse: the last load that was carried is that of time '// &
+            to_text(control%step_start + control%step_time)//', '//percent(control%step_time/ &
+            model%steps(control%step)%period, 4)//' of step '//to_text(control%step)
+      end associate
+   end function words_of_collapse
 
    !> Whether an attempt that was solved is the increment: in a transient whose increments are free
    !> it is not where it errs too much, or an interface first touches or parts within it; the next

@@ -7,8 +7,11 @@
 !> Heat is stored as enthalpy, H(T) = integral of rho c, so that the heat of an increment is a
 !> difference of contents. Heat that strains take up (DILATATION) is corrected in the same way.
 !>
-!> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where one does
-!> not reduce what is left over to 0.3 of the one before, the operators are to be formed again.
+!> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where
+!> properties alone vary and one does not reduce what is left over to 0.3 of the one before, the
+!> operators are to be formed again. Laws of materials need more passes, which still cost less than
+!> factors: operators are formed, with the tangents of the laws, after 25 passes, or three that each
+!> leave more than 0.7.
 module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
@@ -34,12 +37,17 @@ module operator_corrections
    real(dp), parameter :: rounding = 1.0e-13_dp
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
+   ! Of laws.
+   real(dp), parameter :: slow = 0.7_dp         !! part that is left over by a slow pass
+   real(dp), parameter :: grows = 2.0_dp        !! factor at which the mixing starts again
+   real(dp), parameter :: least_rank = 1.0e-8_dp   !! tolerance of the mixing
+   integer, parameter :: most_slow = 3, most_with_operators = 25   !! passes
 
    !> Fields at points, and the elements of the bodies whose materials vary.
    type :: corrections_type
       private
-      !> Integration points, and points of heat contents
-      type(material_points_type), allocatable :: points, contents
+      type(material_points_type), allocatable, public :: points   !! of integration
+      type(material_points_type), allocatable :: contents         !! of heat contents
       integer, allocatable :: elements(:)
       type(stage_type) :: stage                    !! that is corrected
       type(point_history_type) :: history          !! of it
@@ -52,11 +60,18 @@ module operator_corrections
       real(dp), allocatable :: scale(:)            !! (4 nodes) of the values
       type(mixing_type) :: mixing
       real(dp) :: left_over = 0.0_dp               !! of the last pass, in scales
+      integer :: slow_passes = 0                   !! since operators were formed
+      real(dp) :: largest_force = 0.0_dp           !! at a node of an element, of stresses [force]
+      logical, public :: has_laws = .false.        !! whether any material has
+      logical, public :: heats = .false.           !! whether inelastic work heats bodies
+      logical :: law_failed = .false.              !! whether one found no stress
       integer, public :: passes = 0                !! of the stage
       logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
       logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
       integer, public :: renewed_at = 0            !! pass after which they were last, in the stage
       logical, public :: corrects = .false.        !! whether the run has anything to correct
+      !> Largest equivalent stress over 3 G that laws found last, an elastic strain
+      real(dp), public :: elastic_strain = 0.0_dp
    contains
       procedure :: prepare
       procedure :: begin
@@ -66,6 +81,8 @@ module operator_corrections
       procedure :: heat_beyond
       procedure :: true_contents
       procedure :: keep
+      procedure :: largest_growth
+      procedure :: inelastic_heat
       procedure :: find_tangents
    end type corrections_type
 
@@ -90,6 +107,9 @@ contains
       end associate
       if (allocated(initial_force)) self%initial_force = initial_force
       self%corrects = any(follows) .or. any(model%steps%dilates)
+      self%has_laws = any(has_law(model%materials))
+      self%heats = any(model%materials%law%heat_fraction > 0.0_dp) .and. &
+         any(model%steps%is_transient)
       if (.not. any(follows)) return
       allocate (self%points, self%contents)
       self%points%has_inverses = .false.
@@ -115,9 +135,10 @@ contains
       self%passes = 0
       self%renewed_at = 0
       self%left_over = 0.0_dp
-      self%mixing = mixing_type()
+      call start_mixing(self)
       if (allocated(self%scale)) deallocate (self%scale)
       if (allocated(self%strain_before)) deallocate (self%strain_before)
+      self%history%law_interval_type = stage%passing
       self%history%duration = stage%duration
       if (allocated(stage%history)) then
          self%history%before = stage%history
@@ -125,14 +146,14 @@ contains
       end if
       if (stage%dilates) self%strain_before = bodies%dilatation%taken_up(bodies%thermal_load, &
          stage%displacement, stage%temperature)
-      goes_on = allocated(before%corrections)
+      goes_on = allocated(before%corrections) .and. .not. foresees(self, before)
       if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
          bodies%has_operators_of(before%operators_at, before%tangent)
       if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
          before%temperature)
       if (.not. goes_on) then
          self%values = corrections_of(self, model, bodies, before%temperature, &
-            before%displacement)
+            foreseen(self, before))
       else
          self%values = before%corrections
          associate (n => size(before%temperature))
@@ -142,6 +163,27 @@ contains
             before%increment_size*(before%corrections - before%corrections_before)
       end if
    end subroutine begin
+
+   !> Whether laws go on from displacements that go on as they did, whatever the operators were.
+   !> Plastic flow stops where loads turn round: without a time it is not foreseen.
+   pure logical function foresees(self, before)
+      class(corrections_type), intent(in) :: self
+      type(solution_state_type), intent(in) :: before
+
+      foresees = self%has_laws .and. allocated(before%displacement_before) .and. .not. &
+         self%stage%begins_step .and. self%stage%passing%real_part > 0.0_dp
+   end function foresees
+
+   !> Displacements from which a stage begins.
+   pure function foreseen(self, before) result(displacement)
+      class(corrections_type), intent(in) :: self
+      type(solution_state_type), intent(in) :: before
+      real(dp) :: displacement(size(before%displacement))
+
+      displacement = before%displacement
+      if (foresees(self, before)) displacement = displacement + self%stage%size/ &
+         before%increment_size*(displacement - before%displacement_before)
+   end function foreseen
 
    !> Gives a stage its corrections: heat to its equation, forces to its state.
    subroutine give(self, equation, next)
@@ -178,21 +220,51 @@ contains
       last = self%left_over
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
+      if (self%law_failed) then
+         call set_error(error, status_no_convergence, 'a material finds no stress for its strain')
+         return
+      end if
       self%is_settled = self%left_over <= settled
-      self%asks_operators = .not. self%is_settled .and. self%passes > self%renewed_at + 1 .and. &
-         self%left_over > contracts*last .and. size(self%elements) > 0
-      ! Properties at other temperatures are no tangent, which a law has.
-      if (.not. any(has_law(model%materials))) self%asks_operators = self%asks_operators .and. &
-         self%renewed_at == 0
+      self%asks_operators = .not. self%is_settled .and. size(self%elements) > 0 .and. &
+         needs_operators(self, last)
       if (self%is_settled .or. self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
          call set_error(error, status_no_convergence, 'heat and stress of bodies do not follow '// &
-            'their temperatures within '//to_text(most_passes)//' corrections')
+            'their temperatures'//trim(merge(' and strains', '            ', self%has_laws))// &
+            ' within '//to_text(most_passes)//' corrections')
          return
       end if
       x = self%values/self%scale
       self%values = (x + self%mixing%step(x, left_over, spread(1.0_dp, 1, size(x))))*self%scale
    end subroutine correct
+
+   !> Whether operators are to be formed at a solution. Properties at other temperatures are no
+   !> tangent, which a law has: without one they are formed once.
+   logical function needs_operators(self, last)
+      type(corrections_type), intent(inout) :: self
+      real(dp), intent(in) :: last                           ! left over by the pass before
+
+      associate (passes => self%passes - self%renewed_at)
+         if (.not. self%has_laws) then
+            needs_operators = passes > 1 .and. self%renewed_at == 0 .and. &
+               self%left_over > contracts*last
+            return
+         end if
+         if (passes > 1 .and. self%left_over > slow*last) self%slow_passes = self%slow_passes + 1
+         if (passes > 1 .and. self%left_over > grows*last) self%mixing = &
+            mixing_type(rank_tolerance=least_rank)
+         needs_operators = passes > most_with_operators .or. self%slow_passes >= most_slow
+      end associate
+   end function needs_operators
+
+   !> Forgets the passes before.
+   subroutine start_mixing(self)
+      type(corrections_type), intent(inout) :: self
+
+      self%slow_passes = 0
+      self%mixing = mixing_type()
+      if (self%has_laws) self%mixing%rank_tolerance = least_rank
+   end subroutine start_mixing
 
    !> Goes on with operators that were formed at a solution.
    subroutine renew(self, model, bodies, before, at)
@@ -203,7 +275,7 @@ contains
       type(solution_state_type), intent(in) :: at            !! the solution
 
       self%renewed_at = self%passes
-      self%mixing = mixing_type()
+      call start_mixing(self)
       deallocate (self%scale)
       self%heat_before = self%heat_beyond(model, bodies, before%temperature)
       self%values = corrections_of(self, model, bodies, at%temperature, at%displacement)
@@ -218,13 +290,32 @@ contains
 
       next%corrections = self%values
       if (allocated(next%corrections_before)) deallocate (next%corrections_before)
-      if (self%renewed_at == 0 .and. allocated(before%corrections)) then
+      if (self%has_laws) then
+         next%displacement_before = before%displacement
+      else if (self%renewed_at == 0 .and. allocated(before%corrections)) then
          next%corrections_before = before%corrections
       end if
       if (allocated(bodies%operators_at)) next%operators_at = bodies%operators_at
       if (allocated(bodies%tangent)) next%tangent = bodies%tangent
-      if (allocated(self%history%after)) next%history = self%history%after
+      if (allocated(self%history%after) .and. self%stage%strains) next%history = self%history%after
    end subroutine keep
+
+   !> Largest equivalent plastic and creep strains of a state, or their growth since another one.
+   pure function largest_growth(self, model, state, before) result(growth)
+      class(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(in) :: state
+      type(solution_state_type), optional, intent(in) :: before
+      real(dp) :: growth(2)
+
+      growth = 0.0_dp
+      if (.not. allocated(state%history)) return
+      if (present(before)) then
+         growth = maxval(self%points%largest_growth(model%mesh, before%history, state%history), 2)
+      else
+         growth = maxval(self%points%largest_growth(model%mesh, 0*state%history, state%history), 2)
+      end if
+   end function largest_growth
 
    !> Corrections that temperatures and displacements at the end of a stage ask for.
    function corrections_of(self, model, bodies, temperature, displacement) result(values)
@@ -245,8 +336,36 @@ contains
          self%stage%temperature), 0.0_dp, self%follows)
       if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
          bodies%thermal_load, displacement, temperature) - self%strain_before
+      if (self%heats .and. self%stage%strains) values(:n) = values(:n) - self%inelastic_heat(model)
       values(:n) = values(:n)/self%stage%duration
    end function corrections_of
+
+   !> Heat that inelastic work makes in the stage, on the nodes.
+   pure function inelastic_heat(self, model) result(heat)
+      class(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp) :: heat(size(model%mesh%node_number))         !! (nodes) [energy]
+      real(dp) :: work(most, 2)
+      integer :: g, i
+
+      heat = 0.0_dp
+      do i = 1, size(self%elements)
+         associate (mesh => model%mesh, points => self%points, e => self%elements(i))
+            if (.not. points%follows_law(mesh, e)) cycle
+            work = points%inelastic_work(mesh, e, self%history%after) - points%inelastic_work( &
+               mesh, e, self%history%before)
+            associate (rule => points%rules(mesh%element_kind(e)), first => points%first(e), &
+               law => points%library(points%sections(mesh%element_section(e))%material)%law)
+               do g = 1, rule%count
+                  associate (nodes => mesh%element_nodes(:rule%nodes, e))
+                     heat(nodes) = heat(nodes) + law%heat_fraction*sum(work(g, :))* &
+                        points%volume(first + g - 1)*rule%shape(g, :rule%nodes)
+                  end associate
+               end do
+            end associate
+         end associate
+      end do
+   end function inelastic_heat
 
    !> Heat that K conducts beyond the bodies.
    function heat_beyond(self, model, bodies, temperature) result(heat)
@@ -290,6 +409,9 @@ contains
       forces = 0.0_dp
       if (allocated(self%initial_force)) forces = self%initial_force
       if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
+      self%law_failed = .false.
+      self%elastic_strain = 0.0_dp
+      self%largest_force = 0.0_dp
       call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       warming = temperature - model%initial_temperature
       u = reshape(displacement, shape(u))
@@ -298,7 +420,12 @@ contains
          associate (mesh => model%mesh, e => self%elements(i), nodes => model%mesh%element_nodes( &
             :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
             call self%points%respond(mesh, e, u, warming, self%history, points)
+            self%law_failed = self%law_failed .or. points%failed
+            if (self%points%follows_law(mesh, e)) self%elastic_strain = max(self%elastic_strain, &
+               maxval(equivalent(points%stress(:points%count, :)))/(3*self%points%materials( &
+               self%points%at_point(e, 1))%elasticity(4, 4)))
             of_nodes = self%points%nodal_forces(mesh, e, points%stress)
+            self%largest_force = max(self%largest_force, maxval(abs(of_nodes(:, :size(nodes)))))
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
          end associate
       end do
@@ -316,6 +443,15 @@ contains
          if (allocated(bodies%bar_load%value)) sums = sums + bodies%bar_load%multiply(warming)
       end function of_operators
    end function forces_beyond
+
+   !> Von Mises' equivalent stress of points.
+   pure function equivalent(stress)
+      real(dp), intent(in) :: stress(:, :)                   ! (points, 4) [stress]
+      real(dp) :: equivalent(size(stress, 1))
+
+      equivalent = sqrt(((stress(:, 1) - stress(:, 2))**2 + (stress(:, 2) - stress(:, 3))**2 + &
+         (stress(:, 3) - stress(:, 1))**2)/2 + 3*stress(:, 4)**2)
+   end function equivalent
 
    !> Tangents of the stress at a solution, where materials have laws.
    subroutine find_tangents(self, model, at, tangent)
@@ -339,7 +475,9 @@ contains
                model%initial_temperature, self%history, points)
             do g = 1, points%count
                associate (k => 16*(self%points%at_point(e, g) - 1))
-                  tangent(k + 1:k + 16) = [points%tangent(:, :, g)]
+                  ! The part that energy has: operators are symmetric.
+                  tangent(k + 1:k + 16) = [(points%tangent(:, :, g) + transpose( &
+                     points%tangent(:, :, g)))/2]
                end associate
             end do
          end associate
@@ -380,9 +518,14 @@ contains
          if (allocated(self%strain_before)) heat = max(heat, maxval(abs( &
             bodies%dilatation%of_strains(bodies%thermal_load, next%displacement - &
             self%stage%displacement)))/self%stage%duration)
-         force = max(maxval(abs(self%values(2*n + 1:))), least(2))
-         if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
-            maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
+         if (self%has_laws) then
+            ! Inelastic strains may be far larger than the elastic ones.
+            force = max(self%largest_force, least(2))
+         else
+            force = max(maxval(abs(self%values(2*n + 1:))), least(2))
+            if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
+               maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
+         end if
          scale(:2*n) = max(heat, tiny(heat))
          scale(2*n + 1:) = max(force, tiny(force))
       end associate

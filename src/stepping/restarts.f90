@@ -89,6 +89,7 @@ contains
       call simulation%control%exchange(table)
       call simulation%loads%exchange(table)
       call exchange_state(table, simulation%state)
+      call exchange_cycle(simulation, table)
       call words(table, 'undecided', simulation%undecided)
       call words(table, 'runaway', simulation%runaway)
       call reals(table, 'told', told)
@@ -96,5 +97,30 @@ contains
       simulation%runaway_time = told(2)
       if (allocated(simulation%known)) deallocate (simulation%known)
    end subroutine exchange_run
+
+   !> What the next cycle is compared with, and where its first step began: steps of cycles may have
+   !> been left out.
+   subroutine exchange_cycle(simulation, table)
+      type(simulation_type), intent(inout) :: simulation
+      type(state_table_type), intent(inout) :: table
+      real(dp), allocatable :: start(:), displacement(:), force(:), history(:)
+
+      if (allocated(simulation%cycle_before)) then
+         displacement = simulation%cycle_before%displacement
+         force = simulation%cycle_before%contact%force
+         if (allocated(simulation%cycle_before%history)) history = simulation%cycle_before%history
+      end if
+      start = [simulation%control%step_start]
+      call reals(table, 'step_start', start)
+      call reals(table, 'cycle_displacement', displacement)
+      call reals(table, 'cycle_force', force)
+      call reals(table, 'cycle_history', history)
+      simulation%control%step_start = start(1)
+      if (.not. (table%is_restoring() .and. allocated(displacement))) return
+      simulation%cycle_before = simulation%state
+      simulation%cycle_before%displacement = displacement
+      simulation%cycle_before%contact%force = force
+      if (allocated(history)) simulation%cycle_before%history = history
+   end subroutine exchange_cycle
 
 end module restarts

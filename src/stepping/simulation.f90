@@ -47,6 +47,7 @@ module simulation
       type(branch_type) :: branch                   !! of *CONTINUATION of the step
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
+      type(solution_state_type), allocatable :: cycle_before   !! at the end of the last cycle
       character(:), allocatable :: undecided        !! what was last warned of
       real(dp) :: pivot_told = 1.0_dp               !! smallest pivot that was warned of
       character(:), allocatable :: runaway          !! last thermal runaway of an attempt, in words

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from deck_runs import INPUT, PATIENCE, data_cards, run
 from physics import DECKS  # noqa: F401  puts tests/reference on the path
+from scipy.optimize import brentq
 
 import conduction
 import crack
@@ -34,6 +35,15 @@ def two_rods():
                   for name, key in (("gap", "gap"), ("heat_flux", "flux"),
                                     ("conductance", "conductance"), ("pressure", "pressure"))}
     return found
+
+
+def autofrettage():
+    """Hill's tube, incompressible but for its displacement; unloading is elastic."""
+    a, b, pressure, k, nu = 100.0, 200.0, 180.0, 480.0 / 3**0.5, 0.499
+    c = brentq(lambda r: k * (log(r / a) + (1 - (r / b) ** 2) / 2) - pressure, a, b)
+    hoop = [k - pressure - part * pressure * (b**2 + a**2) / (b**2 - a**2) for part in (0, 1, 0.5)]
+    return {("U1", "81", "1."): (1 - nu**2) * k * c**2 / (2.1e5 * b),
+            **{("S33", "1", when): s for when, s in zip(("1.", "2.", "3."), hoop, strict=True)}}
 
 
 def press_fit():

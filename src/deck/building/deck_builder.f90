@@ -4,7 +4,7 @@ module deck_builder
    use materials, only: of_expansion, of_specific_heat
    use mesh_bodies, only: find_bodies
    use cards, only: cards_type
-   use step_checks, only: check_continuations, check_storage
+   use step_checks, only: check_continuations, check_laws, check_storage
    use controls, only: method_names
    use deck_builder_verify, only: build_accuracy, build_verifications, check_heat_quantities
    use deck_builder_contact, only: build_contacts, build_ties
@@ -161,6 +161,7 @@ contains
       call check_amplitudes(deck)
       call check_starts(deck)
       if (deck%analyses_sound) call check_storage(deck)
+      if (deck%analyses_sound) call check_laws(deck)
       if (deck%analyses_sound) call check_continuations(deck)
       if (.not. deck%has_errors()) then
          call check_usage(deck)

@@ -4,6 +4,7 @@ module deck_builder_materials
    use card_parameters, only: choice, take_parameter
    use card_values, only: check_ascending, check_unneeded, read_row
    use cards, only: keyword_card_type
+   use deck_builder_inelastic, only: build_inelasticity, complete_law
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, has_stand_in
@@ -58,10 +59,20 @@ contains
                else if (size(card%data) > 0) then
                   call build_property(card, deck, deck%model%materials(n))
                end if
+            case ('PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION')
+               if (n == 0) then
+                  if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
+                     ' has no *MATERIAL before it')
+               else if (size(card%data) > 0 .or. card%name(:1) == 'I') then
+                  call build_inelasticity(card, deck, deck%model%materials(n))
+               end if
             case default
                cycle
             end select
          end associate
+      end do
+      do n = 1, size(deck%model%materials)
+         call complete_law(n, deck, deck%model%materials(n))
       end do
    end subroutine build_materials
 

@@ -12,8 +12,8 @@ module deck_builder_steps
    use deck_structure, only: cards_of
    use kinds, only: dp
    use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
-      increment_growth, least_increment, planned_increments, solves_heat, solves_mechanics, &
-      step_controls_type, step_type
+      cycle_type, increment_growth, least_increment, planned_increments, solves_heat, &
+      solves_mechanics, step_controls_type, step_type, until_displacement, until_force, until_strain
    use text, only: percent, to_text
    use time_points, only: time_points_type
    implicit none
@@ -59,11 +59,14 @@ contains
                deck%step_place(n) = card%place
                if (n > 1) before = deck%model%steps(n - 1)
                call begin_step(card, n > 1, before, deck, deck%model%steps(n))
-            case ('STATIC', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
+            case ('STATIC', 'VISCO', 'HEAT TRANSFER', 'COUPLED TEMPERATURE-DISPLACEMENT', &
                'UNCOUPLED TEMPERATURE-DISPLACEMENT')
                counts%analyses = counts%analyses + 1
                if (counts%analyses > 1) call deck%error(card%place, 'a second analysis in one step')
-               if (n > 0) call build_analysis(card, n, counts, deck, deck%model%steps(n))
+               if (n == 0) cycle
+               deck%model%steps(n)%scheme = controls%scheme
+               if (.not. has_scheme) deck%model%steps(n)%scheme = l_stable_scheme
+               call build_analysis(card, n, counts, deck, deck%model%steps(n))
             case ('END STEP')
                if (counts%analyses > 0) cycle
                deck%analyses_sound = .false.
@@ -78,6 +81,8 @@ contains
             case ('THERMAL SCHEME')
                has_scheme = .true.
                call build_thermal_scheme(card, deck, controls%scheme)
+            case ('CYCLE')
+               call build_cycle(card, n, deck)
             case ('CONTINUATION')
                if (n > 0) call build_continuation(card, deck, deck%model%steps(n)%continuation)
             case ('BOUNDARY', 'CLOAD', 'DLOAD', 'DSLOAD', 'CFLUX', 'DFLUX', 'DSFLUX', 'FILM', &
@@ -99,12 +104,41 @@ contains
          ! Transients have their own scheme until the deck names one.
          associate (step => deck%model%steps(n))
             step%step_controls_type = controls
-            if (step%is_transient .and. .not. has_scheme) step%scheme = l_stable_scheme
+            if ((step%is_transient .or. step%is_viscous) .and. .not. has_scheme) step%scheme = &
+               l_stable_scheme
             if (counts%is_uncoupled .and. .not. has_scheme) step%scheme = explicit_scheme
          end associate
       end do
       call warn_of_nlgeom(deck, deck%model%steps)
    end subroutine build_steps
+
+   !> Reads *CYCLE, whose steps stand behind it as often as it says: those that end a cycle have it.
+   subroutine build_cycle(card, n, deck)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: n                            ! last step of the first cycle
+      type(deck_type), intent(inout) :: deck
+      type(cycle_type) :: cycle
+      integer :: k, repeats
+
+      cycle%steps = 1
+      repeats = 1
+      call take_parameter(card, 'STEPS', deck, cycle%steps, '>=1')
+      call take_parameter(card, 'REPEAT', deck, repeats, '>=1')
+      call take_parameter(card, 'TOLERANCE', deck, cycle%tolerance, '>=0')
+      select case (choice(card, 'UNTIL', 'PE/U/CFN', deck, 'PE'))
+      case ('U')
+         cycle%until = until_displacement
+      case ('CFN')
+         cycle%until = until_force
+      case default
+         cycle%until = until_strain
+      end select
+      if (deck%has_errors()) return
+      cycle%last = n + repeats*cycle%steps
+      do k = n, cycle%last, cycle%steps
+         deck%model%steps(k)%cycle = cycle
+      end do
+   end subroutine build_cycle
 
    !> Reads a card of a step that asks for output; others are ignored.
    subroutine build_output(card, deck, counts, step)
@@ -203,11 +237,15 @@ contains
       deck%analysis_place(n) = card%place
       errors = deck%error_count()
       step%analysis = analysis_coupled
-      if (card%name == 'STATIC') step%analysis = analysis_static
+      step%is_viscous = card%name == 'VISCO'
+      if (card%name == 'STATIC' .or. step%is_viscous) step%analysis = analysis_static
       if (card%name == 'HEAT TRANSFER') step%analysis = analysis_heat
       step%is_transient = solves_heat(step%analysis) .and. card%lacks('STEADY STATE')
       creep = choice(card, 'CREEP', 'NONE', deck, 'NONE')
+      step%creeps = (step%is_transient .or. step%is_viscous) .and. solves_mechanics( &
+         step%analysis) .and. card%lacks('CREEP')
       step%direct = is_on(card, 'DIRECT', deck)
+      call take_parameter(card, 'STRAIN LIMIT', deck, step%strain_limit, '>0')
       if (size(card%data) > 0) then
          call build_increments(card%data(1), deck, step)
       else
@@ -221,10 +259,11 @@ contains
       else if (.not. adapts_increments(step)) then
          call fit_increments(card, n, deck, step)
       end if
-      if (counts%has_amplitude .or. .not. step%is_transient) return
+      if (counts%has_amplitude .or. .not. (step%is_transient .or. step%is_viscous)) return
       step%ramped = .false.
-      call deck%note('*'//card%name//' without STEADY STATE: loads without an amplitude act at '// &
-         'once; *STEP, AMPLITUDE=RAMP ramps them')
+      call deck%note('*'//card%name//trim(merge(' without STEADY STATE', '                     ', &
+         step%is_transient))//': loads without an amplitude act at once; *STEP, AMPLITUDE=RAMP '// &
+         'ramps them')
    end subroutine build_analysis
 
    !> Whether an analysis gives its largest increment.
@@ -241,7 +280,14 @@ contains
       type(deck_type), intent(inout) :: deck
       type(step_type), intent(inout) :: step
 
-      if (.not. step%is_transient) then
+      call take_parameter(card, 'CETOL', deck, step%creep_tolerance, '>0')
+      if (step%is_viscous) then
+         call take_parameter(card, 'LOCAL ERROR', deck, step%local_error, '>0')
+         if (adapts_increments(step) .and. .not. card%has('LOCAL ERROR')) call deck%note( &
+            '*VISCO without LOCAL ERROR=: inelastic strains err in an increment by at most '// &
+            percent(step%local_error)//' of the largest elastic strain')
+         return
+      else if (.not. step%is_transient) then
          if (card%has('DELTMX') .or. card%has('LOCAL ERROR') .or. &
             card%has('DILATATION')) call deck%note('*'//card%name//', STEADY STATE: DELTMX=, '// &
             'LOCAL ERROR= and DILATATION= are ignored, no heat is stored')

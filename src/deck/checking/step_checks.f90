@@ -4,16 +4,17 @@
 module step_checks
    use card_places, only: place_type
    use deck_context, only: deck_type
+   use deck_structure, only: cards_of
    use element_kinds, only: element_node_count
    use kinds, only: dp
-   use materials, only: expansion_heat, follows_temperature, heat_capacity, least_heat_capacity, &
-      of_density, of_elasticity, of_expansion, of_specific_heat
+   use materials, only: expansion_heat, follows_temperature, has_law, heat_capacity, &
+      least_heat_capacity, of_density, of_elasticity, of_expansion, of_specific_heat
    use model, only: follows_temperatures, model_type
    use steps, only: analysis_coupled, load_film_coefficient, solves_heat, step_type
    use text, only: to_text
    implicit none
    private
-   public :: check_continuations, check_storage
+   public :: check_continuations, check_laws, check_storage
 
 contains
 
@@ -49,6 +50,9 @@ contains
       else if (step%scheme%name /= 'IMPLICIT') then
          words = '*CONTINUATION needs *THERMAL SCHEME, TYPE=IMPLICIT: with '// &
             trim(step%scheme%name)//' a state depends on the increments before'
+      else if (any(has_law(model%materials))) then
+         words = '*CONTINUATION is refused with *PLASTIC and *CREEP: what a material remembers '// &
+            'depends on the loads before'
       else if (follows_temperatures(model)) then
          words = '*CONTINUATION needs properties that are the same at all temperatures'
       else if (step%restart_frequency > 0) then
@@ -134,6 +138,32 @@ contains
       end associate
    end function obstacle_of_start
 
+   !> Reports what stands against materials that remember.
+   subroutine check_laws(deck)
+      type(deck_type), intent(inout) :: deck
+      integer, allocatable :: cards(:)
+      integer :: n
+
+      if (.not. any(has_law(deck%model%materials))) then
+         n = findloc(deck%model%steps%is_viscous, .true., dim=1)
+         if (n > 0) call deck%note('*VISCO: no material has *PLASTIC or *CREEP')
+         return
+      end if
+      cards = cards_of(deck%cards, 'STABILITY')
+      if (size(cards) > 0) call deck%error(deck%cards%keywords(cards(1))%place, '*STABILITY is '// &
+         'refused with *PLASTIC and *CREEP: whether a motion yields depends on its direction')
+      if (.not. any(deck%model%materials%law%strains(2) > 0)) return
+      cards = cards_of(deck%cards, 'CREEP')
+      if (.not. any(deck%model%steps%creeps)) then
+         call deck%error(deck%cards%keywords(cards(1))%place, '*CREEP needs a step in real '// &
+            'time: *VISCO, or *COUPLED TEMPERATURE-DISPLACEMENT without STEADY STATE; leave '// &
+            '*CREEP out')
+      else if (.not. all(deck%model%steps%creeps)) then
+         call deck%note('*CREEP: materials do not creep in steps without real time, such as '// &
+            'step '//to_text(findloc(deck%model%steps%creeps, .false., dim=1)))
+      end if
+   end subroutine check_laws
+
    !> Reports what the steps that store heat lack, each thing once, at the first of them.
    subroutine check_storage(deck)
       type(deck_type), intent(inout) :: deck
@@ -176,6 +206,11 @@ contains
       if (.not. deck%model%constants%has_absolute_zero) then
          call deck%error(place, 'DILATATION needs absolute temperatures; give *PHYSICAL '// &
             'CONSTANTS, ABSOLUTE ZERO=')
+         return
+      end if
+      if (any(has_law(deck%model%materials))) then
+         call deck%error(place, 'DILATATION is refused with *PLASTIC and *CREEP: the heat of '// &
+            'strains is that of elastic ones')
          return
       end if
       if (any(follows_temperature(deck%model%materials(deck%model%sections%material), &

@@ -8,6 +8,7 @@ module deck_reader
    use deck_source, only: earlier_deck_type, place_type, read_lines
    use deck_structure, only: check_data_counts
    use generated_cards, only: generate_cards
+   use repeated_steps, only: repeat_steps
    use text, only: append, string_type, to_text, to_upper, without_blanks
    use utf8, only: first_byte
    implicit none
@@ -42,6 +43,7 @@ contains
       if (.not. report%has_lost()) call check_data_counts(cards, report)
       call flatten_cards(cards, report)
       call generate_cards(cards, report)
+      call repeat_steps(cards, report)
       if (len(fault) > 0) then
          inquire (file=path, exist=exists)
          if (.not. exists .and. index(path, '.inp', back=.true.) /= len(path) - 3) then

@@ -31,8 +31,8 @@ module keywords
    integer, parameter :: many = huge(1)
 
    !> Why laws of other materials are refused.
-   character(*), parameter :: linear = &
-      'materials are linear: *ELASTIC, *EXPANSION, *CONDUCTIVITY; leave it out'
+   character(*), parameter :: laws = &
+      'laws of materials are *ELASTIC, *PLASTIC and *CREEP; leave it out'
 
    !> One keyword. Its parameters are separated by slashes; `=` marks one that needs a value and `?`
    !> one that may have one; `~` is before one that is not needed.
@@ -70,7 +70,7 @@ module keywords
    !> How the keywords end that ask for output.
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
-   type(keyword_type), parameter :: known_keywords(88) = [ &
+   type(keyword_type), parameter :: known_keywords(94) = [ &
       keyword_type('HEADING', in_model, 0, many, ''), &
       keyword_type('OPTIONS', in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', in_model, 0, 0, &
@@ -95,6 +95,10 @@ module keywords
       keyword_type('CONDUCTIVITY', in_model, 1, many, 'TYPE='), &
       keyword_type('DENSITY', in_model, 1, many, ''), &
       keyword_type('SPECIFIC HEAT', in_model, 1, many, ''), &
+      keyword_type('PLASTIC', in_model, 1, many, 'HARDENING=/DATA TYPE=/NUMBER BACKSTRESSES='), &
+      keyword_type('CYCLIC HARDENING', in_model, 1, many, ''), &
+      keyword_type('CREEP', in_model, 1, many, 'LAW='), &
+      keyword_type('INELASTIC HEAT FRACTION', in_model, 0, 1, ''), &
       keyword_type('ORIENTATION', in_model, 1, 2, 'NAME=/SYSTEM='), &
       keyword_type('SOLID SECTION', in_model, 0, 1, &
          'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
@@ -143,16 +147,21 @@ module keywords
       keyword_type('STEP', in_both, 0, 0, &
          'INC=/AMPLITUDE=/NLGEOM?/PERTURBATION/~NAME=/~UNSYMM?/~EXTRAPOLATION=/'// &
          '~CONVERT SDI=/~DSA?'), &
-      keyword_type('STATIC', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER='), &
+      keyword_type('CYCLE', in_both, 0, 0, 'STEPS=/REPEAT=/UNTIL=/TOLERANCE='), &
+      keyword_type('STATIC', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER=/STRAIN LIMIT='), &
+      keyword_type('VISCO', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER=/CETOL=/'// &
+         'LOCAL ERROR=/STRAIN LIMIT='), &
       keyword_type('NO ANALYSIS', in_step, 0, 0, ''), &
       keyword_type('STABILITY', in_step, 0, 0, 'FREQUENCY='), &
       keyword_type('TIME POINTS', in_both, 1, many, 'NAME=/TIME=/GENERATE'), &
       keyword_type('HEAT TRANSFER', in_step, 0, 1, &
          'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/~END='), &
       keyword_type('COUPLED TEMPERATURE-DISPLACEMENT', in_step, 0, 1, 'CREEP=/'// &
-         stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/DILATATION='), &
+         stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/DILATATION=/'// &
+         'CETOL=/STRAIN LIMIT='), &
       keyword_type('UNCOUPLED TEMPERATURE-DISPLACEMENT', in_step, 0, 1, &
-         'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR='), &
+         'CREEP=/'//stabilization//'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/'// &
+         'CETOL=/STRAIN LIMIT='), &
       keyword_type('BOUNDARY', in_both, 1, many, 'OP=/AMPLITUDE=/TYPE=/FIXED'), &
       keyword_type('CLOAD', in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?'), &
       keyword_type('DLOAD', in_step, 1, many, 'OP=/AMPLITUDE=/~FOLLOWER?/~CONSTANT RESULTANT='), &
@@ -215,14 +224,15 @@ module keywords
       advice_type(refused_with_data, '', 'RADIATE', &
          'heat leaves sides by *FILM and *DFLUX; only contact gaps radiate'), &
       advice_type(refused, 'ELASTIC', 'HYPERELASTIC/ANISOTROPIC HYPERELASTIC/HYPERFOAM/'// &
-         'HYPOELASTIC/POROUS ELASTIC/DEFORMATION PLASTICITY/USER MATERIAL', linear), &
-      advice_type(refused, '', 'PLASTIC/CYCLIC HARDENING/CREEP/VISCOELASTIC/RATE DEPENDENT/'// &
-         'POTENTIAL/UNIAXIAL TEST DATA/DRUCKER PRAGER/DRUCKER PRAGER HARDENING/DRUCKER PRAGER '// &
-         'CREEP/MOHR COULOMB/MOHR COULOMB HARDENING/CAP PLASTICITY/CAP HARDENING', linear), &
+         'HYPOELASTIC/POROUS ELASTIC/DEFORMATION PLASTICITY/USER MATERIAL', laws), &
+      advice_type(refused, '', 'SWELLING/ANNEAL TEMPERATURE/HARDENING/VISCOELASTIC/RATE '// &
+         'DEPENDENT/POTENTIAL/UNIAXIAL TEST DATA/DRUCKER PRAGER/DRUCKER PRAGER HARDENING/'// &
+         'DRUCKER PRAGER CREEP/MOHR COULOMB/MOHR COULOMB HARDENING/CAP PLASTICITY/'// &
+         'CAP HARDENING', laws), &
       advice_type(refused, '', 'DAMAGE INITIATION/DAMAGE EVOLUTION/DAMAGE STABILIZATION/'// &
          'BRITTLE CRACKING/CONCRETE/CONCRETE DAMAGED PLASTICITY/CONCRETE COMPRESSION HARDENING/'// &
          'CONCRETE COMPRESSION DAMAGE/CONCRETE TENSION STIFFENING/CONCRETE TENSION DAMAGE', &
-         linear), &
+         laws), &
       advice_type(refused, '', 'USER DEFINED FIELD/FIELD', 'values depend on no field'), &
       advice_type(refused, '', 'PERMEABILITY/SORPTION/GEL/POROUS BULK MODULI/MOISTURE '// &
          'SWELLING/FLOW/DFLOW/DSFLOW/DIFFUSIVITY/SOLUBILITY', 'nothing flows through bodies'), &
@@ -255,9 +265,9 @@ module keywords
          'materials, elements and sections are the same in all steps'), &
       advice_type(refused, 'STATIC', 'FREQUENCY/COMPLEX FREQUENCY/BUCKLE/DYNAMIC/DYNAMIC '// &
          'TEMPERATURE-DISPLACEMENT/MODAL DYNAMIC/'// &
-         'STEADY STATE DYNAMICS/VISCO/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD/GEOSTATIC/SOILS/'// &
+         'STEADY STATE DYNAMICS/SENSITIVITY/GREEN/ELECTROMAGNETICS/CFD/GEOSTATIC/SOILS/'// &
          'MASS DIFFUSION/COUPLED THERMAL-ELECTRICAL/DIRECT CYCLIC', &
-         'steps are *STATIC, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
+         'steps are *STATIC, *VISCO, *HEAT TRANSFER or *COUPLED TEMPERATURE-DISPLACEMENT'), &
       advice_type(of_parameter, 'SPRING', 'NONLINEAR/ORIENTATION/DEPENDENCIES/COMPLEX STIFFNESS', &
          'springs have one constant'), &
       advice_type(of_parameter, 'EQUATION', 'REMOVE', 'equations hold in all steps'), &
@@ -298,7 +308,7 @@ module keywords
       advice_type(of_parameter, '', 'RIKS', &
          'solutions past a turning point of the load are *CONTINUATION'), &
       advice_type(of_parameter, '', 'MXDEM', 'emissivities are constant; leave it out'), &
-      advice_type(of_parameter, '', 'CREEP', 'materials are linear; leave it out'), &
+      advice_type(of_parameter, '', 'CREEP', 'materials creep in real time; leave it out'), &
       advice_type(of_parameter, '', 'DEPENDENCIES', &
          'values depend on no field; give the rows of one value of it, and 0'), &
       advice_type(of_parameter, '', 'TEMPERATURE', 'the temperature is that of the analysis'), &

@@ -1,10 +1,10 @@
 !> A law of materials that remembers: linear, with a clock and a counter for its history.
 module sample_laws
    use kinds, only: dp
-   use material_laws, only: law_points_type, material_law_type
+   use material_laws, only: law_interval_type, law_points_type, material_law_type
    implicit none
    private
-   public :: counting_law
+   public :: counting_law, failing_law
 
 contains
 
@@ -19,16 +19,36 @@ contains
       law%respond => respond
    end function counting_law
 
-   pure subroutine respond(law, points, duration, history)
+   !> Thermoelasticity that finds no stress in long increments.
+   function failing_law(longest) result(law)
+      real(dp), intent(in) :: longest   !! that it survives [time]
+      type(material_law_type) :: law
+
+      law%history_count = 1
+      law%constants = [longest]
+      law%respond => fail
+   end function failing_law
+
+   pure subroutine fail(law, points, interval, history)
       type(material_law_type), intent(in) :: law
       type(law_points_type), intent(inout) :: points
-      real(dp), intent(in) :: duration
+      type(law_interval_type), intent(in) :: interval
+      real(dp), intent(inout) :: history(:, :)
+
+      points%failed = interval%duration > law%constants(1)
+      history = history + interval%duration
+   end subroutine fail
+
+   pure subroutine respond(law, points, interval, history)
+      type(material_law_type), intent(in) :: law
+      type(law_points_type), intent(inout) :: points
+      type(law_interval_type), intent(in) :: interval
       real(dp), intent(inout) :: history(:, :)
 
       points%stress(:points%count, :) = law%constants(1)*points%stress(:points%count, :)
       points%tangent(:, :, :points%count) = law%constants(1)*points%tangent(:, :, :points%count)
-      history(1, :) = history(1, :) + duration
-      if (duration > 0.0_dp) history(2, :) = history(2, :) + 1
+      history(1, :) = history(1, :) + interval%duration
+      if (interval%duration > 0.0_dp) history(2, :) = history(2, :) + 1
    end subroutine respond
 
 end module sample_laws

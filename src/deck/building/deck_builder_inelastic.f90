@@ -1,0 +1,229 @@
+!> *PLASTIC, *CYCLIC HARDENING and *CREEP -> the law of a material.
+module deck_builder_inelastic
+   use card_parameters, only: choice, take_parameter
+   use card_values, only: check_ascending, read_row, read_rows
+   use cards, only: keyword_card_type
+   use creep_laws, only: hardens_by_strain
+   use deck_context, only: deck_type
+   use hardening_laws, only: yield_table_type
+   use kinds, only: dp
+   use materials, only: isotropic, material_type, of_elasticity
+   use return_mapping, only: inelastic_law
+   use text, only: to_text
+   implicit none
+   private
+   public :: build_inelasticity, complete_law
+
+   real(dp), parameter :: default_fraction = 0.9_dp   ! of inelastic work, as in Abaqus
+
+   character(*), parameter :: table = 'yield stress >0/plastic strain? >=0/temperature?'
+   character(*), parameter :: parameters = 'yield stress >0/C >=0/gamma >=0/temperature?'
+   character(*), parameter :: powers = 'A >=0/n >0/m?/temperature?'
+
+contains
+
+   !> Reads a card of a material. One with errors in it is not kept.
+   subroutine build_inelasticity(card, deck, material)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(material_type), intent(inout) :: material
+      real(dp) :: heat(1)
+      logical :: valid
+
+      select case (card%name)
+      case ('PLASTIC')
+         call build_plasticity(card, deck, material)
+      case ('CYCLIC HARDENING')
+         if (.not. material%law%hardening%has_back_stress()) then
+            call deck%error(card%place, '*CYCLIC HARDENING is the size of a yield surface that '// &
+               'moves: it belongs behind *PLASTIC, HARDENING=COMBINED')
+            return
+         end if
+         call read_table(card, deck, material%law%hardening%yield)
+      case ('INELASTIC HEAT FRACTION')
+         heat = default_fraction
+         if (size(card%data) > 0) call read_row(card%data(1), 'fraction? >=0 =0.9', deck, heat, &
+            valid)
+         material%law%heat_fraction = heat(1)
+         if (heat(1) > 1.0_dp) call deck%error(card%data(1)%place(1), 'the fraction is at most 1')
+      case default
+         call build_creep(card, deck, material)
+      end select
+   end subroutine build_inelasticity
+
+   subroutine build_plasticity(card, deck, material)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(material_type), intent(inout) :: material
+      character(:), allocatable :: data_type, hardening
+      integer :: errors, surfaces
+
+      errors = deck%error_count()
+      hardening = choice(card, 'HARDENING', 'ISOTROPIC/KINEMATIC/COMBINED', deck, 'ISOTROPIC')
+      data_type = choice(card, 'DATA TYPE', 'HALF CYCLE/PARAMETERS', deck, 'HALF CYCLE')
+      surfaces = 1
+      call take_parameter(card, 'NUMBER BACKSTRESSES', deck, surfaces, '>=1')
+      if (surfaces > 1) call deck%error(card%place_of('NUMBER BACKSTRESSES'), &
+         'NUMBER BACKSTRESSES='//to_text(surfaces)//' is refused: a material has one back stress')
+      if (hardening == 'COMBINED' .and. data_type /= 'PARAMETERS') then
+         call deck%error(card%place, 'HARDENING=COMBINED needs DATA TYPE=PARAMETERS: yield '// &
+            'stress, C and gamma of the back stress')
+      else if (hardening /= 'COMBINED' .and. data_type == 'PARAMETERS') then
+         call deck%error(card%place_of('DATA TYPE'), 'DATA TYPE=PARAMETERS belongs to '// &
+            'HARDENING=COMBINED')
+      end if
+      if (deck%error_count() > errors) return
+      associate (law => material%law%hardening)
+         if (allocated(law%back)) deallocate (law%back)
+         if (hardening == 'COMBINED') then
+            call read_parameters(card, deck, material)
+         else
+            call read_table(card, deck, law%yield)
+            if (hardening == 'KINEMATIC' .and. deck%error_count() == errors) call make_kinematic( &
+               card, deck, material)
+         end if
+      end associate
+   end subroutine build_plasticity
+
+   !> Reads the rows of a yield stress: blocks of one temperature, each over plastic strain from 0.
+   subroutine read_table(card, deck, yield)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(yield_table_type), intent(out) :: yield
+      real(dp) :: values(3, size(card%data))
+      logical :: begins(size(card%data)), valid
+      integer :: errors, k
+
+      errors = deck%error_count()
+      call read_rows(card%data, table, deck, values, valid)
+      if (card%flawed .or. .not. valid) return
+      associate (temperature => values(3, :), n => size(values, 2))
+         begins(1) = .true.
+         begins(2:) = abs(temperature(2:) - temperature(:n - 1)) > 0.0_dp
+         yield%first = [pack([(k, k=1, n)], begins), n + 1]
+         yield%temperature = temperature(yield%first(:size(yield%first) - 1))
+      end associate
+      do k = 1, size(yield%temperature)
+         associate (first => yield%first(k), last => yield%first(k + 1) - 1)
+            if (values(2, first) > 0.0_dp) call deck%error(card%data(first)%place(2), &
+               'the first plastic strain'//trim(merge(' of a temperature', '                 ', &
+               size(yield%temperature) > 1))//' must be 0')
+            call check_ascending(card%data(first:last), 2, 'the plastic strains', &
+               values(2, first:last), deck)
+         end associate
+      end do
+      associate (starts => yield%first(:size(yield%temperature)))
+         call check_ascending(card%data(starts), 3, 'the temperatures of the rows', &
+            yield%temperature, deck)
+      end associate
+      if (deck%error_count() > errors) return
+      yield%stress = values(1, :)
+      yield%strain = values(2, :)
+   end subroutine read_table
+
+   !> Reads yield stress, C and gamma, over temperature.
+   subroutine read_parameters(card, deck, material)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(material_type), intent(inout) :: material
+      real(dp) :: values(4, size(card%data))
+      integer :: errors, k
+      logical :: valid
+
+      errors = deck%error_count()
+      call read_rows(card%data, parameters, deck, values, valid)
+      if (card%flawed .or. .not. valid) return
+      call check_ascending(card%data, 4, 'the temperatures of the rows', values(4, :), deck)
+      if (deck%error_count() > errors) return
+      associate (law => material%law%hardening)
+         law%yield%temperature = values(4, :)
+         law%yield%first = [(k, k=1, size(values, 2) + 1)]
+         law%yield%stress = values(1, :)
+         law%yield%strain = 0*values(1, :)
+         law%back_temperature = values(4, :)
+         law%back = values(2:3, :)
+      end associate
+   end subroutine read_parameters
+
+   !> Two rows of each temperature: the yield surface keeps its size and moves.
+   subroutine make_kinematic(card, deck, material)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(material_type), intent(inout) :: material
+      integer :: k
+
+      associate (yield => material%law%hardening%yield, law => material%law%hardening)
+         do k = 1, size(yield%temperature)
+            associate (rows => yield%first(k + 1) - yield%first(k))
+               if (rows == 2) cycle
+               call deck%error(card%data(yield%first(k) + min(rows, 3) - 1)%place(1), &
+                  'HARDENING=KINEMATIC is linear: two rows'//trim(merge(' for each temperature', &
+                  '                     ', size(yield%temperature) > 1))//', not '//to_text(rows))
+               return
+            end associate
+         end do
+         associate (first => yield%first(:size(yield%temperature)))
+            law%back_temperature = yield%temperature
+            allocate (law%back(2, size(first)), source=0.0_dp)
+            law%back(1, :) = (yield%stress(first + 1) - yield%stress(first))/yield%strain(first + 1)
+            k = findloc(law%back(1, :) < 0.0_dp, .true., dim=1)
+            if (k > 0) call deck%error(card%data(yield%first(k) + 1)%place(1), &
+               'HARDENING=KINEMATIC must not soften: the second stress is below the first')
+            yield%stress = yield%stress(first)
+            yield%strain = yield%strain(first)
+            yield%first = [(k, k=1, size(yield%temperature) + 1)]
+         end associate
+      end associate
+   end subroutine make_kinematic
+
+   !> Reads A, n and m, over temperature.
+   subroutine build_creep(card, deck, material)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(material_type), intent(inout) :: material
+      character(:), allocatable :: law
+      real(dp) :: values(4, size(card%data))
+      integer :: errors, k
+      logical :: valid
+
+      errors = deck%error_count()
+      law = choice(card, 'LAW', 'NORTON/TIME/STRAIN', deck, 'NORTON')
+      call read_rows(card%data, powers, deck, values, valid)
+      if (card%flawed .or. .not. valid) return
+      do k = 1, size(card%data)
+         if (values(3, k) > -1.0_dp .and. values(3, k) <= 0.0_dp) cycle
+         call deck%error(card%data(k)%place(3), 'm must lie above -1 and not above 0')
+      end do
+      call check_ascending(card%data, 4, 'the temperatures of the rows', values(4, :), deck)
+      if (card%lacks('LAW') .and. any(abs(values(3, :)) > 0.0_dp)) call deck%error(card%place, &
+         '*CREEP with m other than 0 needs LAW=: NORTON or TIME with a rate A q^n t^m, STRAIN '// &
+         'with one of the strain so far; programs differ in what they take without it')
+      if (deck%error_count() > errors) return
+      if (law == 'STRAIN') material%law%creep%kind = hardens_by_strain
+      material%law%creep%temperature = values(4, :)
+      material%law%creep%constants = values(:3, :)
+   end subroutine build_creep
+
+   !> The law of a material whose cards have all been read.
+   subroutine complete_law(m, deck, material)
+      integer, intent(in) :: m                               !! its number
+      type(deck_type), intent(inout) :: deck
+      type(material_type), intent(inout) :: material
+      real(dp) :: fraction
+      integer :: k
+
+      if (.not. (material%law%hardening%yields() .or. material%law%creep%creeps())) return
+      if (allocated(material%given)) then
+         do k = 1, size(material%given)
+            if (material%given(k)%kind /= of_elasticity) cycle
+            if (material%given(k)%symmetry /= isotropic) call deck%error(deck%material_place(m), &
+               'material '//material%name//': *PLASTIC and *CREEP need isotropic elasticity, '// &
+               '*ELASTIC, TYPE=ISOTROPIC')
+         end do
+      end if
+      fraction = material%law%heat_fraction
+      material%law = inelastic_law(material%law%hardening, material%law%creep)
+      material%law%heat_fraction = fraction
+   end subroutine complete_law
+
+end module deck_builder_inelastic
