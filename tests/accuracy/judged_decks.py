@@ -22,13 +22,12 @@ from pathlib import Path
 import report  # isort: skip, it makes the modules below known
 import h5py
 import numpy as np
-from held_bounds import ANALYSIS, LEAST_EDGE, QUANTITIES, rest, run
+from converged_values import ANALYSIS, LEAST_EDGE, QUANTITIES, rest, run
 from judged_families import FAMILIES
 
 FILE = Path(__file__).resolve().parent / "judged.csv"
 HEAD = ["family", "deck", "step", "place", "quantity", "value", "known"]
 WORDS = QUANTITIES | {"von_mises": "largest stress", "temperature": "largest temperature"}
-GROUP = "uncertainty", "errors"    # of the result file, the first one that it has
 FINE, FACES = 2, 2                 # divisions of all elements, and beyond those of elements at the faces
 KNOWN = 3.0
 LEAST = 1e-5    # of the value: smaller errors are not judged; forces that loads prescribe have them
@@ -160,23 +159,28 @@ def write_file(decks, file):
                 csv.writer(lines, lineterminator="\n").writerows(rows)
 
 
+def estimate(file, place, quantity, row=-1):
+    """Return value and uncertainty in a row of a result file, and why there is no uncertainty."""
+    group = file["uncertainty"]
+    why = group[place]["no_estimate"]
+    reason = group["reasons"][why[row, why.attrs["components"].split().index(quantity)]].decode()
+    return (*group[place][quantity][row][:2], reason)
+
+
 def cases_of(path, deck, told):
     """Return the cases of a result file: errors that are more than rounding, of edges that are not the ends of
     the face and of largest values at their place."""
     found = []
     with h5py.File(path) as file:
-        group = next(file[name] for name in GROUP if name in file)
-        reasons = [word.decode() for word in group["reasons"][:]]
+        times = file["uncertainty/time"][:]
+        rows = [int(np.argmin(np.abs(times - end))) for end in ends_of_steps(deck.text)]
         for (place, quantity), own in values_of(file, deck).items():
-            if quantity not in group.get(place, ()):
+            if quantity not in file["uncertainty"].get(place, ()):
                 continue
-            why = group[place]["no_estimate"]
-            why = why[:, why.attrs["components"].split().index(quantity)]
-            rows = [int(np.argmin(np.abs(group["time"][:] - end))) for end in ends_of_steps(deck.text)]
-            why = why[rows]
             is_edge = quantity.startswith("edge")
-            for step, row in enumerate(group[place][quantity][:][rows], 1):
-                (true, known), (value, uncertainty) = told[deck.name, place, quantity, step], row[:2]
+            for step, row in enumerate(rows, 1):
+                true, known = told[deck.name, place, quantity, step]
+                value, uncertainty, reason = estimate(file, place, quantity, row)
                 least = LEAST * abs(true)
                 if is_edge:
                     spacing = spacing_at(file[f"contact/{place}/s"][:], value)
@@ -185,8 +189,8 @@ def cases_of(path, deck, told):
                         known = max(known, spacing / 2 ** (FINE + faces_of(deck) - deck.own_levels + 1))
                 is_there = is_edge or abs(value - own[step - 1]) <= SAME * abs(value)
                 if is_there and abs(true - value) > least:
-                    found.append(Case(deck.family, deck.name, quantity, true - value, uncertainty,
-                                      reasons[why[step - 1]], abs(true - value) > KNOWN * known))
+                    found.append(Case(deck.family, deck.name, quantity, true - value, uncertainty, reason,
+                                      abs(true - value) > KNOWN * known))
     return found
 
 
@@ -196,7 +200,7 @@ def spacing_at(places, value):
     return places[beyond] - places[max(0, beyond - 1)] if beyond < len(places) else np.inf
 
 
-def judged(deck, told, errors="YES"):
+def judged(deck, told, errors="LAST"):
     """Solve a deck as written; return its cases."""
     with tempfile.TemporaryDirectory() as folder:
         return cases_of(run(deck, (0, deck.own_levels), 1, Path(folder), errors), deck, told)
@@ -239,6 +243,31 @@ def judgement(cases):
             counts[case.family, case.reason] = counts.get((case.family, case.reason), 0) + 1
     why.rows += [[*key, count] for key, count in counts.items()]
     return [pooled, each, why]
+
+
+def compared(title, found, text=""):
+    """Return the table of all families together, of the cases of each setting of ERRORS."""
+    words = "decks that hold", "without", "median", "90 %"
+    table = report.Table(title, ["quantity", *(f"{errors}: {word}" for errors in found for word in words)], text=text)
+    for quantity, name in WORDS.items():
+        own = [[case for case in cases if case.quantity == quantity] for cases in found.values()]
+        if any(map(len, own)):
+            table.rows.append([name, *(cell for cases in own for cell in by_deck(cases)[:4])])
+    return table
+
+
+def of_families(title, found, text=""):
+    """Return the table of the decks of each family that hold, of the cases of each setting of ERRORS."""
+    families = list(dict.fromkeys(case.family for cases in found.values() for case in cases))
+    columns = [(errors, quantity) for errors, cases in found.items() for quantity in WORDS
+               if any(case.quantity == quantity and case.is_told for case in cases)]
+    heads = [f"{errors}: {WORDS[quantity]}" if len(found) > 1 else WORDS[quantity] for errors, quantity in columns]
+    table = report.Table(title, ["family", *heads], text=text)
+    for family in families:
+        shares = [by_deck([case for case in found[errors] if (case.family, case.quantity) == (family, quantity)])[0]
+                  for errors, quantity in columns]
+        table.rows.append([family, *(share.split(",")[0] for share in shares)])
+    return table
 
 
 def misses(cases):

@@ -6,14 +6,14 @@ those from 1000 on judge.
 import re
 
 import numpy as np
-from bound_decks import FAMILIES as DRAWN
-from bound_decks import drawn_deck, log_uniform, mismatched_deck
 from deck_runs import HERTZ
+from drawn_decks import FAMILIES as DRAWN
+from drawn_decks import drawn_deck, log_uniform, mismatched_deck
 from judged_joint import BASE, FINE, Joint, JudgedDeck
 from physics import material, mesh, nodes_of
 
 REFERENCE = 900001   # number of the reference node of a section or a rigid body
-SHIFT = 101          # to the seed of another family of bound_decks
+SHIFT = 101          # to the seed of another family of drawn_decks
 
 
 def stacked(joint, **of_materials):
@@ -31,7 +31,7 @@ def stacked(joint, **of_materials):
 
 
 def local(seed):
-    """Local refinement: decks whose faces alone are divided, of this module, of bound_decks, and Hertz's."""
+    """Local refinement: decks whose faces alone are divided, of this module, of drawn_decks, and Hertz's."""
     draw = np.random.default_rng([seed, 404])
     levels, is_mortar = int(draw.integers(1, 3)), bool(draw.integers(2))
     if seed % 3 == 0:
@@ -328,18 +328,18 @@ def bolts(seed):
 
 
 def drawn(seed):
-    """The decks of bound_decks."""
+    """The decks of drawn_decks."""
     return renamed("drawn", seed, drawn_deck(seed))
 
 
 def mortar(seed):
-    """The decks of bound_decks with mortar points; those of a ring have a punch in its place."""
+    """The decks of drawn_decks with mortar points; those of a ring have a punch in its place."""
     is_ring = DRAWN[seed % len(DRAWN)] == "ring"
     return renamed("mortar", seed, mismatched_deck(seed + SHIFT if is_ring else seed))
 
 
 def renamed(family, seed, deck):
-    """Return a deck of bound_decks."""
+    """Return a deck of drawn_decks."""
     return JudgedDeck(family, f"{family} {seed}", deck.text, (deck.face,), deck.has_path)
 
 

@@ -4,7 +4,7 @@ import zlib
 from dataclasses import dataclass
 
 import numpy as np
-from bound_decks import log_uniform
+from drawn_decks import log_uniform
 from new_families import Mesh
 from physics import material, mesh
 

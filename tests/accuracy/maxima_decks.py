@@ -1,4 +1,4 @@
-"""Problems with closed forms whose largest stress or temperature judges the bounds of these.
+"""Problems with closed forms whose largest stress or temperature judges their uncertainties.
 
 A family draws a problem from a random generator: a function of the element and the number of
 elements along each side that returns the cards of its deck, and the exact maxima.

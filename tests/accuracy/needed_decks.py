@@ -53,7 +53,7 @@ CASES = (
     Case("heat, mechanics, contact, friction", heat=True, contact=True, friction=True,
          law=tuple(CONSTANT)),
     Case("the same, coupled", heat=True, contact=True, friction=True, law=tuple(VARIABLE)),
-    Case("coupled, errors estimated", heat=True, contact=True, friction=True, law=tuple(VARIABLE),
+    Case("coupled, ERRORS=LAST", heat=True, contact=True, friction=True, law=tuple(VARIABLE),
          errors=True),
 )
 COUPLED = CASES[-2]
@@ -67,7 +67,7 @@ def mesh():
 
 def write_deck(case, path, levels, increments):
     """Write the deck of a case; without heat the top is pushed. Return its path."""
-    cards = [f"*OPTIONS, ERRORS={'YES' if case.errors else 'NO'}"]
+    cards = [f"*OPTIONS, ERRORS={'LAST' if case.errors else 'NO'}"]
     cards += [f"*REFINE, LEVELS={levels}"] if levels else []
     if case.contact:
         cards += ["*SURFACE INTERACTION, NAME=FACES", *case.law]

@@ -5,7 +5,7 @@ its cases in a folder and returns tables, pictures and text (see tests/documents
 `python tests/accuracy/report.py` with THERCON set runs all themes and writes the document;
 `python tests/accuracy/report.py cylinder` renews that section alone. Some themes take long: their
 tests run a part of them, and compare it with what the document tells. The values that true errors
-refer to are in converged.csv, which held_bounds.py writes.
+refer to are in converged.csv and judged.csv, which converged_values.py and judged_decks.py write.
 """
 
 import sys
@@ -22,10 +22,11 @@ How accurate results are, what more accuracy costs, and how another program comp
 
 | question | answer | section |
 |---|---|---|
-| How accurate is my run? | Its summary has an error bound for each force, heat rate, peak pressure and edge | [Bounds of errors](#bounds-of-errors) |
-| How often do these bounds hold? | For 100 % of normal forces, 97 % of shear forces, 100 % of heat rates, 99 % of peak pressures, 97 % of edges of contact, 96 % of edges of stick | [Bounds that hold](#bounds-that-hold) |
-| And on problems drawn afterwards? | For 98 % of normal forces, 97 % of shear forces, 100 % of heat rates, 95 % of peak pressures, 99 % of edges of contact, 97 % of edges of stick | [Families drawn afterwards](#families-drawn-afterwards) |
-| How accurate are the largest stress and temperature? | Their bounds are in the summary, away from singular corners, which are named; they hold for 99 % | [Largest stress and temperature](#largest-stress-and-temperature) |
+| How accurate is my run? | Its summary has a numerical uncertainty (95 %) for each force, heat rate, peak pressure and edge, and for the largest stress and temperature of each body | [Numerical uncertainty](#numerical-uncertainty) |
+| Which numbers have none? | Under the default, `ERRORS=LAST`, what errors build up in along the path; `ERRORS=FULL` tells them at about ten times the cost | [Numerical uncertainty](#numerical-uncertainty) |
+| How often do they hold? | On decks that were drawn afterwards: PLACEHOLDER | [Uncertainties judged](#uncertainties-judged-on-decks-drawn-afterwards) |
+| And against independent solutions? | PLACEHOLDER2 | [Families with independent solutions](#families-with-independent-solutions) |
+| How accurate are the largest stress and temperature? | Their uncertainties are in the summary, away from singular corners, which are named | [Largest stress and temperature](#largest-stress-and-temperature) |
 | How do I get 1 %? | `thercon run DECK --accuracy 1%`; most decks take one to three rounds | [Accuracy on request](#accuracy-on-request) |
 | Node pairs or mortar points? | Keep the default, but use `PAIRING=SURFACES` on the faces of a crack whose force or heat counts | [Node pairs against mortar points](#node-pairs-against-mortar-points) |
 | Where is the mesh too coarse? | Where `stress_error` and `heat_flux_error` are large: both are true to about 20 % | [Estimated error of the mesh](#estimated-error-of-the-mesh) |
@@ -37,8 +38,8 @@ How accurate results are, what more accuracy costs, and how another program comp
 The script `tests/accuracy/report.py` writes this document from runs of the program; the tests
 `accuracy_*` repeat a part of them.
 """
-DOCUMENT = Document("accuracy.md", HERE, ("estimate", "neighbours", "maxima", "wavy", "new", "requested",
-                                          "pairing", "recovered", "trade", "cylinder", "needed", "calculix"), PREFACE)
+DOCUMENT = Document("accuracy.md", HERE, ("estimate", "judged", "maxima", "wavy", "new", "requested", "pairing",
+                                          "recovered", "trade", "cylinder", "needed", "calculix"), PREFACE)
 check, check_parts, rows = DOCUMENT.check, DOCUMENT.check_parts, DOCUMENT.rows
 check_rows = DOCUMENT.check_rows
 

@@ -1,35 +1,35 @@
-"""What a requested accuracy gives and costs: known decks, three targets, against converged values."""
+"""What a requested accuracy gives and costs: known and drawn decks, against converged values."""
 
 import re
 import resource
 from dataclasses import dataclass, replace
 
+import converged_values
 import h5py
-import held_bounds
 import numpy as np
-import wavy_faces
-from bound_decks import EXAMPLES, all_decks, drawn_deck, mismatched_decks
 from deck_runs import COUPLED, CYLINDER, HERTZ, INPUT, run
+from drawn_decks import EXAMPLES, all_decks, drawn_deck, mismatched_decks
+from judged_decks import LEAST
 from report import Table, check_parts, rows
 from test_estimate import converged
 
 TITLE = "Accuracy on request"
 TEXT = """
-`thercon run DECK --accuracy P%` solves in rounds until the bounds of normal force, heat rate, peak
+`thercon run DECK --accuracy P%` solves in rounds until the uncertainties of normal force, heat rate, peak
 pressure and edge of contact are within P per cent ([\\*ACCURACY](deck.md#accuracy) has the rules, also where
-no bound can be given). Each round solves the deck from its beginning, with elements divided where the
-recovered energy norm is large and round the edges of zones, the smaller the nearer. Bends of the history
-that both meshes share are not counted as scatter.
+no uncertainty can be given). Each round solves the deck from its beginning, with elements divided where the
+recovered energy norm is large and round the edges of zones, the smaller the nearer. Where the last increment alone
+tells nothing of a quantity, as of the peak pressure with friction, the change from round to round tells it, so that such a request
+takes at least two rounds.
 
-True errors are those to the converged values above, CPU seconds those of all rounds together. All start
-from the deck's mesh without \\*REFINE. "By hand" is the cheapest of eleven meshes without bounds whose true
+True errors are those to the [converged values](#numerical-uncertainty), CPU seconds those of all rounds together. All
+start from the deck's mesh without \\*REFINE. "By hand" is the cheapest of eleven meshes without uncertainties whose true
 error is inside the target: that mesh refined uniformly (0 to 3 levels), at the contact faces (1 to 4), or
-once and then there (1 to 3). The aim of 2.5 times its seconds is missed by some requests that need several
-rounds. Only who knows the converged values can choose such a mesh, because true errors at one load are
-partly chance; the last table has the bounds that a run can give.
+once and then there (1 to 3). Only who knows the converged values can choose such a mesh, because true errors at one load are
+partly chance.
 """
 HEAD = ["deck", "target", "status", "rounds", "CPU s", "elements", "increments",
-        "bound/target", "true error/target", "by hand, CPU s", "mesh by hand"]
+        "uncertainty/target", "true error/target", "by hand, CPU s", "mesh by hand"]
 MESHES = {"x 1": (0, 0), "x 2": (1, 0), "x 4": (2, 0), "x 8": (3, 0), "x 1:2": (0, 1), "x 1:4": (0, 2),
           "x 1:8": (0, 3), "x 1:16": (0, 4), "x 2:4": (1, 1), "x 2:8": (1, 2), "x 2:16": (1, 3)}
 PERCENT = (3, 1, 0.3)
@@ -48,15 +48,14 @@ def unrefined(name, folder):
     return re.sub(r"^\*REFINE.*\n", "", deck.read_text().split("*VERIFY")[0], flags=re.M)
 
 
-def refined(name, everywhere, at_faces, bounds, folder):
-    """Run a deck on a mesh refined by hand; return its CPU seconds, and its largest bound and true
-    error, both relative."""
+def refined(name, everywhere, at_faces, folder):
+    """Run a deck on a mesh refined by hand; return its CPU seconds and its largest relative true error."""
     deck, face = DECKS[name]
     text = unrefined(name, folder)
     surface = re.search(rf"^\*CONTACT PAIR,.*{face}.*\n\s*([\w.]+)", text, re.M)[1]
     cards = [f"*REFINE, LEVELS={everywhere}"] if everywhere else []
     cards += [f"*REFINE, LEVELS={at_faces}, SURFACE={surface}"] if at_faces else []
-    cards += [f"*OPTIONS, ERRORS={'YES' if bounds else 'NO'}"]
+    cards += ["*OPTIONS, ERRORS=NO"]
     path = folder / f"{deck.stem}_refined.inp"
     path.write_text(re.sub(r"^\*STEP", "\n".join([*cards, "*STEP"]), text, count=1, flags=re.M))
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -67,8 +66,7 @@ def refined(name, everywhere, at_faces, bounds, folder):
     with h5py.File(folder / f"{deck.stem}_refined.vtkhdf") as file:
         group = file[f"contact/{face}"]
         found = {q: group["pressure"][-1].max() if q == "peak_pressure" else group[q][-1] for q in exact}
-        told = [file[f"errors/{face}/{q}"][-1][1] / abs(found[q]) for q in exact] if bounds else [np.nan]
-    return (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, max(told),
+    return (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
             max(abs(found[q] / exact[q] - 1.0) for q in exact))
 
 
@@ -76,31 +74,21 @@ def by_hand(name, folder):
     """Return CPU seconds, true error and name of the meshes refined by hand, the cheapest first."""
     found = []
     for mesh, levels in MESHES.items():
-        seconds, _, error = refined(name, *levels, False, folder)
+        seconds, error = refined(name, *levels, folder)
         found.append((seconds, error, mesh))
     return sorted(found)
-
-
-def uniform(folder):
-    """Return the table of the bounds and the true errors of the cylinder refined uniformly."""
-    table = Table("The cylinder refined uniformly, with bounds",
-                  ["refinements", "CPU s", "largest bound", "largest true error"])
-    for level in range(4):
-        seconds, bound, error = refined("cylinder", level, 0, True, folder)
-        table.rows.append([level, f"{seconds:.2f}", f"{100 * bound:.2f} %", f"{100 * error:.2f} %"])
-    return table
 
 
 @dataclass(frozen=True)
 class Request:
     """What a request found: exit status, CPU seconds of all rounds, elements and increments of the last,
-    the largest bound and true error over the target, and of each bound whether it holds."""
+    the largest uncertainty and true error over the target, and of each uncertainty whether it holds."""
 
     status: int
     seconds: list
     elements: int
     increments: int
-    bound: float
+    uncertainty: float
     error: float
     held: list
 
@@ -109,20 +97,21 @@ def request(text, face, exact, percent, path):
     """Ask for an accuracy; the converged values are those of all steps, and none of some decks."""
     path.write_text(text)
     process = run("run", "--quiet", path, "--out", path.parent, "--accuracy", f"{percent}%", seconds=900)
-    bounds, errors, held = [], [], []
+    told, errors, held = [], [], []
     with h5py.File(path.with_suffix(".vtkhdf")) as file:
         group = file["accuracy"]
-        for quantity, found in group[f"bounds/{face}"].items():
-            step, value, bound, allowed = found[-1]
+        for quantity, found in group[f"uncertainty/{face}"].items():
+            step, value, uncertainty, allowed = found[-1]
             if step == 0:
                 continue
-            bounds.append(bound / allowed)
+            told.append(uncertainty / allowed)
             if quantity in exact and np.isfinite(exact[quantity][int(step) - 1]):
                 error = abs(value - exact[quantity][int(step) - 1])
                 errors.append(error / allowed)
-                held.append(error <= max(bound, held_bounds.LEAST * abs(value)))
-        return Request(process.returncode, list(group["cpu_seconds"][:]), group["elements"][-1],
-                       group["increments"][-1], max(bounds), max(errors) if errors else np.nan, held)
+                if np.isfinite(uncertainty):
+                    held.append(error <= max(uncertainty, LEAST * abs(value)))
+        return Request(process.returncode, list(group["cpu_seconds"][:]), group["elements"][-1], group["increments"][-1],
+                       np.nanmax(told, initial=0.0), max(errors) if errors else np.nan, held)
 
 
 def measured(name, percent, folder):
@@ -131,58 +120,36 @@ def measured(name, percent, folder):
     exact = {} if name == "roller" else {q: [value] for q, value in converged(name).items()}
     found = request(unrefined(name, folder), face, exact, percent, folder / deck.name)
     return [name, f"{percent} %", found.status, len(found.seconds), f"{sum(found.seconds):.2f}",
-            found.elements, found.increments, f"{found.bound:.2f}",
+            found.elements, found.increments, f"{found.uncertainty:.2f}",
             "-" if np.isnan(found.error) else f"{found.error:.2f}"]
 
 
-def judged_decks(folder):
-    """Return the table of requests on the decks that judge the bounds."""
-    table = Table("Requests on the decks that judge the bounds",
+def drawn_requests(folder):
+    """Return the table of requests on the decks that chose the constants."""
+    table = Table("Requests on drawn decks",
                   ["decks", "target", "number", "reached", "of these true errors inside the target",
-                   "largest true error/target of these", "bounds that hold", "CPU s of all"],
-                  text="""Known and drawn decks of [bounds that hold](#bounds-that-hold), and those with
-faces that do not match. Bounds are those of the last round at the step that decides; they hold less often
-than on meshes refined evenly, but most of those that do not are far below the target.""")
+                   "largest true error/target of these", "uncertainties that hold", "CPU s of all"],
+                  text="""Known and drawn decks of [numerical uncertainty](#numerical-uncertainty). Uncertainties are those of the
+last round at the step that decides.""")
     matching = [replace(deck, text=re.sub(r"^\*REFINE.*\n", "", deck.text.split("*VERIFY")[0], flags=re.M))
                 for deck in all_decks()]
     others = [deck for deck in mismatched_decks() if "mortar" in deck.name]
     for mesh in EXAMPLES.glob("*.mesh"):
         (folder / mesh.name).write_text(mesh.read_text())
-    for name, decks, percent in (("node pairs", matching, 1), ("node pairs", matching, 0.3),
-                                 ("mortar points", others, 1)):
-        found = [request(deck.text, deck.face, held_bounds.told_values(deck), percent, folder / "deck.inp")
+    for name, decks, percent in (("node pairs", matching, 1), ("mortar points", others, 1)):
+        found = [request(deck.text, deck.face, converged_values.told_values(deck), percent, folder / "deck.inp")
                  for deck in decks]
         errors = [one.error for one in found if one.status == 0]
         held = [is_held for one in found for is_held in one.held]
-        table.rows.append([name, f"{percent} %", len(found), len(errors),
-                           sum(error <= 1.0 for error in errors), f"{max(errors):.2f}",
-                           f"{sum(held)}/{len(held)}, {100 * sum(held) / len(held):.0f} %",
+        table.rows.append([name, f"{percent} %", len(found), len(errors), sum(error <= 1.0 for error in errors),
+                           f"{max(errors):.2f}", f"{sum(held)}/{len(held)}, {100 * sum(held) / len(held):.0f} %",
                            f"{sum(sum(one.seconds) for one in found):.0f}"])
-    return table
-
-
-def wavy_requests(folder):
-    """Return the table of requests on wavy faces with heat, whose edges are known."""
-    table = Table("Requests of 1 % on wavy faces with heat",
-                  ["face", "number", "reached", "of these true errors inside the target",
-                   "largest true error/target of these", "bounds that hold"],
-                  text="""Edges of contact of [known edges](#bounds-of-edges-against-known-solutions), seeds below
-16. A request that is not reached ends in a round that has no solution in the increments that the deck fixes.""")
-    for family in wavy_faces.CHOSEN[1:]:
-        found = []
-        for seed in wavy_faces.SEEDS:
-            face = wavy_faces.drawn(family, seed)
-            found.append(request(face.text, "J", {"edge_contact": [face.edge]}, 1, folder / "wave.inp"))
-        errors = [one.error for one in found if one.status == 0]
-        held = [is_held for one in found for is_held in one.held]
-        table.rows.append([family, len(found), len(errors), sum(error <= 1.0 for error in errors),
-                           f"{max(errors):.2f}", f"{sum(held)}/{len(held)}"])
     return table
 
 
 def tables(folder):
     """Run all decks with all targets."""
-    table = Table("Targets, bounds and true errors", HEAD, text="""Of the roller, whose faces do not match,
+    table = Table("Targets, uncertainties and true errors", HEAD, text="""Of the roller, whose faces do not match,
 no converged value is known.""")
     for name in DECKS:
         meshes = by_hand(name, folder) if name != "roller" else []
@@ -192,15 +159,15 @@ no converged value is known.""")
             best = next((mesh for mesh in meshes if 100 * mesh[1] <= percent), None)
             table.rows.append([*measured(name, percent, folder),
                                *((f"{best[0]:.2f}", best[2]) if best else ("-", "-"))])
-    return [table, judged_decks(folder), wavy_requests(folder), uniform(folder)]
+    return [table, drawn_requests(folder)]
 
 
 def test_cheap_requests_hold_as_the_document_tells(tmp_path):
     """A status of 0 is told of every request of 1 % or more, and true errors are inside all targets."""
     check_parts([TEXT])
-    told = {(row["deck"], row["target"]): row for row in rows("Targets, bounds and true errors")}
+    told = {(row["deck"], row["target"]): row for row in rows("Targets, uncertainties and true errors")}
     for row in told.values():
-        assert row["status"] == "0" and float(row["bound/target"]) <= 1.0
+        assert row["status"] == "0" and float(row["uncertainty/target"]) <= 1.0
         assert row["true error/target"] == "-" or float(row["true error/target"]) < 1.0
     for name, percent in (("cylinder", 1), ("coupled twin", 3), ("press fit", 0.3)):
         found = dict(zip(HEAD, measured(name, percent, tmp_path), strict=False))
@@ -214,7 +181,7 @@ def test_a_pressure_on_the_axis_settles_where_elements_are_small(tmp_path):
     """Contact points beside an axis have little weight: what two meshes leave out of balance there shows
     in no energy, but in the peak pressure of a ball. No round would help."""
     deck = drawn_deck(17)
-    exact = held_bounds.told_values(deck)
+    exact = converged_values.told_values(deck)
     for percent in (1, 0.3):
         found = request(deck.text, deck.face, exact, percent, tmp_path / "ball.inp")
-        assert found.status == 0 and found.bound <= 1.0
+        assert found.status == 0 and found.uncertainty <= 1.0

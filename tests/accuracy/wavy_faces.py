@@ -40,8 +40,7 @@ PAIRINGS = ("NODES", "SURFACES")
 COUNTS = (1, 5, 10)       # increments
 WIDTHS = range(12, 21)    # elements on half a wave
 MORE_WIDTHS, MORE_COUNTS = range(8, 25), (1, 4, 10, 20)
-# Those after the first 16 not for SPECTRAL.
-SEEDS, MORE, LAST = range(16), range(16, 32), range(32, 40)
+SEEDS = range(16)
 TOLD = ("edge", "stick", "pressure")
 FILE = Path(__file__).resolve().parent / "wavy_edges.csv"
 
@@ -332,7 +331,7 @@ def write_file(names):
         kept = {(row[0], int(row[1])): row for row in list(csv.reader(file))[1:] if row[0] not in names}
     rows = [["family", "seed", *TOLD]]
     for family in (*SPECTRAL, LAYER, ROUGH):
-        for seed in (*SEEDS, *(() if family in SPECTRAL else (*MORE, *LAST))):
+        for seed in SEEDS:
             if (family, seed) not in kept:
                 face = drawn(family, seed, False)
                 kept[family, seed] = [family, seed, *(f"{value:.8g}" if np.isfinite(value) else ""

@@ -1,68 +1,38 @@
-"""Bounds of errors against true errors, on decks, meshes and increments.
+"""Converged values of the decks of drawn_decks, and runs on other meshes with other increments.
 
 The converged value of a quantity at the end of a step is that on a mesh refined four times at the
 faces and twice elsewhere, with increments a quarter as long; what a sixteenth changes is added, from
 the mesh refined once. Where the path does not matter, errors that fall steadily as the faces are
 divided are extrapolated. The file converged.csv keeps these values, which take long:
-`python tests/accuracy/held_bounds.py DECK...` writes those of the decks named anew, or of all.
+`python tests/accuracy/converged_values.py DECK...` writes those of the decks named anew, or of all.
 """
 
 import csv
 import re
 import sys
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
 import report  # noqa: F401  # isort: skip, it makes the modules below known
 import h5py
 import numpy as np
-from bound_decks import EXAMPLES, all_decks, mismatched_deck, mismatched_decks
+from drawn_decks import EXAMPLES, all_decks, mismatched_decks
 from deck_runs import solve
 
 QUANTITIES = {"normal_force": "normal force", "shear_force": "shear force", "heat_rate": "heat rate",
               "peak_pressure": "peak pressure", "edge_contact": "edge of contact",
               "edge_stick": "edge of stick"}
-LEVELS, PARTS = (0, 1, 2), (1, 2)
 FINE = (2, 2)  # divisions of all elements, and beyond that of those at the faces
 MOST = 0.7     # ratio of changes from mesh to mesh above which nothing is extrapolated
 FILE = Path(__file__).resolve().parent / "converged.csv"
-SAME = "same"  # increments
 # Edges without a converged value, by deck, step and quantity: this one lies where elements become five times as long,
 # and moves by 1.5 % from mesh to mesh.
 UNSETTLED = {("ball 17", 1, "edge_contact")}
-TESTED = (4, 5, 7)  # seeds of decks with mortar points that a test judges
-LEAST = 1e-7   # of the value: errors that are rounding, or forces that the deck prescribes
 LEAST_EDGE = 0.01   # of the spacing of the contact points: errors that converged edges may have
 ANALYSIS = re.compile(r"^(\*(?:STATIC|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)", re.M | re.I)
 
 
-@dataclass(frozen=True)
-class Case:
-    """A bound and the error that it should hold."""
-
-    deck: str
-    is_fitted: bool
-    level: int
-    part: int
-    step: int
-    quantity: str
-    converged: float
-    error: float
-    bound: float
-
-    @property
-    def is_uncertain(self):
-        """Return whether there is no bound."""
-        return bool(np.isnan(self.bound))
-
-    @property
-    def is_held(self):
-        """Return whether the error is inside the bound."""
-        return abs(self.error) <= self.bound
-
-
-def run(deck, level, part, folder, errors="YES"):
+def run(deck, level, part, folder, errors="LAST"):
     """Solve a deck with other elements and increments, and the errors of *OPTIONS; return the result file. The
     level is that of all elements, or a pair with the one of those at the faces beyond it."""
     # The faces of node pairs are divided together, those of mortar points each for itself, those of rigid bodies not.
@@ -87,7 +57,7 @@ def run(deck, level, part, folder, errors="YES"):
 
 
 def values_of(deck, level, part, times, folder):
-    """Return the quantities at times, from a run that bounds nothing."""
+    """Return the quantities at times, from a run without uncertainties."""
     with h5py.File(run(deck, level, part, folder, "NO")) as file:
         face = file[f"contact/{deck.face}"]
         found = {q: face[q][:] for q in QUANTITIES if q in face}
@@ -115,74 +85,35 @@ def rest(first, second, third):
     return (third - second) * ratio / (1.0 - ratio) if 0.0 < ratio < MOST else 0.0
 
 
-def told_values(deck, increments=""):
-    """Return the converged values of a deck that are kept, by quantity: one for each step. Those of the
-    same increments as written are without the errors of these."""
+def told_values(deck):
+    """Return the converged values of a deck that are kept, by quantity: one for each step."""
     with FILE.open(newline="") as file:
-        steps = [row for row in csv.DictReader(file)
-                 if (row["deck"], row["increments"]) == (deck.name, increments)]
+        steps = [row for row in csv.DictReader(file) if row["deck"] == deck.name]
     assert steps, f"{FILE.name} does not tell {deck.name}"
     return {q: [float(row[q]) for row in steps] for q in QUANTITIES if any(row[q] for row in steps)}
 
 
-def judged(deck, folder, levels=LEVELS, parts=PARTS, increments=""):
-    """Return the cases of a deck, by the converged values that are kept; edges that are the ends of the
-    interface are not judged."""
-    cases, exact = [], told_values(deck, increments)
-    for level in levels:
-        for part in parts:
-            with h5py.File(run(deck, level, part, folder)) as file:
-                places = file[f"contact/{deck.face}/s"][:]
-                for quantity, rows in file[f"errors/{deck.face}"].items():
-                    if quantity not in exact:
-                        continue
-                    for step, row in enumerate(rows[:], 1):
-                        value, true = row[0], exact[quantity][step - 1]
-                        least = LEAST * abs(true)
-                        if quantity.startswith("edge"):
-                            beyond = np.searchsorted(places, value + 1e-6 * places[-1])
-                            if beyond == len(places):
-                                continue
-                            least = LEAST_EDGE * (places[beyond] - places[max(0, beyond - 1)])
-                        if not abs(true - value) > least:
-                            continue
-                        cases.append(Case(deck.name, deck.is_fitted, level, part, step, quantity, true,
-                                          true - value, row[1]))
-    return cases
-
-
-def judged_with_same_increments(deck, folder, levels=LEVELS):
-    """Return the cases of a deck as written, with the values of the finer mesh with the same increments
-    as the converged ones."""
-    return judged(deck, folder, levels, (1,), SAME)
-
-
-def renewed(deck, increments, folder):
+def renewed(deck, folder):
     """Return the rows of the file for a deck, one for each step."""
-    with h5py.File(run(deck, 0, 1, folder)) as file:
-        times = file["errors/time"][:]
-    found = values_of(deck, FINE, 1, times, folder) if increments else converged_values(
-        deck, times, folder)
+    with h5py.File(run(deck, 0, 1, folder, "LAST")) as file:
+        times = file["uncertainty/time"][:]
+    found = converged_values(deck, times, folder)
     for name, step, quantity in UNSETTLED:
         if name == deck.name:
             found[quantity][step - 1] = np.nan
-    return [[deck.name, increments, step + 1, *(f"{found[q][step]:.10g}" if q in found else ""
-                                                for q in QUANTITIES)] for step in range(len(times))]
+    return [[deck.name, step + 1, *(f"{found[q][step]:.10g}" if q in found else "" for q in QUANTITIES)]
+            for step in range(len(times))]
 
 
 def write_file(names):
     """Write the file, with the decks named anew; with no name all."""
-    mismatched = mismatched_decks() + [mismatched_deck(seed) for seed in TESTED]
-    wanted = [(deck, "") for deck in all_decks()] + [(deck, SAME) for deck in mismatched]
-    wanted += [(deck, "") for deck in mismatched_decks() if "mortar" in deck.name]
     with FILE.open(newline="") as file:
         kept = list(csv.reader(file))[1:]
-    rows = [["deck", "increments", "step", *QUANTITIES]]
-    for deck, increments in wanted:
+    rows = [["deck", "step", *QUANTITIES]]
+    for deck in all_decks() + mismatched_decks():
         with tempfile.TemporaryDirectory() as folder:
-            old = [row for row in kept if row[:2] == [deck.name, increments]]
-            is_new = not names or deck.name in names
-            rows += renewed(deck, increments, Path(folder)) if is_new else old
+            old = [row for row in kept if row[0] == deck.name]
+            rows += renewed(deck, Path(folder)) if not names or deck.name in names else old
     with FILE.open("w", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
 
