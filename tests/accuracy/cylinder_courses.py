@@ -1,7 +1,6 @@
 """Courses of the published cylinder and of other readings of the paper: figures at each load."""
 
 import sys
-from dataclasses import dataclass
 
 import cylinder_reference
 import h5py
@@ -30,15 +29,6 @@ READINGS = {
 OTHER_GRADING = Reading(fine=8.1)
 
 
-@dataclass(frozen=True)
-class Course:
-    """Quantities at the loads 20, 40, ..., 900; pressure, shear and flux of the pairs at places s."""
-
-    values: dict
-    s: np.ndarray
-    profiles: dict
-
-
 def deck_text(reading, level, increments):
     """Return the deck of a reading, refined, in so many increments, without fields and tables."""
     text = "\n".join(make_decks.reading_cards(reading)) + "\n"
@@ -52,7 +42,8 @@ def deck_text(reading, level, increments):
 
 
 def course(folder, reading=PUBLISHED, level=0, increments=PUBLISHED_INCREMENTS):
-    """Solve a reading on a mesh in so many increments, a multiple of 45."""
+    """Solve a reading on a mesh in so many increments, a multiple of 45; return the quantities at the loads
+    20, 40, ..., 900."""
     deck = folder / "cylinder.inp"
     deck.write_text(deck_text(reading, level, increments))
     process = run("run", "--quiet", deck, "--out", folder, seconds=7200)
@@ -60,13 +51,10 @@ def course(folder, reading=PUBLISHED, level=0, increments=PUBLISHED_INCREMENTS):
     every = increments // PUBLISHED_INCREMENTS
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
         face = {name: file[f"contact/FACE/{name}"][()][every - 1::every]
-                for name in ("normal_force", "heat_rate", "pressure", "edge_contact", "edge_stick",
-                             "shear", "heat_flux")}
-        s = file["contact/FACE/s"][()]
+                for name in ("normal_force", "heat_rate", "pressure", "edge_contact", "edge_stick")}
     found = (face["normal_force"], face["heat_rate"], face["pressure"].max(axis=1),
              face["edge_contact"], face["edge_stick"])
-    return Course(dict(zip(QUANTITIES, found, strict=True)), s,
-                  {name: face[name] for name in ("pressure", "shear", "heat_flux")})
+    return dict(zip(QUANTITIES, found, strict=True))
 
 
 def independent_course(folder, reading=PUBLISHED, level=0, vertical=False,

@@ -258,23 +258,29 @@ def compared(title, found, text=""):
 
 def of_families(title, found, text=""):
     """Return the table of the decks of each family that hold, of the cases of each setting of ERRORS."""
-    families = list(dict.fromkeys(case.family for cases in found.values() for case in cases))
-    columns = [(errors, quantity) for errors, cases in found.items() for quantity in WORDS
-               if any(case.quantity == quantity and case.is_told for case in cases)]
-    heads = [f"{errors}: {WORDS[quantity]}" if len(found) > 1 else WORDS[quantity] for errors, quantity in columns]
+    families = dict.fromkeys(case.family for cases in found.values() for case in cases)
+    columns = [(errors, quantity) for errors, cases in found.items() for quantity in [*WORDS, "all"]
+               if quantity == "all" or any(case.quantity == quantity and case.is_told for case in cases)]
+    heads = [(f"{errors}: " if len(found) > 1 else "") + WORDS.get(quantity, quantity) for errors, quantity in columns]
     table = report.Table(title, ["family", *heads], text=text)
     for family in families:
-        shares = [by_deck([case for case in found[errors] if (case.family, case.quantity) == (family, quantity)])[0]
-                  for errors, quantity in columns]
-        table.rows.append([family, *(share.split(",")[0] for share in shares)])
+        own = {errors: [case for case in cases if case.family == family] for errors, cases in found.items()}
+        table.rows.append([family, *(
+            by_deck(own[errors])[0] if quantity == "all" else
+            by_deck([case for case in own[errors] if case.quantity == quantity])[0].split(",")[0]
+            for errors, quantity in columns)])
     return table
 
 
-def misses(cases):
-    """Return the table of the uncertainties that do not hold."""
-    table = report.Table("Uncertainties that do not hold", ["deck", "quantity", "error/uncertainty"])
-    table.rows += [[case.deck, WORDS[case.quantity], f"{abs(case.error) / case.uncertainty:.2f}"] for case in cases
-                   if case.is_known and case.is_told and not case.is_held]
+def misses(found):
+    """Return the table of the uncertainties that do not hold, of the cases of each setting of ERRORS."""
+    table, worst = report.Table("Uncertainties that do not hold", ["ERRORS", "deck", "quantity", "error/uncertainty"]), {}
+    for errors, cases in found.items():
+        for case in cases:
+            if case.is_known and case.is_told and not case.is_held:
+                key = errors, case.deck, WORDS[case.quantity]
+                worst[key] = max(worst.get(key, 0.0), abs(case.error) / case.uncertainty)
+    table.rows += [[*key, f"{ratio:.2f}"] for key, ratio in worst.items()]
     return table
 
 
@@ -296,7 +302,7 @@ def main(arguments):
         kept = told_values(told.file)
         known = {key[0] for key in kept}
         cases = [case for deck in decks if deck.name in known for case in judged(deck, kept, told.judge)]
-        for table in [*judgement(cases), misses(cases)]:
+        for table in [*judgement(cases), misses({told.judge: cases})]:
             print("\n".join(report.lines_of(table)))
 
 

@@ -8,13 +8,11 @@ from deck_runs import CYLINDER
 LOAD, PUSH = 900.0, -0.4
 CONSTANT = ["*GAP LAW, TYPE=CLEARANCE", "0.8, 0.", "0.8, 1."]
 VARIABLE = ["*GAP LAW, TYPE=GAS", "0.24E-5, 0.3E-5", "*GAP LAW, TYPE=POWER", "0.8, 0.24, 1."]
-FIELDS = ["*NODE FILE, FREQUENCY=0", "*EL FILE, FREQUENCY=0", "*CONTACT FILE, FREQUENCY=0"]
-TABLES = ["*CONTACT PRINT", "CDIS, CSTR"]
 
 
 @dataclass(frozen=True)
 class Case:
-    """What is on in a deck, and cards of its step that ask for output."""
+    """What is on in a deck."""
 
     name: str
     heat: bool = False
@@ -22,7 +20,6 @@ class Case:
     contact: bool = False
     friction: bool = False
     law: tuple[str, ...] = ()
-    output: tuple[str, ...] = ()
     errors: bool = False
 
     @property
@@ -31,8 +28,7 @@ class Case:
         on = {name for name in ("heat", "mechanics", "contact", "friction") if getattr(self, name)}
         on |= {"strain by heat"} if self.heat and self.mechanics else set()
         on |= {"coupling"} if list(self.law) == VARIABLE else set()
-        on |= {"estimated errors", "refinement"} if self.errors else set()
-        return on | ({"printed tables"} if list(self.output) == TABLES else set())
+        return on | ({"estimated errors", "refinement"} if self.errors else set())
 
     @property
     def analysis(self):
@@ -56,7 +52,6 @@ CASES = (
     Case("coupled, ERRORS=LAST", heat=True, contact=True, friction=True, law=tuple(VARIABLE),
          errors=True),
 )
-COUPLED = CASES[-2]
 
 
 def mesh():
@@ -79,5 +74,5 @@ def write_deck(case, path, levels, increments):
         cards += [f"TOP, 11, 11, {LOAD!r}", "BOTTOM, 11, 11, 0."]
     if case.mechanics:
         cards += ["BOTTOM, 2, 2, 0.", "AXIS, 1, 1, 0.", f"TOP, 2, 2, {0.0 if case.heat else PUSH}"]
-    path.write_text(mesh() + "\n".join([*cards, *case.output, "*END STEP"]) + "\n")
+    path.write_text(mesh() + "\n".join([*cards, "*END STEP"]) + "\n")
     return path

@@ -48,21 +48,18 @@ def tables(folder):
     decks = [FAMILIES[family](int(seed)) for family, seed in (name.split(" ") for name in names)]
     found = {errors: [case for deck in decks for case in judged(deck, told, errors)] for errors in ERRORS}
     known = sum(case.is_known for case in found["FULL"])
-    missed = misses([case for cases in found.values() for case in cases])
     return [compared(SHARES, found, f"""{len(decks)} decks; {known} of {len(found['FULL'])} errors at ends of steps are large
-enough to be judged."""), *(of_families(f"{OF_FAMILIES}{errors}", {errors: cases}) for errors, cases in found.items()), missed]
+enough to be judged."""), *(of_families(f"{OF_FAMILIES}{errors}", {errors: cases}) for errors, cases in found.items()), misses(found)]
 
 
 def test_the_document_tells_shares_of_95_percent_and_of_85_in_each_family():
     report.check_parts([TEXT])
-    told = [share for row in report.rows(SHARES) for errors in ERRORS if "/" in (share := row[f"{errors}: decks that hold"])]
-    parts = [share for errors in ERRORS for row in report.rows(f"{OF_FAMILIES}{errors}") for share in row.values()
-             if "/" in share]
-    for shares, least in ((told, 0.95), (parts, 0.85)):
-        assert shares
-        for share in shares:
-            held, number = map(int, share.split(",")[0].split("/"))
-            assert held >= least * number, share
+    pooled = [row[f"{errors}: decks that hold"] for row in report.rows(SHARES) for errors in ERRORS]
+    parts = [row["all"] for errors in ERRORS for row in report.rows(f"{OF_FAMILIES}{errors}")]
+    for shares, least in ((pooled, 0.95), (parts, 0.85)):
+        told = [share.split(",")[0].split("/") for share in shares if share != "-"]
+        assert len(told) > len(shares) // 2
+        assert all(int(held) >= least * int(number) for held, number in told), shares
 
 
 @pytest.mark.parametrize("family", FAMILIES)

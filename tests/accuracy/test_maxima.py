@@ -19,8 +19,8 @@ without, and those of stresses and temperatures at nodes that `*VERIFY` names. E
 too. The change is the root mean square of those of the field at the nodes of the elements there, for at one node it may vanish by
 chance, and what the field rises above the value between nodes.
 
-Stress is looked for away from singular corners, where it may grow without limit as the mesh is refined:
-in elements without such a node. They are reentrant corners; corners between a held side and a free one,
+Stress is looked for in elements without singular corners, where it may grow without limit as the mesh is refined.
+These are reentrant corners; corners between a held side and a free one,
 or one held in another way, whose angle exceeds that from which stress has no limit (M. L. Williams, J. Appl. Mech. 19 (1952) 526-528;
 70 degrees where one side is clamped, 90 where it is held in one direction); nodes at the outline where materials meet; ends of ties and of contacts, where one face
 goes on; and nodes with a force, a support or a spring of their own. Summary and listing name those round which stress is larger.

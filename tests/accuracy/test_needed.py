@@ -12,7 +12,7 @@ import report  # isort: skip, it makes the modules below known
 import h5py
 import pytest
 from instructions import PROGRAM, Profile, profile
-from needed_decks import CASES, COUPLED, FIELDS, TABLES, Case, write_deck
+from needed_decks import CASES, Case, write_deck
 from program_parts import PARTS
 
 TITLE = "Only what is needed"
@@ -40,13 +40,12 @@ MEASURED = pytest.mark.skipif(
 
 @dataclass(frozen=True)
 class Measured:
-    """A deck that was run: its profile, CPU seconds, attributes of /run, bytes of the results."""
+    """A deck that was run: its profile, CPU seconds, attributes of /run."""
 
     case: Case
     profile: Profile
     seconds: float
     run: dict
-    bytes: int
 
 
 def cpu_seconds(deck, runs):
@@ -77,9 +76,9 @@ def measured(cases, folder, levels, increments, runs=RUNS, jobs=None):
 
 def of_result(case, profiled, deck, runs):
     """Return what a deck that was run under callgrind costs without it, and its sizes."""
-    seconds, result = cpu_seconds(deck, runs), deck.with_suffix(".vtkhdf")
-    with h5py.File(result) as file:
-        return Measured(case, profiled, seconds, dict(file["run"].attrs), result.stat().st_size)
+    seconds = cpu_seconds(deck, runs)
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        return Measured(case, profiled, seconds, dict(file["run"].attrs))
 
 
 def costs(runs, levels, increments):
@@ -125,27 +124,11 @@ procedures that exist for that part only (`tests/accuracy/program_parts.py`), in
     return table
 
 
-def outputs(runs, levels, increments):
-    """Return the table of what the output of the coupled deck costs."""
-    table = report.Table(
-        f"Output of the coupled deck, *REFINE, LEVELS={levels}, {increments} increments",
-        ["output", "million instructions", "CPU s", "kB of the result file"])
-    names = ("fields of all increments", "fields of the last increment only",
-             "fields of all increments, *CONTACT PRINT")
-    for name, run in zip(names, runs, strict=True):
-        table.rows.append([name, run.profile.total / 1e6, run.seconds, run.bytes // 1000])
-    return table
-
-
 def tables(folder):
     """Run all decks and return the tables of the theme."""
-    levels, increments, _ = SIZES[0]
-    written = [replace(COUPLED, output=tuple(cards)) for cards in (FIELDS, TABLES)]
     groups = [measured(cases, folder, *size) for *size, cases in SIZES]
-    more = measured(written, folder, levels, increments)
-    fields = next(run for run in groups[0] if run.case == COUPLED)
     return [*(costs(runs, *size) for runs, (*size, _) in zip(groups, SIZES, strict=True)),
-            off(groups), outputs([fields, *more], levels, increments)]
+            off(groups)]
 
 
 @MEASURED

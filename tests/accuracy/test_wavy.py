@@ -12,23 +12,13 @@ from report import check_parts, rows
 
 TITLE = "Edges against known solutions"
 TEXT = """
-An elastic half-space is pressed on a hard face, with node pairs and with mortar points; width of the contact,
-heat, mesh, increments and whatever else a family has are drawn. The half-space has the period 1 in a plane, or
-is inside a smooth tube, so that a block of finite depth has the same edges. No constant was chosen on these decks.
-
-| family | face | edge by |
-|---|---|---|
-| cold; heat in; heat out | a cosine, without heat and with heat through a perfect contact | closed forms: Westergaard; Panek and Dundurs |
-| continuous, heat in; heat out | a cosine, conductance continuous in gap and pressure | spectral solution |
-| punches with round edges; wedges; two elastic bodies | other faces with such a conductance, and both bodies elastic | spectral solution |
-| cylinder and sphere, cold; hot | parabolas (Hertz), with heat through a perfect contact into or out of them (Barber) | Galerkin's method, transforms of the fields being Bessel functions |
-| receding layer | a layer on a half-space, pressed on a part of its top (Keer, Dundurs and Tsai) | Galerkin's method |
-| Cattaneo and Mindlin | shear after pressure, equal bodies on a cosine: edges of contact and of stick | closed form |
-| Spence | pressure alone, rough rigid cylinder, 10 to 40 increments: edges of contact and of stick | cell by cell |
-
-Meshes have 16 to 48 elements a period, and 1 to 40 increments. Errors are judged from 0.001 of the spacing on against the closed
-forms without heat (cold, Cattaneo and Mindlin), from 0.01 on against the other solutions, which are not more accurate,
-and from 0.1 on for Spence's edge of stick (`tests/accuracy/wavy_faces.py`).
+An elastic half-space, of a period in a plane or inside a smooth tube, is pressed on a hard face, with node pairs and with mortar points, 16 to 48
+elements a period and 1 to 40 increments; width of the contact,
+heat, mesh, increments and whatever else a family has are drawn (`tests/accuracy/wavy_faces.py`). No constant was chosen on these decks.
+Edges follow from closed forms (cosines, *cold*: Westergaard; with heat *in* or *out* through a perfect contact: Panek and Dundurs; Cattaneo and
+Mindlin), spectral solutions (*continuous* conductance, punches, wedges, two elastic bodies), Galerkin's method (Hertz's parabolas, with heat: Barber; a
+receding layer: Keer, Dundurs and Tsai) and cell by cell (Spence's rough cylinder). Errors below 0.01 of the spacing, of
+closed forms without heat below 0.001 and of Spence's edge of stick below 0.1 are not judged.
 """
 # Errors that the solutions may have, of the spacing, and those that closed forms do not have.
 LEAST, LEAST_EXACT = {"edge_contact": 0.01, "edge_stick": 0.1}, 0.001
