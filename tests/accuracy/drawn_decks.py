@@ -80,7 +80,8 @@ def mismatched_decks():
     sides on 2, each face as the slave."""
     decks = [mismatched_deck(seed) for seed in MISMATCHED]
     for slave, sides in (("CURVED", (24, 16)), ("FLAT", (16, 24))):
-        decks.append(DrawnDeck(f"Hertz 3 to 2, slave {slave}", "\n".join(hertz(*sides, slave)[0]) + "\n", "FACE", False))
+        text = "\n".join(hertz(*sides, slave)[0]) + "\n"
+        decks.append(DrawnDeck(f"Hertz 3 to 2, slave {slave}", text, "FACE", False))
     return decks
 
 

@@ -261,7 +261,8 @@ def of_families(title, found, text=""):
     families = dict.fromkeys(case.family for cases in found.values() for case in cases)
     columns = [(errors, quantity) for errors, cases in found.items() for quantity in [*WORDS, "all"]
                if quantity == "all" or any(case.quantity == quantity and case.is_told for case in cases)]
-    heads = [(f"{errors}: " if len(found) > 1 else "") + WORDS.get(quantity, quantity) for errors, quantity in columns]
+    heads = [(f"{errors}: " if len(found) > 1 else "") + WORDS.get(quantity, quantity)
+             for errors, quantity in columns]
     table = report.Table(title, ["family", *heads], text=text)
     for family in families:
         own = {errors: [case for case in cases if case.family == family] for errors, cases in found.items()}
@@ -272,9 +273,18 @@ def of_families(title, found, text=""):
     return table
 
 
+def check_shares(title, column="decks that hold", least=0.95):
+    """Assert that the document tells at least such shares in the columns of a table that end so."""
+    told = [cell.split(",")[0].split("/") for row in report.rows(title) for head, cell in row.items()
+            if head.endswith(column) and "/" in cell]
+    assert told, title
+    assert all(int(held) >= least * int(number) for held, number in told), report.rows(title)
+
+
 def misses(found):
     """Return the table of the uncertainties that do not hold, of the cases of each setting of ERRORS."""
-    table, worst = report.Table("Uncertainties that do not hold", ["ERRORS", "deck", "quantity", "error/uncertainty"]), {}
+    table = report.Table("Uncertainties that do not hold", ["ERRORS", "deck", "quantity", "error/uncertainty"])
+    worst = {}
     for errors, cases in found.items():
         for case in cases:
             if case.is_known and case.is_told and not case.is_held:

@@ -1,5 +1,5 @@
-"""Decks of families with independent solutions, which chose no constant of uncertainties: geometry, materials, loads, elements, meshes and
-increments are drawn.
+"""Decks of families with independent solutions, on which no constant was chosen: geometry, materials, loads,
+elements, meshes and increments are drawn.
 
 skew waves, friction: two elastic bodies with beta = 0 meet in a wave of two harmonics without symmetry, between
 periodic sides; the top moves down, then along (skew_waves).

@@ -7,25 +7,26 @@ import numpy as np
 import pytest
 import wavy_faces
 from deck_runs import solve
-from judged_decks import Case, compared, estimate, of_families
-from report import check_parts, rows
+from judged_decks import Case, check_shares, compared, estimate
+from report import check_parts
 
 TITLE = "Edges against known solutions"
 TEXT = """
-An elastic half-space, of a period in a plane or inside a smooth tube, is pressed on a hard face, with node pairs and with mortar points, 16 to 48
-elements a period and 1 to 40 increments; width of the contact,
-heat, mesh, increments and whatever else a family has are drawn (`tests/accuracy/wavy_faces.py`). No constant was chosen on these decks.
-Edges follow from closed forms (cosines, *cold*: Westergaard; with heat *in* or *out* through a perfect contact: Panek and Dundurs; Cattaneo and
-Mindlin), spectral solutions (*continuous* conductance, punches, wedges, two elastic bodies), Galerkin's method (Hertz's parabolas, with heat: Barber; a
-receding layer: Keer, Dundurs and Tsai) and cell by cell (Spence's rough cylinder). Errors below 0.01 of the spacing, of
-closed forms without heat below 0.001 and of Spence's edge of stick below 0.1 are not judged.
+An elastic half-space, of a period in a plane or inside a smooth tube, is pressed on a hard face, with node
+pairs and with mortar points, 16 to 48 elements a period and 1 to 40 increments; width of the contact, heat,
+mesh, increments and whatever else a family has are drawn (`tests/accuracy/wavy_faces.py`). No constant was
+chosen on these decks. Edges follow from closed forms (cosines, *cold*: Westergaard; with heat *in* or *out*
+through a perfect contact: Panek and Dundurs; Cattaneo and Mindlin), spectral solutions (*continuous*
+conductance, punches, wedges, two elastic bodies), Galerkin's method (Hertz's parabolas, with heat: Barber; a
+receding layer: Keer, Dundurs and Tsai) and cell by cell (Spence's rough cylinder). Errors below 0.01 of the
+spacing, of closed forms without heat below 0.001 and of Spence's edge of stick below 0.1 are not judged.
 """
 # Errors that the solutions may have, of the spacing, and those that closed forms do not have.
 LEAST, LEAST_EXACT = {"edge_contact": 0.01, "edge_stick": 0.1}, 0.001
 EXACT = ("cold", wavy_faces.SHEARED)
 FAMILIES = wavy_faces.CHOSEN + wavy_faces.KNOWN + wavy_faces.NEW
 ERRORS = "LAST", "FULL"
-SHARES, OF_FAMILIES = "Edges that hold", "Edges of each family that hold"
+SHARES = "Edges that hold"
 TESTED = (("cold", 1), ("cold", 2), ("heat in", 1), ("heat out", 4), ("sphere, hot", 0), ("Spence", 1),
           ("Cattaneo and Mindlin", 2))
 
@@ -48,10 +49,10 @@ def judged(family, seed, folder, errors="LAST"):
 
 
 def tables(folder):
-    """Return the tables of all families together, and of each."""
+    """Return the table of all families together."""
     found = {errors: [case for family in FAMILIES for seed in wavy_faces.SEEDS
                       for case in judged(family, seed, folder, errors)] for errors in ERRORS}
-    return [compared(SHARES, found), of_families(OF_FAMILIES, found)]
+    return [compared(SHARES, found, f"{len(FAMILIES)} families, of each {len(wavy_faces.SEEDS)} decks.")]
 
 
 def test_the_spectral_solution_has_the_edge_of_the_closed_form(monkeypatch):
@@ -103,6 +104,6 @@ def test_the_edge_of_a_wide_contact_is_told_to_a_part_of_the_spacing(tmp_path):
         assert all(abs(case.error) < most for case in cases if case.quantity == "edge_contact"), (family, seed)
 
 
-def test_the_document_has_all_families():
+def test_the_document_tells_shares_of_95_percent():
     check_parts([TEXT])
-    assert {row["family"] for row in rows(OF_FAMILIES)} == {*FAMILIES}
+    check_shares(SHARES)
