@@ -256,20 +256,18 @@ def compared(title, found, text=""):
     return table
 
 
-def of_families(title, found, text=""):
-    """Return the table of the decks of each family that hold, of the cases of each setting of ERRORS."""
-    families = dict.fromkeys(case.family for cases in found.values() for case in cases)
-    columns = [(errors, quantity) for errors, cases in found.items() for quantity in [*WORDS, "all"]
-               if quantity == "all" or any(case.quantity == quantity and case.is_told for case in cases)]
-    heads = [(f"{errors}: " if len(found) > 1 else "") + WORDS.get(quantity, quantity)
-             for errors, quantity in columns]
-    table = report.Table(title, ["family", *heads], text=text)
+def of_families(title, found):
+    """Return the table of the decks of each family that hold: of each quantity for the last setting of ERRORS, of
+    all quantities together for each."""
+    families, last = dict.fromkeys(case.family for cases in found.values() for case in cases), [*found][-1]
+    quantities = [quantity for quantity in WORDS if any(case.quantity == quantity for case in found[last])]
+    table = report.Table(title, ["family", *(f"{last}: {WORDS[quantity]}" for quantity in quantities),
+                                 *(f"{errors}: all" for errors in found)])
     for family in families:
         own = {errors: [case for case in cases if case.family == family] for errors, cases in found.items()}
-        table.rows.append([family, *(
-            by_deck(own[errors])[0] if quantity == "all" else
-            by_deck([case for case in own[errors] if case.quantity == quantity])[0].split(",")[0]
-            for errors, quantity in columns)])
+        each = [by_deck([case for case in own[last] if case.quantity == quantity])[0] for quantity in quantities]
+        table.rows.append([family, *(share.split(",")[0] for share in each),
+                           *(by_deck(own[errors])[0] for errors in found)])
     return table
 
 

@@ -29,10 +29,10 @@ edge of contact at 180, 360, 540, 720 and 900 C on top. For each error we sought
 each program over elements, meshes and increments, and over CalculiX's penalty and stick slope. Cost
 is CPU time, user and system, of one core, including reading and writing.
 
-Both programs solve the same problem, so they have the same limit. Heat crosses only closed contact
-points, because CalculiX cannot do more. Strains and curvature are 100 times smaller and E is 100
+Both programs solve the same problem: heat crosses only closed contact
+points, because CalculiX cannot do more, and strains and curvature are 100 times smaller and E is 100
 times larger, so that gaps at displaced positions, which CalculiX measures, equal those at
-undeformed positions, which thercon measures as the paper does.
+undeformed positions.
 [tests/bench](../tests/bench/README.md) has the details; `./setup.sh bench` repeats the runs.
 """
 ELEMENTS = {"CPE8": "8", "CPE8R": "8R", "CPE4": "4", "CPE4R": "4R"}

@@ -8,7 +8,6 @@ import h5py
 import numpy as np
 import pytest
 from deck_runs import run
-from instructions import instructions
 from judged_decks import LEAST, Case, check_shares, compared, estimate, of_families
 from maxima_decks import FAMILIES, KINDS
 
@@ -32,9 +31,9 @@ No uncertainty knows the shape of faces that linear elements make straight. Forc
 single forces on the divided mesh, so that uncertainties there are far too large: use \\*DSLOAD.
 
 They are judged on problems with closed forms, drawn at random (`tests/accuracy/maxima_decks.py`), of elements
-of eight, eight reduced, four, four with incompatible modes, six and three nodes, with 2, 4 and 8 elements
-along each side; each mesh of each draw is a deck. Errors below 1e-5 of the value are not judged, nor stress
-that is larger round a singular corner which the summary names.
+of eight, eight reduced, four, four with incompatible modes, six and three nodes, with 2, 4 and 8 elements along
+each side; each mesh of each draw is a deck. Errors below 1e-5 of the value are not judged, nor stress that is
+larger round a singular corner which the summary names.
 """
 SIZES = 2, 4, 8
 DRAWS = 3
@@ -69,32 +68,11 @@ def judged(family, draw, folder, kinds=KINDS, errors="LAST", sizes=SIZES):
     return cases
 
 
-def held_tables(folder):
+def tables(folder):
     """Return the tables of all problems together, and of each."""
     found = {errors: [case for family in FAMILIES for draw in range(DRAWS)
                       for case in judged(family, draw, folder, errors=errors)] for errors in ERRORS}
     return [compared(SHARES, found), of_families(OF_PROBLEMS, found)]
-
-
-def cost_table(folder):
-    """Return what uncertainties cost without contact."""
-    table = report.Table("Cost of uncertainties without contact", [
-        "problem", "elements", "ERRORS=NO, million instructions", "LAST", "LAST, % more"])
-    for family, kind, n in (("tube", "8", 8), ("tube", "8", 32), ("rotor", "8", 32), ("bar", "8", 32)):
-        make, _ = FAMILIES[family](np.random.default_rng([0, zlib.crc32(family.encode())]))
-        spent = []
-        for errors in ("NO", "LAST"):
-            deck = folder / f"cost-{family}-{n}-{errors}.inp"
-            deck.write_text("\n".join([f"*OPTIONS, ERRORS={errors}", *make(kind, n)]) + "\n")
-            spent.append(instructions("run", "--quiet", deck, "--out", folder) / 1e6)
-        table.rows.append([WORDS[family], n * n, *(f"{cost:.0f}" for cost in spent),
-                           f"{100 * (spent[1] / spent[0] - 1):.0f}"])
-    return table
-
-
-def tables(folder):
-    """Return the tables of the theme."""
-    return [*held_tables(folder), cost_table(folder)]
 
 
 @pytest.mark.parametrize("errors", ERRORS)

@@ -12,19 +12,13 @@ from skew_waves import SkewWave
 
 TITLE = "Families with independent solutions"
 TEXT = """
-Three families of problems, on which no constant was chosen:
-
-- *Skew waves with friction*: two elastic bodies meet in a wave of two harmonics without symmetry; the upper one
-  moves down, then along. Pressures solve a singular integral equation, and shear and stick follow from them
-  (Ciavarella; Jaeger).
-- *Hot dies, plane* and *axisymmetric*: a hard die between a parabola and a quartic is pressed into a layer on a
-  cold base. A quarter of the decks has no heat, half of them a gas in the gap and a conductance that grows with
-  the pressure, heat in or out, and a quarter conducts closed only. The layer is solved by its modes.
-
-Materials, geometry, friction, conductance, loads, elements (CPE8, CPE8R, CPE6, CPE4 and the axisymmetric ones),
-12 to 48 of them in the contact, meshes that do not match for mortar points, and 1 to 10 increments (with
-friction 2 to 10 in each step) are drawn (`tests/accuracy/new_families.py`). Errors below 2e-5 of the value and
-2e-3 of the spacing are not judged.
+Three families of problems (`tests/accuracy/new_families.py`), on which no constant was chosen. *Skew waves with
+friction*: two elastic bodies meet in a wave of two harmonics without symmetry; the upper one moves down, then
+along; pressures solve a singular integral equation, and shear and stick follow from them (Ciavarella; Jaeger).
+*Hot dies, plane* and *axisymmetric*: a hard die between a parabola and a quartic is pressed into a layer on a
+cold base, without heat, with a gas in the gap and a conductance that grows with the pressure, or conducting
+closed only; the layer is solved by its modes. Materials, geometry, elements, meshes, and 1 to 10 increments are
+drawn. Errors below 2e-5 of the value and 2e-3 of the spacing are not judged.
 """
 LEAST, LEAST_EDGE = 2e-5, 2e-3
 ERRORS = "LAST", "FULL"
@@ -62,8 +56,7 @@ def tables(folder):
     """Return the tables of the families together, and of each."""
     found = {errors: [case for family in new_families.FAMILIES for seed in new_families.SEEDS
                       for case in judged(family, seed, folder, errors)] for errors in ERRORS}
-    return [compared(SHARES, found), *(of_families(f"{OF_FAMILIES}, ERRORS={errors}", {errors: cases})
-                                       for errors, cases in found.items())]
+    return [compared(SHARES, found), of_families(OF_FAMILIES, found)]
 
 
 def fine_errors(family, seed, folder, times_as_fine):
