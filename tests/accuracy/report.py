@@ -23,9 +23,9 @@ How accurate results are, what more accuracy costs, and how another program comp
 | question | answer | section |
 |---|---|---|
 | How accurate is my run? | Its summary has a numerical uncertainty (95 %) for each force, heat rate, peak pressure and edge, and for the largest stress and temperature of each body | [Numerical uncertainty](#numerical-uncertainty) |
-| Which numbers have none? | Under the default, `ERRORS=LAST`, what errors build up in along the path; `ERRORS=FULL` tells them at about ten times the cost | [Numerical uncertainty](#numerical-uncertainty) |
-| How often do they hold? | On decks that were drawn afterwards: PLACEHOLDER | [Uncertainties judged](#uncertainties-judged-on-decks-drawn-afterwards) |
-| And against independent solutions? | PLACEHOLDER2 | [Families with independent solutions](#families-with-independent-solutions) |
+| Which numbers have none? | Under the default, `ERRORS=LAST`, what errors build up in along the path; `ERRORS=FULL` tells them at four to six times the cost | [Numerical uncertainty](#numerical-uncertainty) |
+| How often do they hold? | For 95 to 100 % of the numbers of each kind | [Uncertainties judged](#uncertainties-judged-on-decks-drawn-afterwards) |
+| And against independent solutions? | For 95 to 100 % of forces, heat rates, peak pressures and edges | [Families with independent solutions](#families-with-independent-solutions) |
 | How accurate are the largest stress and temperature? | Their uncertainties are in the summary, away from singular corners, which are named | [Largest stress and temperature](#largest-stress-and-temperature) |
 | How do I get 1 %? | `thercon run DECK --accuracy 1%`; most decks take one to three rounds | [Accuracy on request](#accuracy-on-request) |
 | Node pairs or mortar points? | Keep the default, but use `PAIRING=SURFACES` on the faces of a crack whose force or heat counts | [Node pairs against mortar points](#node-pairs-against-mortar-points) |
