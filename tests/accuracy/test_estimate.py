@@ -62,7 +62,7 @@ ERRORS = "LAST", "FULL"
 LEVELS = 0, 1
 POINTS = {"node pairs": all_decks, "mortar points": mismatched_decks}
 SHARES, OF_POINTS = "Decks that chose the constants", "Decks with each pairing that hold"
-TESTED = "cylinder, mu = 0.3, aluminium", "Hertz", "plane 4", "punch 23, mortar"
+TESTED = "cylinder", "Hertz", "plane 4", "punch 23, mortar"
 
 
 @dataclass(frozen=True)
@@ -159,11 +159,11 @@ def tables(folder):
 
 @pytest.mark.parametrize("errors", ERRORS)
 def test_uncertainties_hold_on_some_decks(tmp_path, errors):
-    """Two thirds of the numbers have one under LAST, all have one under FULL."""
+    """Under LAST only what does not follow the path has one."""
     decks = [deck for deck in all_decks() + mismatched_decks() if deck.name in TESTED]
     cases = [case for deck in decks for case in judged(deck, (0,), errors, tmp_path)]
     told = [case for case in cases if case.is_told]
-    assert len(cases) > 15 and (errors == "LAST" or told == cases) and len(told) >= len(cases) // 2
+    assert len(told) == len(cases) > 15 if errors == "FULL" else len(told) > 6
     assert all(case.is_held for case in told)
     assert {case.reason for case in cases} <= {"", "path; ERRORS=FULL"}
 

@@ -59,7 +59,7 @@ outside are {np.median(missed):.1f} times the uncertainty in the median, {max(mi
 def test_the_document_tells_shares_of_95_percent_and_of_85_in_each_family():
     report.check_parts([TEXT])
     check_shares(SHARES)
-    check_shares(OF_FAMILIES, "all", 0.85)
+    check_shares(OF_FAMILIES, "all", 85)
 
 
 @pytest.mark.parametrize("family", FAMILIES)

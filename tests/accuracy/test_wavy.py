@@ -27,7 +27,7 @@ EXACT = ("cold", wavy_faces.SHEARED)
 FAMILIES = wavy_faces.CHOSEN + wavy_faces.KNOWN + wavy_faces.NEW
 ERRORS = "LAST", "FULL"
 SHARES = "Edges that hold"
-TESTED = (("cold", 1), ("cold", 2), ("heat in", 1), ("heat out", 4), ("sphere, hot", 0), ("Spence", 1),
+TESTED = (("cold", 1), ("cold", 2), ("punches with round edges", 1), ("heat out", 4), ("sphere, hot", 0), ("Spence", 1),
           ("Cattaneo and Mindlin", 2))
 
 
@@ -93,7 +93,7 @@ def test_uncertainties_of_edges_hold_on_families_with_known_edges(tmp_path, erro
     """A deck of some families."""
     cases = [case for family, seed in TESTED for case in judged(family, seed, tmp_path, errors)]
     told = [case for case in cases if case.is_told]
-    assert len(told) >= (len(cases) if errors == "FULL" else len(TESTED))
+    assert len(told) == len(cases) if errors == "FULL" else len(told) > 5
     assert all(abs(case.error) <= case.uncertainty < 15 * abs(case.error) for case in told)
 
 
