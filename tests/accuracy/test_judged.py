@@ -34,9 +34,8 @@ extrapolated. The last changes tell how accurate these are: an error is judged w
 that, and 1e-5 of the value. A deck holds where all ends of its steps do; *without* counts decks with a number
 without estimate, medians and 90 % are of uncertainty over error.
 
-Not judged are: forces that loads prescribe; peak pressures where contact ends at corners, and stresses at
-singular corners, which have no limit; numbers inside a step; and decks without true values, as their finer runs
-do not end.
+Not judged are forces that loads prescribe, pressures and stresses at corners, which have no limit, numbers inside
+a step, and decks whose finer runs do not end.
 """
 ERRORS = "LAST", "FULL"
 SHARES = "All families drawn afterwards"

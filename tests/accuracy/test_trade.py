@@ -1,4 +1,4 @@
-"""Speed for accuracy, measured by `thercon trade` on four decks, and what each of them teaches."""
+"""Speed for accuracy, measured by `thercon trade` on three decks, and what each of them teaches."""
 
 import csv
 import os
@@ -13,8 +13,8 @@ from thercon_post import style, trade
 
 TITLE = "Speed for accuracy, measured"
 TEXT = """
-`thercon trade DECK` measures what accuracy costs for any deck; [running.md](running.md#speed-against-accuracy)
-describes the command and its table. Four decks teach:
+`thercon trade DECK` measures what accuracy costs; [running.md](running.md#speed-against-accuracy)
+describes the command and its table. Three decks teach:
 
 - Refine the mesh, at the contact faces first, with elements that have midside nodes.
 - Leave increments, tolerance and method as they are. Only friction depends on the increments.
@@ -54,10 +54,6 @@ contact to 6 %, the edge of stick to 20 %. A finer mesh improves all of them, an
 refine at the contact faces: `Q8 x 2:8` is as accurate as `Q8 x 8` in two fifths of the time.
 Shorter increments improve only the edge of stick. Only `NEWTON` completes the run; the three other
 methods fail at 500 and 520 C and are listed as failed."""
-HERTZ = """\
-Without friction the path does not matter: one increment gives the same digits as sixteen. On the
-unrefined mesh linear elements give the peak pressure to 0.5 % in a tenth of the time of the deck as
-written, and every mesh gives the force. The edge of contact is accurate to half a per cent."""
 ROD = """\
 Uniform states are exact on any mesh: all rows of the grid agree with the closed form, so the
 cheapest is sufficient; the choice between them is arbitrary. The method matters: `PICARD` cycles
@@ -66,7 +62,6 @@ and more in a single increment from a cold start, and TOL=1E-3 leaves 4e-7 of th
 CASES = {
     "cylinder": ("cylinder/cylinder.inp", "The published cylinder", CYLINDER),
     "cylinder-coupled": ("cylinder/cylinder-coupled.inp", "Its coupled twin", TWIN),
-    "hertz": ("hertz/hertz.inp", "Hertz", HERTZ),
     "r2": ("rods/r2.inp", "Rod R2", ROD),
 }
 HEADS = {"normal_force": "force", "heat_rate": "heat", "peak_pressure": "peak",
