@@ -352,21 +352,30 @@ contains
 
    end subroutine hold_new_nodes
 
-   !> Sides whose nodes the deck's equations name stay as they are, for these do not name the new
-   !> nodes, which hang there and follow from the others. Couplings and axes include them.
+   !> Sides whose nodes the deck's equations name, but for such as supports hold, stay as they are,
+   !> for these do not name the new nodes, which hang there and follow from the others. Couplings and
+   !> axes include them.
    pure subroutine keep_to_equations(division, model)
       type(division_type), intent(in) :: division
       type(model_type), intent(inout) :: model            ! the divided one
-      logical :: is_named(0:division%nodes)
+      logical :: is_held(0:division%nodes), is_named(0:division%nodes)
       integer :: between(2), ends(3), s
 
       if (model%deck_equations == 0) return
-      is_named(0) = .true.
+      is_named(0) = .false.
       is_named(1:) = equation_nodes(model%equations(:model%deck_equations), division%nodes)
+      is_held = .false.
+      is_held(0) = .true.
+      do s = 1, size(model%steps)
+         associate (held => model%steps(s)%boundaries%node)
+            is_held(pack(held, held <= division%nodes)) = .true.
+         end associate
+      end do
       do s = 1, division%sides%count
          ends = division%sides%ends(:, s)
          between = division%between(:, s)
-         if (between(1) <= division%nodes .or. .not. all(is_named(ends))) cycle
+         if (between(1) <= division%nodes .or. .not. (any(is_named(ends)) .and. &
+            all(is_named(ends) .or. is_held(ends)))) cycle
          if (any(model%mesh%hanging_sides([2, 4], :) == between(1))) cycle
          model%mesh%hanging_sides = reshape([model%mesh%hanging_sides, merge([ends, between], &
             [ends(1), between(1), ends(3), 0, 0], ends(2) > 0)], &
