@@ -353,8 +353,8 @@ contains
    end subroutine hold_new_nodes
 
    !> Sides whose nodes the deck's equations name, but for such as supports hold, stay as they are,
-   !> for these do not name the new nodes, which hang there and follow from the others. Couplings and
-   !> axes include them.
+   !> for these do not name the new nodes, which hang there and follow from the others. Couplings
+   !> and axes include them.
    pure subroutine keep_to_equations(division, model)
       type(division_type), intent(in) :: division
       type(model_type), intent(inout) :: model            ! the divided one
