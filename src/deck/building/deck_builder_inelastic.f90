@@ -112,10 +112,9 @@ contains
                values(2, first:last), deck)
          end associate
       end do
-      associate (starts => yield%first(:size(yield%temperature)))
-         call check_ascending(card%data(starts), 3, 'the temperatures of the rows', &
-            yield%temperature, deck)
-      end associate
+      k = findloc(values(3, 2:) < values(3, :size(values, 2) - 1), .true., dim=1)
+      if (k > 0) call deck%error(card%data(k + 1)%place(3), 'the temperatures of the rows must '// &
+         'ascend: '//to_text(values(3, k + 1))//' follows '//to_text(values(3, k)))
       if (deck%error_count() > errors) return
       yield%stress = values(1, :)
       yield%strain = values(2, :)
