@@ -22,11 +22,11 @@ contains
    !> Whether the value of a check has an error that a finer mesh shows.
    pure logical function is_estimable(check)
       type(verify_type), intent(in) :: check
+      type(quantity_type) :: quantity
 
-      associate (quantity => verifiable(find_quantity(verifiable, check%quantity)))
-         is_estimable = .not. (quantity%is_integer .or. quantity%is_geometry .or. &
-            any(quantity%unit == [character(4) :: '-', 'time', 'load']))
-      end associate
+      quantity = verifiable(find_quantity(verifiable, check%quantity))
+      is_estimable = .not. (quantity%is_integer .or. quantity%is_geometry .or. &
+         any(quantity%unit == [character(4) :: '-', 'time', 'load']))
    end function is_estimable
 
    !> The values that a check is about: one, or those of a set, of which the worst counts.

@@ -1,6 +1,7 @@
-"""A requested accuracy: *ACCURACY and --accuracy. True errors are those to the converged values that
-docs/accuracy.md tells, from meshes far finer than any here."""
+"""A requested accuracy: *ACCURACY and --accuracy. True errors are those to the converged values of
+tests/accuracy/converged.csv, from meshes far finer than any here."""
 
+import csv
 import fcntl
 import re
 import resource
@@ -20,14 +21,10 @@ from deck_runs import (COUPLED, CYLINDER, DECKS, HERTZ, INPUT, PATIENCE, PROGRAM
                        run, solve)
 from physics import material, mesh
 
-sys.path.insert(0, str(DECKS.parent / "documents"))
-from document import Document  # noqa: E402
-
-QUANTITIES = {"normal_force": "normal force", "heat_rate": "heat rate",
-              "peak_pressure": "peak pressure", "edge_contact": "edge of contact"}
-TOLD = {row["deck"]: row for row in Document("accuracy.md", DECKS, (), "").rows(
-    "Converged values of the known decks")}
-CONVERGED = {deck: {quantity: float(TOLD[name][head]) for quantity, head in QUANTITIES.items()}
+QUANTITIES = "normal_force", "heat_rate", "peak_pressure", "edge_contact"
+with (DECKS.parent / "accuracy" / "converged.csv").open(newline="") as told:
+    TOLD = {row["deck"]: row for row in csv.DictReader(told)}
+CONVERGED = {deck: {quantity: float(TOLD[name][quantity]) for quantity in QUANTITIES}
              for deck, name in ((CYLINDER, "cylinder"), (COUPLED, "coupled twin"))}
 FRICTIONLESS = {"*FRICTION\n0.155, 1.E5\n": ""}   # the last increment alone tells all
 PRESS_FIT = INPUT / "examples" / "press_fit.inp"
@@ -143,7 +140,7 @@ def test_a_course_that_bends_by_itself_keeps_no_request_from_its_target(tmp_path
     _, known, _ = rounds_of(tmp_path / "cracked_plate.vtkhdf", "CRACK")
     step, value, uncertainty, _ = known["heat_rate"][0]
     assert step == 4 and uncertainty < 0.02 * abs(value)
-    exact = {quantity: float(TOLD["cracked plate"][head]) for quantity, head in QUANTITIES.items()}
+    exact = {quantity: float(TOLD["cracked plate"][quantity]) for quantity in QUANTITIES}
     for quantity, rows in known.items():
         if rows[-1][0] == 4:
             _, value, uncertainty, allowed = rows[-1]
@@ -205,8 +202,9 @@ def test_per_cent_are_of_what_is_told_beside_them(tmp_path):
     process = run("run", CYLINDER, "--out", tmp_path, "--accuracy", "3%")
     known = rounds_of(tmp_path / "cylinder.vtkhdf")[1]
     told = dict(re.findall(r"FACE (\S.*\S) +met: (uncertainty .*), target 3 %\n", process.stdout))
-    assert set(told) == set(QUANTITIES.values())
-    for name, words in QUANTITIES.items():
+    assert set(told) == {name.replace("_", " ").replace("edge", "edge of") for name in QUANTITIES}
+    for name in QUANTITIES:
+        words = name.replace("_", " ").replace("edge", "edge of")
         _, value, uncertainty, allowed = known[name][-1]
         percent, scale, unit = re.fullmatch(r"uncertainty (\S+) % of (\S+) (.*)", told[words]).groups()
         assert float(scale) == pytest.approx(allowed / 0.03, rel=1e-5)
