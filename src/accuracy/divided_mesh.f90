@@ -374,8 +374,9 @@ contains
       do s = 1, division%sides%count
          ends = division%sides%ends(:, s)
          between = division%between(:, s)
-         if (between(1) <= division%nodes .or. .not. (any(is_named(ends)) .and. &
-            all(is_named(ends) .or. is_held(ends)))) cycle
+         if (between(1) <= division%nodes .or. .not. all(is_named(ends) .or. is_held(ends))) cycle
+         ! Beside a named end, a side that supports hold is another one.
+         if (.not. (is_named(ends(2)) .or. ends(2) == 0 .and. any(is_named(ends)))) cycle
          if (any(model%mesh%hanging_sides([2, 4], :) == between(1))) cycle
          model%mesh%hanging_sides = reshape([model%mesh%hanging_sides, merge([ends, between], &
             [ends(1), between(1), ends(3), 0, 0], ends(2) > 0)], &

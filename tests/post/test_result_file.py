@@ -419,14 +419,17 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     rods = EXAMPLES.parent / "rods"
     branch = (rods / "r1.inp").read_text().replace("INPUT=", f"INPUT={rods}/").split("*VERIFY")[0]
     branch = "*OPTIONS, WIDTH=300\n" + branch.replace(", DIRECT\n1., 1.", "\n0.5, 1.\n*CONTINUATION")
-    for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED), ("branch", branch)):
+    tube = (EXAMPLES / "autofrettage.inp").read_text().split("*VERIFY")[0]
+    creeping = tube.replace("*SOLID SECTION", "*CREEP, LAW=NORTON\n1.E-20, 5., 0.\n*SOLID SECTION").replace(
+        "*STATIC\n0.1, 1.", "*VISCO\n0.1, 1.", 1)
+    for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED), ("branch", branch), ("creeping", creeping)):
         (tmp_path / f"{name}.inp").write_text(deck)
         status, said = run(tmp_path / f"{name}.inp")
         assert status == 0, said
     names = set()
     for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
                  *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "bolted_flange",
-                                                            "stretched", "rubbed", "branch"))):
+                                                            "stretched", "rubbed", "branch", "creeping"))):
         with h5py.File(path) as file:
             names |= {name.rpartition("/")[2] for name in every_dataset(file)}
             names |= set(file["run"].attrs) if "run" in file else set()
