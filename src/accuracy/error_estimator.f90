@@ -214,7 +214,8 @@ contains
       real(dp) :: other(size(values, 1), size(values, 2)), fine(size(values, 1)), &
          change(size(values, 1)), largest(size(values, 1)), scatter(size(values, 1))
       type(contact_points_type) :: points
-      logical :: holds(reason_count)
+      type(contact_points_type), allocatable :: finer(:)
+      logical :: holds(reason_count), is_at_corner
       integer :: i, q
 
       allocate (record%uncertainties(size(record%contacts)))
@@ -222,11 +223,17 @@ contains
       if (record%last_of_step .and. .not. model%steps(record%step)%is_transient) call &
          find_other_states(simulation, model, record%step, self%before, other)
       fine = ieee_value(1.0_dp, ieee_quiet_nan)
+      if (.not. allocated(self%lost)) call self%divided%interfaces(finer)
       do i = 1, size(record%contacts)
          call clear(record%uncertainties(i), values(:, i))
          call simulation%bodies%view(i, points)
          scatter = self%histories%scatter(i)
-         if (.not. allocated(self%lost)) fine = quantities_of(self%divided%record%contacts(i))
+         is_at_corner = peaks_at_corner(points, record%contacts(i))
+         if (.not. allocated(self%lost)) then
+            fine = quantities_of(self%divided%record%contacts(i))
+            is_at_corner = is_at_corner .or. peaks_at_corner(finer(i), &
+               self%divided%record%contacts(i))
+         end if
          change = fine - values(:, i)
          if (self%is_full) largest = self%histories%largest_change(i, change)
          ! In steps of few increments changes alone tell how they scatter.
@@ -237,8 +244,7 @@ contains
             holds(slides_far) = record%contacts(i)%slide%point > 0
             if (.not. ieee_is_nan(other(q, i) - values(q, i))) holds(not_unique) = &
                abs(other(q, i) - values(q, i)) > same*abs(values(q, i))
-            holds(at_corner) = estimated(q)%name == 'peak_pressure' .and. &
-               peaks_at_corner(points, record%contacts(i))
+            holds(at_corner) = estimated(q)%name == 'peak_pressure' .and. is_at_corner
             holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. &
                has_friction(simulation, i)
             call settle(record%uncertainties(i), q, reason_of(self, holds, fine(q)), &

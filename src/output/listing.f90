@@ -309,7 +309,7 @@ contains
 
       call date_and_time(values=now)
       write (date, '(i4.4, 2("-", i2.2), 1x, 2(i2.2, ":"), i2.2)') now(1:3), now(5:7)
-      program = 'THERCON '//or_blank(run%version)//'   THERMOMECHANICAL CONTACT OF ELASTIC BODIES'
+      program = 'THERCON '//or_blank(run%version)//'   THERMOMECHANICAL CONTACT IN TWO DIMENSIONS'
       call page%line(repeat('=', page_width))
       call page%line(program//date)
       call page%line(repeat('=', page_width))
