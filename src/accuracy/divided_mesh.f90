@@ -285,9 +285,8 @@ contains
       integer :: k
 
       chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
-      if (any(counts)) chosen = chosen .and. elements_about(model%mesh, nodes_at(pack([(k, k=1, &
-         size(counts))], &
-         counts)))
+      if (any(counts)) chosen = chosen .and. elements_about(model%mesh, &
+         nodes_at(pack([(k, k=1, size(counts))], counts)))
       if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
          [model%ties%faces%slave, model%ties%faces%master])
 

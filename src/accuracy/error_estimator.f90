@@ -4,7 +4,7 @@
 module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use body_maxima, only: body_maxima_type
-   use checked_values, only: is_estimable, values_asked_for
+   use checked_values, only: is_estimable, values_asked_for, worst_of
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use divided_mesh, only: divided_mesh_type
@@ -192,14 +192,12 @@ contains
       real(dp), intent(in) :: values(:, :)                   ! (quantities, interfaces)
       integer, intent(in) :: reason
       type(increment_record_type), intent(inout) :: record
-      integer :: i, q
+      integer :: i
 
       allocate (record%uncertainties(size(record%contacts)), record%body_uncertainties(0))
       do i = 1, size(record%contacts)
          call clear(record%uncertainties(i), values(:, i))
-         do q = 1, size(values, 1)
-            call settle(record%uncertainties(i), q, reason, no_parts())
-         end do
+         where (.not. ieee_is_nan(values(:, i))) record%uncertainties(i)%no_estimate = reason
       end do
    end subroutine go_without
 
@@ -235,7 +233,7 @@ contains
                self%divided%record%contacts(i))
          end if
          change = fine - values(:, i)
-         if (self%is_full) largest = self%histories%largest_change(i, change)
+         if (self%is_full) call self%histories%take_change(i, change, largest)
          ! In steps of few increments changes alone tell how they scatter.
          if (self%is_full) change = merge(largest, change, ieee_is_nan(scatter))
          where (ieee_is_nan(scatter)) scatter = 0.0_dp
@@ -397,24 +395,16 @@ contains
          call values_asked_for(check, record, model, interfaces, simulation%recovery%points%node, &
             values, reason)
          if (reason /= '') return
-         checks%value(i) = worst(values)
+         checks%value(i) = worst_of(check, values)
          fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
          if (.not. (allocated(self%lost) .or. any(holds))) call values_asked_for(check, &
             self%divided%record, self%divided%model, fine_interfaces, fine_points%node, fine, &
             reason)
          if (reason /= '') fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
-         call settle(checks, i, reason_of(self, holds, worst(fine)), uncertainty_parts(quantity, &
-            worst(fine) - checks%value(i), 0.0_dp, 0.0_dp, iteration*checks%value(i)))
+         call settle(checks, i, reason_of(self, holds, worst_of(check, fine)), &
+            uncertainty_parts(quantity, worst_of(check, fine) - checks%value(i), 0.0_dp, 0.0_dp, &
+            iteration*checks%value(i)))
       end subroutine compare
-
-      !> The value that a check judges; NaN where one is.
-      pure real(dp) function worst(values)
-         real(dp), intent(in) :: values(:)
-
-         worst = ieee_value(1.0_dp, ieee_quiet_nan)
-         if (.not. any(ieee_is_nan(values))) worst = values(maxloc(abs(values - &
-            model%verifications(i)%value), dim=1))
-      end function worst
 
    end subroutine judge_checks
 
@@ -530,13 +520,6 @@ contains
 
       kind_of = verifiable(find_quantity(verifiable, check%quantity))%kind
    end function kind_of
-
-   !> No parts.
-   pure function no_parts() result(parts)
-      real(dp) :: parts(3)
-
-      parts = ieee_value(1.0_dp, ieee_quiet_nan)
-   end function no_parts
 
    !> Squared error of each element: stress and heat flux of each body count by their relative
    !> errors.

@@ -21,7 +21,7 @@ module quantity_histories
       procedure :: begin_step
       procedure :: follow
       procedure :: scatter
-      procedure :: largest_change
+      procedure :: take_change
       procedure :: exchange
    end type quantity_histories_type
 
@@ -67,20 +67,20 @@ contains
    end subroutine exchange
 
    !> Takes the changes of the quantities of an interface on a finer mesh at the end of an
-   !> increment; those of the last three that are largest, since at one increment one may vanish by
-   !> chance.
-   function largest_change(self, interface, change) result(largest)
+   !> increment, and gives those of the last three that are largest, since at one increment one may
+   !> vanish by chance.
+   pure subroutine take_change(self, interface, change, largest)
       class(quantity_histories_type), intent(inout) :: self
       integer, intent(in) :: interface
       real(dp), intent(in) :: change(:)           !! (quantities) NaN: none
-      real(dp) :: largest(size(change))           !! likewise
+      real(dp), intent(out) :: largest(:)         !! (quantities) likewise
 
       associate (own => self%changes(:, :, interface))
          own(:2, :) = own(2:, :)
          own(3, :) = merge(0.0_dp, abs(change), ieee_is_nan(change))
          largest = merge(change, maxval(own, dim=1), ieee_is_nan(change))
       end associate
-   end function largest_change
+   end subroutine take_change
 
    !> How much the quantities of an interface scatter; NaN where they have too few values.
    pure function scatter(self, interface)

@@ -91,21 +91,18 @@ contains
    !> Whether a request is for what the last increment alone does not tell.
    pure logical function needs_full(model)
       type(model_type), intent(in) :: model              !! with targets
-      logical :: with_friction(size(model%contacts))
-      integer :: i, q, s
+      logical :: has_friction
+      integer :: i, s
 
       needs_full = reason_of_run(model) == of_path
-      if (needs_full) return
-      with_friction = model%interactions(model%contacts%interaction)%friction%coefficient > 0.0_dp
+      has_friction = any(model%interactions(model%contacts%interaction)%friction%coefficient > &
+         0.0_dp)
       do s = 1, size(model%steps)
-         with_friction = with_friction .or. brings_friction(model%steps(s)%changes)
+         has_friction = has_friction .or. brings_friction(model%steps(s)%changes)
       end do
-      do i = 1, size(model%accuracy%targets)
-         associate (target => model%accuracy%targets(i))
-            q = find_quantity(estimated, target%quantity)
-            needs_full = needs_full .or. estimated(q)%follows_path .and. any(with_friction)
-         end associate
-      end do
+      if (needs_full .or. .not. has_friction) return
+      needs_full = any([(estimated(find_quantity(estimated, model%accuracy%targets(i)%quantity))% &
+         follows_path, i=1, size(model%accuracy%targets))])
    end function needs_full
 
    !> Begins a round; the first one takes what is requested, of one interface or of all.
@@ -196,6 +193,11 @@ contains
             if (.not. finding%is_there) cycle
             errors%total(q) = finding%uncertainty
             errors%no_estimate(q) = finding%no_estimate
+            if (ieee_is_nan(finding%uncertainty) .or. .not. ieee_is_nan(errors%change(q))) cycle
+            ! The rounds tell it.
+            errors%scatter(q) = estimated(q)%resolution*finding%spacing
+            errors%change(q) = errors%total(q) - errors%scatter(q)
+            errors%iteration(q) = 0.0_dp
          end associate
       end do
    end subroutine settle

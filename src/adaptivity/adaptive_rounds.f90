@@ -112,8 +112,7 @@ contains
 
       allocate (estimator)
       call estimator%start(model)
-      if (present(restart) .and. .not. allocated(error)) call estimator%exchange( &
-         size(model%contacts), restart, error)
+      if (present(restart)) call estimator%exchange(size(model%contacts), restart, error)
       call self%accuracy%begin_round(model%accuracy, size(model%contacts), size(model%steps))
       call indicators%start(model)
       do while (.not. (allocated(error) .or. simulation%finished(model)))

@@ -306,13 +306,14 @@ contains
       follows_law = has_law(self%library(self%sections(mesh%element_section(element))%material))
    end function follows_law
 
-   !> Largest growth of the equivalent plastic and creep strains of the bodies from a history to
-   !> another one.
-   pure function largest_growth(self, mesh, before, after) result(growth)
+   !> Largest equivalent plastic and creep strains of the bodies [-], or their growth since another
+   !> history.
+   pure function largest_growth(self, mesh, after, before) result(growth)
       class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
-      real(dp), intent(in) :: before(:), after(:)            !! (numbers)
-      real(dp) :: growth(2, mesh%body_count)
+      real(dp), intent(in) :: after(:)                       !! (numbers)
+      real(dp), optional, intent(in) :: before(:)            !! (numbers) likewise
+      real(dp) :: growth(2, mesh%body_count), grown
       integer :: e, i, k
 
       growth = 0.0_dp
@@ -322,8 +323,9 @@ contains
                if (law%strains(k) == 0) cycle
                do i = self%history_start(e) + law%strains(k) + 3, self%history_start(e + 1) - 1, &
                   law%history_count
-                  growth(k, mesh%element_body(e)) = max(growth(k, mesh%element_body(e)), &
-                     after(i) - before(i))
+                  grown = after(i)
+                  if (present(before)) grown = grown - before(i)
+                  growth(k, mesh%element_body(e)) = max(growth(k, mesh%element_body(e)), grown)
                end do
             end do
          end associate

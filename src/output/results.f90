@@ -143,7 +143,7 @@ contains
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(quantity_type), allocatable :: of_cuts(:), of_history_alone(:), of_stability(:)
       logical :: has(0:last_need)
-      integer :: i, expected, n
+      integer :: bodies, i, expected, n
 
       call start_hdf5(error)
       if (allocated(error)) return
@@ -159,8 +159,8 @@ contains
       self%has_contact = n > 0
       if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
          [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected)
-      allocate (self%tables(4 + 2*n + merge(model%mesh%body_count, 0, reason_of_run(model) == &
-         no_reason) + merge(1, 0, is_full(model))))
+      bodies = merge(model%mesh%body_count, 0, reason_of_run(model) == no_reason)
+      allocate (self%tables(4 + 2*n + bodies + merge(1, 0, is_full(model))))
       associate (tables => self%tables, steps => size(model%steps))
          of_stability = datasets(of_history, has)
          of_history_alone = pack(of_stability, of_stability%needs /= needs_stability)
@@ -182,7 +182,7 @@ contains
             call tables(4 + n + i)%start('/uncertainty/'//interfaces(i)%name, &
                with_uncertainty(estimated), 0, steps)
          end do
-         do i = 1, merge(model%mesh%body_count, 0, reason_of_run(model) == no_reason)
+         do i = 1, bodies
             call tables(4 + 2*n + i)%start('/uncertainty/body '//to_text(i), &
                with_uncertainty(maxima), 0, steps)
          end do

@@ -2,7 +2,7 @@
 module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
-   use checked_values, only: is_estimable, values_asked_for
+   use checked_values, only: is_estimable, values_asked_for, worst_of
    use due_output, only: is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
@@ -173,11 +173,11 @@ contains
       outcome%judged = .true.
       outcome%reason = reason
       if (reason /= '') return
-      if (any(ieee_is_nan(values))) then
+      outcome%found = worst_of(check, values)
+      if (ieee_is_nan(outcome%found)) then
          outcome%reason = 'there is no value (NaN)'
          return
       end if
-      outcome%found = values(maxloc(abs(values - check%value), dim=1))
       outcome%deviation = abs(outcome%found - check%value)
       outcome%passed = outcome%deviation <= check%tolerance
       if (.not. check%relative) return

@@ -15,7 +15,7 @@ module checked_values
    use text, only: read_integer, read_real, to_upper
    implicit none
    private
-   public :: is_estimable, is_on_interface, values_asked_for
+   public :: is_estimable, is_on_interface, values_asked_for, worst_of
 
 contains
 
@@ -29,7 +29,17 @@ contains
          any(quantity%unit == [character(4) :: '-', 'time', 'load']))
    end function is_estimable
 
+   !> The value that is farthest from what a check expects; NaN where one is.
+   pure real(dp) function worst_of(check, values) result(worst)
+      type(verify_type), intent(in) :: check
+      real(dp), intent(in) :: values(:)                    !! at least one
+
+      worst = ieee_value(worst, ieee_quiet_nan)
+      if (.not. any(ieee_is_nan(values))) worst = values(maxloc(abs(values - check%value), dim=1))
+   end function worst_of
+
    !> The values that a check is about: one, or those of a set, of which the worst counts.
+   !> [those of the quantity]
    subroutine values_asked_for(check, record, model, interfaces, point_node, values, reason)
       type(verify_type), intent(in) :: check
       type(increment_record_type), intent(in) :: record

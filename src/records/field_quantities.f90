@@ -7,7 +7,7 @@ module field_quantities
    use records, only: field_record_type
    implicit none
    private
-   public :: field_table, maxima, point_values
+   public :: field_table, maxima, point_values, von_mises
 
    type(quantity_type), parameter :: field_table(*) = [ &
       quantity_type('U1', of_nodes, 'length', needs_mechanics), &

@@ -131,9 +131,10 @@ contains
          deck%report%error(deck%cards%last, '--limit ends the rounds of a requested accuracy, '// &
          'and none is requested; add --accuracy or *ACCURACY, or leave it out')
       if (command%uncertainty >= 0) deck%model%uncertainty = command%uncertainty
-      if (allocated(command%targets)) deck%model%uncertainty = max(deck%model%uncertainty, &
-         uncertainty_last)
-      if (allocated(command%targets)) deck%model%accuracy%targets = command%targets
+      if (allocated(command%targets)) then
+         deck%model%uncertainty = max(deck%model%uncertainty, uncertainty_last)
+         deck%model%accuracy%targets = command%targets
+      end if
       if (allocated(deck%model%accuracy%targets) .and. deck%model%uncertainty == &
          uncertainty_last) then
          if (needs_full(deck%model)) then
@@ -145,8 +146,8 @@ contains
       select case (reason_of_run(deck%model))
       case (of_path)
          call append(deck%model%notes, 'no numerical uncertainties: where heat is stored, '// &
-            'properties follow temperatures or sections have a pre-tension, errors build up '// &
-            'along the path, which ERRORS=FULL follows once more')
+            'bodies yield or creep, properties follow temperatures or sections have a '// &
+            'pre-tension, errors build up along the path, which ERRORS=FULL follows once more')
       case (of_branches)
          call append(deck%model%notes, 'no numerical uncertainties of branches')
          deck%model%uncertainty = uncertainty_no

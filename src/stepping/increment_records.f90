@@ -82,7 +82,7 @@ contains
                record%fields%stress, record%stress_error)
             if (allocated(next%history)) then
                record%inelastic_strain = recovery%integration%largest_growth(model%mesh, &
-                  0*next%history, next%history)
+                  next%history)
                if (recovers) call recovery%recover_strains(model, next%history, &
                   record%fields%inelastic_strain)
             end if

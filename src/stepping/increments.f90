@@ -136,12 +136,12 @@ contains
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
       character(:), allocatable :: words
-      real(dp) :: growth(2)
+      real(dp) :: strain(2, model%mesh%body_count)
 
       words = ''
       if (.not. allocated(run%state%history)) return
-      growth = run%corrections%largest_growth(model, run%state)
-      if (growth(1) <= 0.0_dp) return
+      strain = run%corrections%points%largest_growth(model%mesh, run%state%history)
+      if (all(strain(1, :) <= 0.0_dp)) return
       associate (control => run%control)
          words = '; collapse: the last load that was carried is that of time '// &
             to_text(control%step_start + control%step_time)//', '//percent(control%step_time/ &

@@ -16,6 +16,7 @@ module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
    use errors, only: error_type, set_error, status_no_convergence
+   use field_quantities, only: von_mises
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
    use kinds, only: dp
@@ -134,6 +135,7 @@ contains
       self%stage = stage
       self%passes = 0
       self%renewed_at = 0
+      self%slow_passes = 0
       self%left_over = 0.0_dp
       call start_mixing(self)
       if (allocated(self%scale)) deallocate (self%scale)
@@ -225,8 +227,8 @@ contains
          return
       end if
       self%is_settled = self%left_over <= settled
-      self%asks_operators = .not. self%is_settled .and. size(self%elements) > 0 .and. &
-         needs_operators(self, last)
+      self%asks_operators = .false.
+      if (.not. self%is_settled .and. size(self%elements) > 0) call judge_pass(self, last)
       if (self%is_settled .or. self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
          call set_error(error, status_no_convergence, 'heat and stress of bodies do not follow '// &
@@ -238,30 +240,29 @@ contains
       self%values = (x + self%mixing%step(x, left_over, spread(1.0_dp, 1, size(x))))*self%scale
    end subroutine correct
 
-   !> Whether operators are to be formed at a solution. Properties at other temperatures are no
-   !> tangent, which a law has: without one they are formed once.
-   logical function needs_operators(self, last)
+   !> Judges a pass by what it left over: whether operators are to be formed at its solution, or the
+   !> mixing starts again. Properties at other temperatures are no tangent, which a law has: without
+   !> one operators are formed once.
+   subroutine judge_pass(self, last)
       type(corrections_type), intent(inout) :: self
       real(dp), intent(in) :: last                           ! left over by the pass before
 
-      associate (passes => self%passes - self%renewed_at)
+      associate (passes => self%passes - self%renewed_at, left_over => self%left_over)
          if (.not. self%has_laws) then
-            needs_operators = passes > 1 .and. self%renewed_at == 0 .and. &
-               self%left_over > contracts*last
+            self%asks_operators = passes > 1 .and. self%renewed_at == 0 .and. &
+               left_over > contracts*last
             return
          end if
-         if (passes > 1 .and. self%left_over > slow*last) self%slow_passes = self%slow_passes + 1
-         if (passes > 1 .and. self%left_over > grows*last) self%mixing = &
-            mixing_type(rank_tolerance=least_rank)
-         needs_operators = passes > most_with_operators .or. self%slow_passes >= most_slow
+         if (passes > 1 .and. left_over > slow*last) self%slow_passes = self%slow_passes + 1
+         if (passes > 1 .and. left_over > grows*last) call start_mixing(self)
+         self%asks_operators = passes > most_with_operators .or. self%slow_passes >= most_slow
       end associate
-   end function needs_operators
+   end subroutine judge_pass
 
    !> Forgets the passes before.
    subroutine start_mixing(self)
       type(corrections_type), intent(inout) :: self
 
-      self%slow_passes = 0
       self%mixing = mixing_type()
       if (self%has_laws) self%mixing%rank_tolerance = least_rank
    end subroutine start_mixing
@@ -275,6 +276,7 @@ contains
       type(solution_state_type), intent(in) :: at            !! the solution
 
       self%renewed_at = self%passes
+      self%slow_passes = 0
       call start_mixing(self)
       deallocate (self%scale)
       self%heat_before = self%heat_beyond(model, bodies, before%temperature)
@@ -300,21 +302,16 @@ contains
       if (allocated(self%history%after) .and. self%stage%strains) next%history = self%history%after
    end subroutine keep
 
-   !> Largest equivalent plastic and creep strains of a state, or their growth since another one.
+   !> How much the equivalent plastic and creep strains grow at most from one state to another [-].
    pure function largest_growth(self, model, state, before) result(growth)
       class(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
-      type(solution_state_type), intent(in) :: state
-      type(solution_state_type), optional, intent(in) :: before
+      type(solution_state_type), intent(in) :: state, before
       real(dp) :: growth(2)
 
       growth = 0.0_dp
-      if (.not. allocated(state%history)) return
-      if (present(before)) then
-         growth = maxval(self%points%largest_growth(model%mesh, before%history, state%history), 2)
-      else
-         growth = maxval(self%points%largest_growth(model%mesh, 0*state%history, state%history), 2)
-      end if
+      if (allocated(state%history)) growth = maxval(self%points%largest_growth(model%mesh, &
+         state%history, before%history), 2)
    end function largest_growth
 
    !> Corrections that temperatures and displacements at the end of a stage ask for.
@@ -422,8 +419,8 @@ contains
             call self%points%respond(mesh, e, u, warming, self%history, points)
             self%law_failed = self%law_failed .or. points%failed
             if (self%points%follows_law(mesh, e)) self%elastic_strain = max(self%elastic_strain, &
-               maxval(equivalent(points%stress(:points%count, :)))/(3*self%points%materials( &
-               self%points%at_point(e, 1))%elasticity(4, 4)))
+               maxval(von_mises(transpose(points%stress(:points%count, :))))/ &
+               (3*self%points%materials(self%points%at_point(e, 1))%elasticity(4, 4)))
             of_nodes = self%points%nodal_forces(mesh, e, points%stress)
             self%largest_force = max(self%largest_force, maxval(abs(of_nodes(:, :size(nodes)))))
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
@@ -443,15 +440,6 @@ contains
          if (allocated(bodies%bar_load%value)) sums = sums + bodies%bar_load%multiply(warming)
       end function of_operators
    end function forces_beyond
-
-   !> Von Mises' equivalent stress of points.
-   pure function equivalent(stress)
-      real(dp), intent(in) :: stress(:, :)                   ! (points, 4) [stress]
-      real(dp) :: equivalent(size(stress, 1))
-
-      equivalent = sqrt(((stress(:, 1) - stress(:, 2))**2 + (stress(:, 2) - stress(:, 3))**2 + &
-         (stress(:, 3) - stress(:, 1))**2)/2 + 3*stress(:, 4)**2)
-   end function equivalent
 
    !> Tangents of the stress at a solution, where materials have laws.
    subroutine find_tangents(self, model, at, tangent)

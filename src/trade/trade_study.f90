@@ -253,9 +253,7 @@ contains
       varied = written
       varied%solver = merge(solver_mumps, solver_skyline, model%solver == solver_skyline)
       call add(merge('MUMPS  ', 'SKYLINE', model%solver == solver_skyline))
-      if (size(model%contacts) == 0 .or. any(model%steps%continuation%is_on)) then
-         return
-      end if
+      if (size(model%contacts) == 0 .or. any(model%steps%continuation%is_on)) return
       do i = 1, target_count
          call add('--accuracy '//percent(targets(i)), targets(i))
       end do

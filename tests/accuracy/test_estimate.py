@@ -40,8 +40,8 @@ last three instead. *Spacing* is that of the points about an edge, *iteration* w
 **`ERRORS=LAST`**, the default, solves the last increment of each step once more, from the fields before it, on
 a mesh in which elements are divided into four: those at closed faces, and in every body those that hold 95 % of
 the squared recovered errors of stress and of flux. It does not see what builds up along the path: with friction
-shear force, peak pressure and edge of stick have no estimate, nor has any number of a deck that stores heat,
-has properties over temperature or a pre-tension.
+shear force, peak pressure and edge of stick have no estimate, nor has any number of a deck that stores heat
+or has plasticity, creep, properties over temperature or a pre-tension.
 
 **`ERRORS=FULL`** solves the whole deck once more with all elements divided and two increments for each one, at
 the side of the run. Every number has an uncertainty at every increment.

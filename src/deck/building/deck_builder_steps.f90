@@ -64,6 +64,7 @@ contains
                counts%analyses = counts%analyses + 1
                if (counts%analyses > 1) call deck%error(card%place, 'a second analysis in one step')
                if (n == 0) cycle
+               ! Which increments it has depends on the scheme so far.
                deck%model%steps(n)%scheme = controls%scheme
                if (.not. has_scheme) deck%model%steps(n)%scheme = l_stable_scheme
                call build_analysis(card, n, counts, deck, deck%model%steps(n))
