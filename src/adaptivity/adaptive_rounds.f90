@@ -15,7 +15,7 @@ module adaptive_rounds
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use contact_system, only: contact_open
-   use element_kinds, only: element_corner_count
+   use element_kinds, only: element_corner_count, side_node_count
    use error_estimator, only: error_estimator_type, squared_errors
    use errors, only: error_type
    use growing_modes, only: analyse_stability
@@ -190,6 +190,7 @@ contains
       type(finding_type) :: finding
       real(dp), allocatable :: edges(:)
       real(dp) :: length, weight(size(self%division%levels))
+      logical :: at_faces(size(self%division%levels))
       integer :: d, levels, of_edges
 
       do d = 1, size(rounds%demands)
@@ -201,17 +202,17 @@ contains
             far*finding%allowed)
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity, &
             of_elements => self%division%levels)
+            at_faces = elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
+               model%contacts(i)%master])
             ! Where the last increment alone tells no error, the change by sides of half the size
-            ! does.
-            if (ieee_is_nan(record%uncertainties(i)%total(q))) then
-               where (elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
-                  model%contacts(i)%master])) of_elements = max(of_elements, 1)
+            ! does. Where sides of two lengths meet, pressures of linear elements alternate.
+            if (ieee_is_nan(record%uncertainties(i)%total(q)) .or. &
+               estimated(q)%name == 'peak_pressure' .and. &
+               any(at_faces .and. side_node_count(model%mesh%element_kind) == 2)) then
+               where (at_faces) of_elements = max(of_elements, levels)
             end if
-            ! Edges near which it errs: those of stick only for what friction decides, and where the
-            ! whole face is closed the ends of its pieces.
+            ! Edges near which it errs: those of stick only for what friction decides.
             edges = record%contacts(i)%edges_contact
-            if (all(record%contacts(i)%contact_state /= contact_open)) edges = &
-               interfaces(i)%arc_length(interfaces(i)%ends())
             if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
                [edges, record%contacts(i)%edges_stick]
             ! How often the sides at an edge must be divided for its resolution.

@@ -368,6 +368,26 @@ def test_the_other_targets_are_met_beside_a_pressure_without_limit(tmp_path, col
     assert peak[-1, 1] > 1.05 * peak[0, 1]
 
 
+def test_pressures_of_linear_elements_stay_alike_from_round_to_round(tmp_path):
+    """A ring on a shaft as long: pressures fall to the free end, smoothly. Where sides of two lengths
+    met inside of the contact, they would alternate by 4 %."""
+    cards = [*mesh("A", np.linspace(50.0, 75.0, 9), np.linspace(0.0, 20.0, 9), "CAX4"),
+             *material("A", (210e3, 0.3)),
+             *mesh("B", np.linspace(10.0, 50.0, 9), np.linspace(0.0, 20.0, 9), "CAX4", first=101),
+             *material("B", (600e3, 0.22)),
+             "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.1",
+             "*CONTACT PAIR, INTERACTION=I, NAME=P, PAIRING=SURFACES", "A.LEFT, B.RIGHT",
+             "*CLEARANCE, SLAVE=A.LEFT, MASTER=B.RIGHT, VALUE=-0.05"]
+    deck = write(tmp_path / "fit.inp", without_unused_surfaces(cards), [
+        "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "A.BOTTOM, 2", "B.BOTTOM, 2", "*END STEP"])
+    process = run("run", deck, "--out", tmp_path, "--accuracy", "1%")
+    assert process.returncode == 0, process.stderr
+    with h5py.File(tmp_path / "fit.vtkhdf") as file:
+        s, p = (file[f"contact/P/{name}"][...] for name in ("s", "pressure"))
+    p = p[-1][s < 10.0]
+    assert np.all(np.abs(p[1:-1] - (p[:-2] + p[2:]) / 2) < 0.005 * p[1:-1])
+
+
 def test_a_request_that_stops_at_an_end_of_the_face_says_so(tmp_path):
     """Both bodies go on where the faces end, so that there is an uncertainty, which is large in every round."""
     deck = punch(tmp_path, "A.BOTTOM, B.TOP", 12, width=4, length=3)
