@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, and those of the cylinder that
-yields and that is heated in finite time, beside this file; with `--calculix FILE` write only FILE, the cylinder with a
-conductance that CalculiX knows too, for both programs; with `--yielding` as well, that of the cylinder that yields.
+"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, and those of
+the cylinder that yields and that is heated in finite time, beside this file; with `--calculix FILE`
+write only FILE, the cylinder with a conductance that CalculiX knows too, for both programs; with
+`--yielding` as well, that of the cylinder that yields.
 
 The paper (Zaitsev, 1987) gives 92 eight-node elements, 326 nodes and 21 contact pairs; layout and grading are ours.
 Each body has six strips, seen from the contact: two layers of 10 elements, a 3-to-1 transition from 10 to 4 columns
@@ -335,8 +336,8 @@ YIELDS = """\
 PLASTIC = "*CONDUCTIVITY\n0.18\n*PLASTIC\n250., 0., 0.\n200., 0., 900.\n"
 DIVIDED = "*REFINE, LEVELS=1\n*MATERIAL, NAME=UPPER"
 
-# CalculiX: the normal forces and the area of its contact statistics and the largest CPRESS, on the mesh that is not
-# divided. Its penalty has half a percent of the force, as on the elastic cylinder.
+# Of CalculiX the normal forces and the area of its contact statistics and the largest CPRESS, on
+# the deck of `--calculix FILE --yielding`. Its penalty has half a percent of the force.
 YIELDING_CHECKS = """\
 *VERIFY, KIND=EXTERNAL, SOURCE="elastic cylinder: nothing yields up to 540"
 {elastic}
@@ -481,10 +482,11 @@ def write_transient_deck(path, fourier, checks):
 
 def write_yielding_deck(path):
     """Write the cylinder whose bodies yield."""
-    opening = OPENING.format(heading="Cylinder on a base, both of which yield", first_touch="\n".join([TOUCH, YIELDS]))
+    opening = OPENING.format(heading="Cylinder on a base, both of which yield",
+                             first_touch=f"{TOUCH}\n{YIELDS}")
     checks = YIELDING_CHECKS.format(elastic="\n".join(reference_cards().splitlines()[4:8]))
-    text = changed(yielding("\n".join([opening + "\n".join(reading_cards()), checks + BALANCE])),
-                   [("*MATERIAL, NAME=UPPER", DIVIDED, 1)])
+    text = opening + "\n".join(reading_cards()) + "\n" + checks + BALANCE
+    text = changed(yielding(text), [("*MATERIAL, NAME=UPPER", DIVIDED, 1)])
     assert max(map(len, text.splitlines())) <= 80
     path.write_text(text)
 
@@ -568,7 +570,7 @@ def same_mesh_cards():
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--calculix", type=Path, metavar="FILE", help="write only the deck for both programs")
-    parser.add_argument("--yielding", action="store_true", help="bodies of the deck for both programs yield")
+    parser.add_argument("--yielding", action="store_true", help="bodies of that deck yield")
     chosen = parser.parse_args()
     if chosen.calculix:
         write_calculix_deck(chosen.calculix, chosen.yielding)

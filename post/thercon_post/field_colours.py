@@ -95,7 +95,8 @@ class LevelLocator(Locator):
         count, steps = len(self.levels), np.rint(self.levels / np.diff(self.levels[:2]))
         rounded = [float(f"{level:.6g}") for level in self.levels]
         digits = max(len(np.format_float_positional(level, trim="-")) for level in rounded)
-        share = 6 / (digits + 1) if self.axis.axis_name == "x" else 1.5  # digits are half as wide as high
+        # Digits are half as wide as high.
+        share = 6 / (digits + 1) if self.axis.axis_name == "x" else 1.5
         room = 1 + share * self.axis.get_tick_space()  # which leaves space between labels
         every = max(1, round(count / 7), int(np.ceil(count / room)))
         return self.levels[steps % every == 0]

@@ -51,8 +51,9 @@ def hot_press_fit():
     """Lame in plane stress before any creep; then the fit in one dimension."""
     fit = creeping_fit.EXAMPLE
     overlaps = fit.interference, fit.interference + 0.8e-6 * 580.0 * fit.seat
-    found = {("pressure", "FIT", when): lame.press_fit(0.0, fit.seat, fit.outside, shaft[:2], hub[:2],
-                                                       overlap, "stress")
+    radii = 0.0, fit.seat, fit.outside
+    found = {("pressure", "FIT", when): lame.press_fit(*radii, shaft[:2], hub[:2], overlap,
+                                                       "stress")
              for when, shaft, hub, overlap in zip(("1.", "11."), fit.shaft, fit.hub, overlaps,
                                                   strict=True)}
     first, fifth, last = fit.course([4980.0, 5 * 4980.0, 8 * 4980.0])
