@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, and those of the cylinder that is
-heated in finite time, beside this file; with `--calculix FILE` write only FILE, the cylinder with a conductance that
-CalculiX knows too, for both programs.
+"""Write cylinder.inp and cylinder-coupled.inp, the decks of the published cylinder, and those of
+the cylinder that yields and that is heated in finite time, beside this file; with `--calculix FILE`
+write only FILE, the cylinder with a conductance that CalculiX knows too, for both programs; with
+`--yielding` as well, that of the cylinder that yields.
 
 The paper (Zaitsev, 1987) gives 92 eight-node elements, 326 nodes and 21 contact pairs; layout and grading are ours.
 Each body has six strips, seen from the contact: two layers of 10 elements, a 3-to-1 transition from 10 to 4 columns
@@ -329,6 +330,28 @@ heat_rate, FACE, 480., 0.18426, 5.E-3
 gap, FACE@0., 480., 0.017404, 1.E-3
 """
 
+YIELDS = """\
+** Changed against the paper: both bodies yield, at 250 when cold and at 200
+** when at 900. Elements have 2 x 2 points, and are divided once."""
+PLASTIC = "*CONDUCTIVITY\n0.18\n*PLASTIC\n250., 0., 0.\n200., 0., 900.\n"
+DIVIDED = "*REFINE, LEVELS=1\n*MATERIAL, NAME=UPPER"
+
+# Of CalculiX the normal forces and the area of its contact statistics and the largest CPRESS, on
+# the deck of `--calculix FILE --yielding`. Its penalty has half a percent of the force.
+YIELDING_CHECKS = """\
+*VERIFY, KIND=EXTERNAL, SOURCE="elastic cylinder: nothing yields up to 540"
+{elastic}
+*VERIFY, KIND=EXTERNAL, SOURCE="CalculiX 2.20 on the mesh that is not divided"
+normal_force, FACE, 800., 2142.6, 1.E-2
+pressure, MAX, 800., 387.0, 2.E-2
+normal_force, FACE, 900., 2415.3, 1.E-2
+pressure, MAX, 900., 392.8, 2.E-2
+edge_contact, FACE, 900., 7.61, 0.1, ABS
+** Across the plane expansion is held: the whole top yields.
+*VERIFY, KIND=ANALYTIC, SOURCE="yield stress of the table"
+MISES, 159, LAST, 200., 1.E-2
+"""
+
 # The cylinder heated in finite time: the end of each deck's name and the Fourier number of the heating.
 TRANSIENTS = {"fast": 0.01, "medium": 1.0, "slow": 100.0}
 CONDUCTIVITY, DENSITY, SPECIFIC_HEAT = 0.18, 7.5e-3, 480.0    # W/(cm K), kg/cm^3, J/(kg K)
@@ -450,12 +473,35 @@ def write_transient_deck(path, fourier, checks):
     transient = ("*STEP, INC=100, AMPLITUDE=RAMP\n*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT\n"
                  f"{period / 45:g}, {period:g}\n")
     heated = "\n".join(["*SURFACE, NAME=HEATED", *top_faces(), "*REFINE, LEVELS=2, SURFACE=HEATED, DISTANCE=10."])
-    for old, new, count in ((QUASI_STEADY, transient, 1), ("*CONDUCTIVITY\n0.18\n", STORED, 2),
-                            ("*MATERIAL, NAME=UPPER", f"{heated}\n*MATERIAL, NAME=UPPER", 1)):
-        assert text.count(old) == count
-        text = text.replace(old, new)
+    changes = ((QUASI_STEADY, transient, 1), ("*CONDUCTIVITY\n0.18\n", STORED, 2),
+               ("*MATERIAL, NAME=UPPER", f"{heated}\n*MATERIAL, NAME=UPPER", 1))
+    text = changed(text, changes)
     assert max(map(len, text.splitlines())) <= 80
     path.write_text(text)
+
+
+def write_yielding_deck(path):
+    """Write the cylinder whose bodies yield."""
+    opening = OPENING.format(heading="Cylinder on a base, both of which yield",
+                             first_touch=f"{TOUCH}\n{YIELDS}")
+    checks = YIELDING_CHECKS.format(elastic="\n".join(reference_cards().splitlines()[4:8]))
+    text = opening + "\n".join(reading_cards()) + "\n" + checks + BALANCE
+    text = changed(yielding(text), [("*MATERIAL, NAME=UPPER", DIVIDED, 1)])
+    assert max(map(len, text.splitlines())) <= 80
+    path.write_text(text)
+
+
+def yielding(text):
+    """Cards of bodies that yield in place of elastic ones."""
+    return changed(text, [("TYPE=CPE8", "TYPE=CPE8R", 2), ("*CONDUCTIVITY\n0.18\n", PLASTIC, 2)])
+
+
+def changed(text, changes):
+    """Cards with changes: what is replaced, by what, and how often it is there."""
+    for old, new, count in changes:
+        assert text.count(old) == count
+        text = text.replace(old, new)
+    return text
 
 
 def heating_time(fourier):
@@ -493,7 +539,7 @@ def transient_checks(name, fourier):
     return BALANCE + LAGGING.format(reference="\n".join(cards))
 
 
-def write_calculix_deck(path):
+def write_calculix_deck(path, yields):
     """Write the deck for both programs: bodies, supports and steps that either of them takes."""
     bodies, rest = "\n".join(reading_cards()).split("*SURFACE INTERACTION")
     supports = rest[rest.index("*BOUNDARY"):rest.index("*STEP")]
@@ -501,7 +547,8 @@ def write_calculix_deck(path):
     for increment, period, top in CALCULIX_STEPS:
         cards += CALCULIX_STEP.format(increment=increment, period=period, top=top).splitlines()
     assert max(map(len, cards)) <= 80
-    path.write_text("\n".join(cards) + "\n")
+    text = "\n".join(cards) + "\n"
+    path.write_text(yielding(text) if yields else text)
 
 
 def reference_cards():
@@ -523,15 +570,17 @@ def same_mesh_cards():
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--calculix", type=Path, metavar="FILE", help="write only the deck for both programs")
+    parser.add_argument("--yielding", action="store_true", help="bodies of that deck yield")
     chosen = parser.parse_args()
     if chosen.calculix:
-        write_calculix_deck(chosen.calculix)
+        write_calculix_deck(chosen.calculix, chosen.yielding)
         return
     folder = Path(__file__).parent
     write_deck(folder / "cylinder.inp", "Cylinder on a base, heated from the top", TOUCH, "1.2E-5", 0.0,
                "ZAITSEV", CHECKS.format(reference=reference_cards(), same_mesh=same_mesh_cards()))
     write_deck(folder / "cylinder-coupled.inp", "Cylinder above a base that does not expand, strongly coupled",
                APART, "0.", LIFT, "NEWTON", COUPLED_CHECKS)
+    write_yielding_deck(folder / "cylinder-yielding.inp")
     for name, fourier in TRANSIENTS.items():
         write_transient_deck(folder / f"cylinder-{name}.inp", fourier, transient_checks(name, fourier))
 

@@ -93,7 +93,11 @@ class LevelLocator(Locator):
     def __call__(self):
         """Return the levels that have labels, those at whole multiples of their distance."""
         count, steps = len(self.levels), np.rint(self.levels / np.diff(self.levels[:2]))
-        room = 1 + 1.5 * self.axis.get_tick_space()  # which leaves as much between labels
+        rounded = [float(f"{level:.6g}") for level in self.levels]
+        digits = max(len(np.format_float_positional(level, trim="-")) for level in rounded)
+        # Digits are half as wide as high.
+        share = 6 / (digits + 1) if self.axis.axis_name == "x" else 1.5
+        room = 1 + share * self.axis.get_tick_space()  # which leaves space between labels
         every = max(1, round(count / 7), int(np.ceil(count / room)))
         return self.levels[steps % every == 0]
 

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 
 import conduction
 import crack
+import creeping_fit
 import friction_strip
 import fuel_rod as rings
 import hot_tubes
@@ -44,6 +45,21 @@ def autofrettage():
     hoop = [k - pressure - part * pressure * (b**2 + a**2) / (b**2 - a**2) for part in (0, 1, 0.5)]
     return {("U1", "81", "1."): (1 - nu**2) * k * c**2 / (2.1e5 * b),
             **{("S33", "1", when): s for when, s in zip(("1.", "2.", "3."), hoop, strict=True)}}
+
+
+def hot_press_fit():
+    """Lame in plane stress before any creep; then the fit in one dimension."""
+    fit = creeping_fit.EXAMPLE
+    overlaps = fit.interference, fit.interference + 0.8e-6 * 580.0 * fit.seat
+    radii = 0.0, fit.seat, fit.outside
+    found = {("pressure", "FIT", when): lame.press_fit(*radii, shaft[:2], hub[:2], overlap,
+                                                       "stress")
+             for when, shaft, hub, overlap in zip(("1.", "11."), fit.shaft, fit.hub, overlaps,
+                                                  strict=True)}
+    first, fifth, last = fit.course([4980.0, 5 * 4980.0, 8 * 4980.0])
+    found |= {("pressure", "FIT", when): fit.response(strains, hot)[0] for when, strains, hot in
+              (("4991.", first, 1), ("5001.", first, 0), ("25001.", fifth, 0), ("39991.", last, 1))}
+    return found | {("gap", "FIT", "LAST"): fit.response(last, 0)[1]}
 
 
 def press_fit():
