@@ -201,21 +201,24 @@ contains
    end function material_words
 
    !> Plasticity and creep of a material; empty without them. Creep is told as the strain that a
-   !> five-hundredth of the shear modulus makes in a time of 1, which shows wrong units.
+   !> five-hundredth of the shear modulus G makes in a time of 1, which shows wrong units.
    pure function law_words(material) result(words)
       type(material_type), intent(in) :: material
       character(:), allocatable :: words
       real(dp) :: slope, strain, stress, temperature
+      integer :: n
 
       words = ''
       associate (hardening => material%law%hardening, creep => material%law%creep)
          if (hardening%yields()) then
-            associate (n => size(hardening%yield%stress))
-               words = 'yields at '//to_text(hardening%yield%stress(1))
-               if (n > 1) words = words//', last row '//to_text(hardening%yield%stress(n))// &
-                  ' at plastic strain '//to_text(hardening%yield%strain(n))
-               if (size(hardening%yield%temperature) > 1) words = words//', temperatures '// &
-                  from_to(hardening%yield%temperature([1, size(hardening%yield%temperature)]))
+            associate (table => hardening%yield)
+               n = size(table%temperature)
+               words = 'yields at '//to_text(table%stress(1))
+               if (n > 1) words = words//' at temperature '//to_text(table%temperature(1))//', '// &
+                  to_text(table%stress(table%first(n)))//' at '//to_text(table%temperature(n))
+               n = size(table%stress)
+               if (table%strain(n) > 0.0_dp) words = words//', last row '// &
+                  to_text(table%stress(n))//' at plastic strain '//to_text(table%strain(n))
                if (hardening%has_back_stress()) words = words//', back stress with C '// &
                   to_text(hardening%back(1, 1))//' and gamma '//to_text(hardening%back(2, 1))
             end associate
@@ -226,7 +229,8 @@ contains
             slope = 0.0_dp
             stress = material%elasticity(4, 4)/500
             call creep%find_strain(stress, temperature, 0.0_dp, [0.0_dp, 1.0_dp], strain, slope)
-            words = words//'creeps by '//to_text(strain)//' in a time of 1 under '//to_text(stress)
+            words = words//'creeps by '//to_text(strain)//' in a time of 1 under '// &
+               to_text(stress)//' (G/500)'
             if (size(creep%temperature) > 1) words = words//' at temperature '// &
                to_text(temperature)
          end if

@@ -89,16 +89,18 @@ contains
       type(cycle_type), intent(in) :: cycle
       type(solution_state_type), intent(in) :: before
       character(:), allocatable :: words
-      real(dp) :: growth, least, moved
+      real(dp) :: growth(2), least, moved
 
-      growth = maxval(run%corrections%largest_growth(model, run%state, before))
+      growth = run%corrections%largest_growth(model, run%state, before)
       moved = ratchet(run, model, before)
       least = no_strain
       if (cycle%until == until_strain) least = cycle%tolerance
-      if (growth <= least) then
+      if (growth(1) <= least .and. growth(2) > 0.0_dp) then
+         words = 'creeps by '//to_text(growth(2))//' a cycle'
+      else if (growth(1) <= least) then
          words = 'shakes down: inelastic strains do not grow in the last cycle'
       else if (moved <= least) then
-         words = 'alternates: inelastic strains of '//to_text(growth)//' a cycle return'
+         words = 'alternates: inelastic strains of '//to_text(maxval(growth))//' a cycle return'
       else
          words = 'ratchets by '//to_text(moved)//' a cycle'
       end if

@@ -449,7 +449,7 @@ def told(folder, cards, name="bree"):
     deck = write(folder / f"{name}.inp", cards)
     times = datasets(solve(deck), "history")["history/time"]
     words = [line.strip() for line in deck.with_suffix(".lst").read_text().splitlines()
-             if re.match(r" +(shakes down|alternates|ratchets by)", line)]
+             if re.match(r" +(shakes down|creeps by|alternates|ratchets by)", line)]
     return words[0], times
 
 
@@ -505,6 +505,14 @@ def test_cycles_wait_for_strains_or_displacements(tmp_path):
     note_changes(*decks)
     strains, displacements = [told(tmp_path, deck, f"{k}")[1][-1] for k, deck in enumerate(decks)]
     assert strains < displacements < 400
+
+
+def test_what_creeps_on_does_not_shake_down(tmp_path):
+    cards = [*bar("*CREEP", f"{A!r}, {N!r}"), *pulled(200.0, "*VISCO", "1., 10."),
+             "*CYCLE, REPEAT=2, TOLERANCE=1."]
+    words, times = told(tmp_path, cards)
+    assert times[-1] == 20.0
+    assert float(re.match("creeps by (.*) a cycle", words)[1]) == pytest.approx(10 * A * 200.0**N)
 
 
 def test_steps_behind_a_cycle_follow_it(tmp_path):
