@@ -29,6 +29,7 @@ module error_estimator
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use state_tables, only: integers, state_table_type
+   use table_uncertainties, only: find_table_uncertainties
    use text, only: append, read_integer, to_text, to_upper
    use uncertainty_rule, only: uncertainty_parts
    implicit none
@@ -116,6 +117,8 @@ contains
       call judge_bodies(self, model, simulation, found, iteration, record)
       call judge_checks(self, model, simulation, found, iteration, record)
       if (self%is_full) call judge_history(self, iteration, record)
+      if (self%is_full .and. .not. allocated(self%lost)) call find_table_uncertainties( &
+         self%divided, simulation, model, iteration, record)
    end subroutine end_increment
 
    !> Solves the finer mesh at the end of the increment.

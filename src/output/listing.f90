@@ -12,7 +12,8 @@ module listing
    use listing_increments, only: print_attempts, print_balances, print_body_errors, &
       print_history_uncertainties, print_increment, print_interface, print_interfaces, &
       print_maxima, print_uncertainties
-   use listing_tables, only: print_contact_table, print_iterations, print_requested, print_verdicts
+   use listing_tables, only: print_contact_table, print_iterations, print_requested, &
+      print_verdicts, uncertainties_of
    use listing_text, only: page_type, page_width, to_right
    use materials, only: follows_temperature
    use mesh_bodies, only: body_name
@@ -170,7 +171,10 @@ contains
       if (has_tables) then
          do i = 1, size(interfaces)
             call print_contact_table(self%page, interfaces(i), record%contacts(i), &
-               model%mesh%node_number)
+               model%mesh%node_number, 'CONTACT POINTS OF ')
+            if (allocated(record%contact_uncertainties)) call print_contact_table(self%page, &
+               interfaces(i), record%contact_uncertainties(i), model%mesh%node_number, &
+               uncertainties_of//'CONTACT POINTS OF ')
          end do
       end if
       call write_text(self, error)

@@ -1,6 +1,7 @@
 !> Tables of the listing: *CONTACT PRINT, *NODE PRINT, *EL PRINT, the iteration history, the *VERIFY
 !> verdicts.
 module listing_tables
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, geometry_values
    use due_output, only: table_is_due
@@ -21,7 +22,10 @@ module listing_tables
    use verification, only: uncertainty_words, outcome_type
    implicit none
    private
-   public :: print_contact_table, print_iterations, print_requested, print_verdicts
+   public :: print_contact_table, print_iterations, print_requested, print_verdicts, &
+      uncertainties_of
+
+   character(*), parameter :: uncertainties_of = 'UNCERTAINTIES (95 %) OF '
 
    ! Keys of the quantities of *NODE PRINT and *EL PRINT, by the print_* constants, and the heads of
    ! their columns.
@@ -36,13 +40,14 @@ module listing_tables
 
 contains
 
-   !> Prints the contact points of an interface in fixed columns (*CONTACT PRINT); without heat the
-   !> last four are left out.
-   subroutine print_contact_table(page, points, contact, node_number)
+   !> Prints the contact points of an interface in fixed columns (*CONTACT PRINT), or the
+   !> uncertainties of their numbers; without heat the last four are left out.
+   subroutine print_contact_table(page, points, contact, node_number, title)
       type(page_type), intent(inout) :: page              !! of the listing
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! their state
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
+      character(*), intent(in) :: title                   !! before the name of the interface
       type(quantity_type), allocatable :: columns(:)
       real(dp), allocatable :: values(:, :)
       type(string_type), allocatable :: rows(:)
@@ -63,7 +68,7 @@ contains
       do i = 1, size(points%slave)
          rows(i)%value = to_right(to_text(i), 4)//table_row(columns, values(i, :))
       end do
-      call page%table('   CONTACT POINTS OF '//points%name, rows)
+      call page%table('   '//title//points%name, rows)
    end subroutine print_contact_table
 
    !> Prints the passes of an increment.
@@ -139,8 +144,13 @@ contains
          if (allocated(step%node_prints)) then
             do i = 1, size(step%node_prints)
                if (table_is_due(step%node_prints(i)%frequency, &
-                  step%node_prints(i)%points, record, model)) call print_nodes(page, &
-                  step%node_prints(i), model, record%fields)
+                  step%node_prints(i)%points, record, model)) then
+                  call print_nodes(page, step%node_prints(i), model, record%fields)
+                  if (allocated(record%field_uncertainties)) then
+                     call print_nodes(page, step%node_prints(i), model, &
+                        record%field_uncertainties, record%total_uncertainties(:, i))
+                  end if
+               end if
             end do
          end if
          if (allocated(step%element_prints)) then
@@ -153,20 +163,24 @@ contains
       end associate
    end subroutine print_requested
 
-   !> Table of the nodes of a set that elements, springs or trusses have, and sums over them.
-   subroutine print_nodes(page, request, model, fields)
+   !> Table of the nodes of a set that elements, springs or trusses have, and sums over them; or of
+   !> the uncertainties of both.
+   subroutine print_nodes(page, request, model, fields, of_totals)
       type(page_type), intent(inout) :: page
       type(print_request_type), intent(in) :: request
       type(model_type), intent(in) :: model
       type(field_record_type), intent(in) :: fields
-      real(dp), allocatable :: values(:, :)
+      real(dp), intent(in), optional :: of_totals(3)   ! uncertainties of RF1, RF2, RFL; NaN of none
+      real(dp), allocatable :: sums(:), values(:, :)
       type(string_type), allocatable :: rows(:)
       type(string_type) :: totals(0:1)
-      character(:), allocatable :: set_name
+      character(:), allocatable :: set_name, title
       integer, allocatable :: nodes(:)
       integer :: i
       logical :: is_held(size(model%mesh%node_body)), is_summed
 
+      title = '   '
+      if (present(of_totals)) title = title//uncertainties_of
       set_name = request%name_of_set(model%mesh%node_sets)
       nodes = request%members(model%mesh%node_sets, size(model%mesh%node_body))
       is_held = model%mesh%node_body > 0 .or. equation_nodes(model%bars%elongation, size(is_held))
@@ -183,27 +197,34 @@ contains
       do i = 1, size(request%quantities)
          associate (quantity => request%quantities(i))
             values = nodal_values(quantity, fields, nodes)
-            if (size(values, 1) == 0) then
+            sums = sum(values, dim=2)
+            if (present(of_totals)) then
+               sums = pack(of_totals, [quantity == print_force, quantity == print_force, &
+                  quantity == print_heat] .and. .not. ieee_is_nan(of_totals))
+            else if (size(values, 1) == 0) then
                call print_absence(page, '   NODES OF '//set_name, quantity)
-               cycle
             end if
             is_summed = quantity == print_force .or. quantity == print_heat
-            if (is_summed .and. request%totals) call add(totals, quantity, &
-               reshape(sum(values, dim=2), [size(values, 1), 1]))
+            if (is_summed .and. request%totals) call add(totals, quantity, reshape(sums, &
+               [size(sums), 1]))
             if (is_summed .and. .not. request%each_node) cycle
-            if (request%local_axes .and. size(values, 1) == 2) call turn(model, nodes, values)
+            if (request%local_axes .and. size(values, 1) == 2) call turn(model, nodes, &
+               present(of_totals), values)
             call add(rows, quantity, values)
          end associate
       end do
-      if (len(rows(0)%value) > len(node_head)) call page%table('   NODES OF '//set_name, rows)
-      if (totals(0)%value /= '') call page%table('   TOTALS OF '//set_name, totals)
+      if (len(rows(0)%value) > len(node_head)) call page%table(title//'NODES OF '//set_name, rows)
+      if (totals(0)%value /= '') call page%table(title//'TOTALS OF '//set_name, totals)
    end subroutine print_nodes
 
-   !> Replaces the components of vectors by those along the axes of their nodes.
-   pure subroutine turn(model, nodes, vectors)
+   !> Replaces the components of vectors by those along the axes of their nodes, and uncertainties
+   !> of components by those of these, as of independent ones.
+   pure subroutine turn(model, nodes, are_uncertainties, vectors)
       type(model_type), intent(in) :: model
       integer, intent(in) :: nodes(:)
+      logical, intent(in) :: are_uncertainties
       real(dp), intent(inout) :: vectors(:, :)    ! (2, nodes)
+      real(dp) :: axes(2, 2)
       integer :: i, k
 
       if (.not. allocated(model%transforms)) return
@@ -211,8 +232,12 @@ contains
          associate (transform => model%transforms(i))
             do k = 1, size(nodes)
                if (all(model%mesh%node_sets(transform%set)%members /= nodes(k))) cycle
-               vectors(:, k) = matmul(vectors(:, k), axes_at(transform, &
-                  model%mesh%coordinates(:, nodes(k))))
+               axes = axes_at(transform, model%mesh%coordinates(:, nodes(k)))
+               if (are_uncertainties) then
+                  vectors(:, k) = sqrt(matmul(vectors(:, k)**2, axes**2))
+               else
+                  vectors(:, k) = matmul(vectors(:, k), axes)
+               end if
             end do
          end associate
       end do

@@ -44,7 +44,8 @@ shear force, peak pressure and edge of stick have no estimate, nor has any numbe
 or has plasticity, creep, properties over temperature or a pre-tension.
 
 **`ERRORS=FULL`** solves the whole deck once more with all elements divided and two increments for each one, at
-the side of the run. Every number has an uncertainty at every increment.
+the side of the run. Every number has an uncertainty at every increment, but for stresses and fluxes at single
+points, and forces and heat at single nodes.
 
 With neither have an estimate: a peak pressure at a corner, where one face ends and the other goes on, as it has
 no limit; numbers of an interface that slides beyond its contact points; and numbers for which two contact
