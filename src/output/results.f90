@@ -10,7 +10,7 @@ module results
    use contact_definitions, only: makes_friction_heat, pairing_name
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
-   use due_output, only: fields_are_due
+   use due_output, only: ends_run, fields_are_due
    use errors, only: error_type
    use field_quantities, only: maxima
    use file_calls, only: identity_of, remove_file, rename_file, try_file
@@ -253,7 +253,7 @@ contains
       !> Of the run, where one is due; receives the rows of all datasets
       type(state_table_type), intent(inout), optional :: restart
       integer, allocatable :: rows(:)
-      logical :: is_due, ends_run
+      logical :: is_due
       integer :: i, n
 
       self%accepted = self%accepted + 1
@@ -290,8 +290,8 @@ contains
          self%contact_file%is_synced = .true.
       end if
       is_due = self%file%is_due()
-      ends_run = record%last_of_step .and. record%step == size(model%steps)
-      if ((record%last_of_step .or. is_due) .and. .not. (ends_run .or. self%is_draft)) then
+      if ((record%last_of_step .or. is_due) .and. .not. (ends_run(record, model) .or. &
+         self%is_draft)) then
          call publish(self, model, interfaces, run, error)
       else if (waiting_bytes(self) > memory_limit) then
          call flush_all(self, model, interfaces)

@@ -120,6 +120,7 @@ module records
       integer :: step = 0                    !! step number, from 1
       integer :: increment_in_step = 0       !! number in the step, from 1
       logical :: last_of_step = .false.      !! whether the step ends here
+      integer :: left_out = 0                !! steps behind it that a *CYCLE leaves out
       real(dp) :: time = 0.0_dp              !! total time [time]
       real(dp) :: load = 0.0_dp              !! value on the load axis
       real(dp), allocatable :: load_factor   !! of a point of a branch; else unallocated [-]

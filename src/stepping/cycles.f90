@@ -30,9 +30,9 @@ contains
             change = change_between(run, model, cycle, run%cycle_before)
             record%cycle = words_of(run, model, cycle, run%cycle_before)
             if (change <= cycle%tolerance) then
-               if (record%step < cycle%last) call append(record%notes, 'this cycle repeats the '// &
-                  'one before: '//to_text((cycle%last - record%step)/cycle%steps)// &
-                  ' more are left out')
+               record%left_out = cycle%last - record%step
+               if (record%left_out > 0) call append(record%notes, 'this cycle repeats the '// &
+                  'one before: '//to_text(record%left_out/cycle%steps)//' more are left out')
                run%control%step = cycle%last
             end if
          end if

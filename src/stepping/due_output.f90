@@ -7,7 +7,7 @@ module due_output
    use time_points, only: time_points_type
    implicit none
    private
-   public :: fields_are_due, is_judged, is_nth, met_within, needs_recovery, table_is_due
+   public :: ends_run, fields_are_due, is_judged, is_nth, met_within, needs_recovery, table_is_due
 
    real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
 
@@ -59,6 +59,14 @@ contains
       met_within = 1.0e-12_dp*abs(time) + landing*increment
    end function met_within
 
+   !> Whether an increment is the last of all steps, but for those that a *CYCLE leaves out.
+   pure logical function ends_run(record, model)
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+
+      ends_run = record%last_of_step .and. record%step + record%left_out == size(model%steps)
+   end function ends_run
+
    !> Whether a check is judged on an increment.
    pure logical function is_judged(check, record, model)
       type(verify_type), intent(in) :: check
@@ -66,7 +74,7 @@ contains
       type(model_type), intent(in) :: model
 
       if (check%at_last) then
-         is_judged = record%last_of_step .and. record%step == size(model%steps)
+         is_judged = ends_run(record, model)
       else
          is_judged = abs(record%time - check%when) <= met_within(check%when, &
             model%steps(record%step)%first_increment)

@@ -1,4 +1,4 @@
-"""Plasticity and creep: one element, tubes and press fits, against closed forms."""
+"""Plasticity and creep of small decks; the verification manual has the larger ones."""
 
 import math
 import re
@@ -8,28 +8,11 @@ import pytest
 from blocks import write
 from changes import note_changes
 from deck_runs import assert_alike, datasets, run, solve
-from physics import follows, judge, material, mesh, nodes_of
+from inelastic import (OUTSIDE, POISSON, YIELD, YOUNG, A, N, bar, bree, fit, hill, law, left,
+                       overlap, pressed, pulled, relaxing, step, strain_of_bree, stretched, tube)
+from physics import follows, judge, material, mesh
 
-YOUNG, POISSON = 200e3, 0.3
-A, N = 3.125e-14, 5.0
 FILES = "VTKHDF/PointData", "history"
-
-
-def law(*cards, elastic=(YOUNG, POISSON), name="BODY", **more):
-    """Return a material with laws behind its elasticity, and its section."""
-    given = material(name, elastic=elastic, **more)
-    return [*given[:3], *cards, *given[3:]]
-
-
-def bar(*cards, kind="CPS4", **more):
-    """Return a square of one element that may strain freely."""
-    return [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], kind), *law(*cards, **more),
-            "*BOUNDARY", "BODY.LEFT, 1", "BODY.BOTTOM, 2"]
-
-
-def step(analysis, times, *cards, options=""):
-    """Return a step."""
-    return [f"*STEP, INC=100000{options}", analysis, times, *cards, "*END STEP"]
 
 
 def increments(folder, make, one, other):
@@ -38,11 +21,6 @@ def increments(folder, make, one, other):
     note_changes(*decks)
     return [len(datasets(solve(write(folder / f"{k}.inp", deck)), "history")["history/time"])
             for k, deck in enumerate(decks)]
-
-
-def pulled(stress, analysis="*STATIC", times="0.05, 1.", options=""):
-    """Return a step to a tension along x."""
-    return step(analysis, times, "*DSLOAD", f"BODY.RIGHT, P, {-stress!r}", options=options)
 
 
 @pytest.mark.changes("PLASTIC")
@@ -99,7 +77,8 @@ def test_surface_that_moves_grows_by_a_table_of_its_own(tmp_path):
 
 
 def test_yield_stress_falls_with_the_temperature(tmp_path):
-    cards = [*bar("*PLASTIC", "300., 0., 0.", "400., 0.02, 0.", "100., 0., 400.", "140., 0.02, 400."),
+    cards = [*bar("*PLASTIC", "300., 0., 0.", "400., 0.02, 0.", "100., 0., 400.",
+                  "140., 0.02, 400."),
              "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 200.", *pulled(220.0)]
     # Half way between the tables: 200 + 70 p/0.02
     judge(tmp_path, cards, [("PEEQ", "BODY", "LAST", 20.0 / 3500.0, 1e-6)])
@@ -124,113 +103,30 @@ def test_uniform_plastic_states_are_exact_in_all_elements(kind, tmp_path):
         p = (2 * shear * strain - 200.0) / (3 * shear + h)
         bulk = YOUNG / (3 * (1 - 2 * POISSON))
         stress, small = bulk * strain + 2 / 3 * (200.0 + h * p), 1e-6
-    judge(tmp_path, cards, [("PEEQ", "BODY", "LAST", p, small), ("S22", "BODY", "LAST", stress, small),
+    judge(tmp_path, cards, [("PEEQ", "BODY", "LAST", p, small),
+                            ("S22", "BODY", "LAST", stress, small),
                             ("S12", "BODY", "LAST", 0.0, 1e-4, "ABS")])
-
-
-PATH = [(7.5, 2.5, 2.5), (11.666667, 6.666667, 6.666667), (14.166667, 14.166667, 9.166667),
-        (16.317215, 19.712236, 13.970548), (9.825444, 15.560181, 12.114375),
-        (5.097485, 10.644293, 9.258222), (2.597485, 3.144293, 6.758222),
-        (0.235107, -2.997115, 2.762009)]   # NAFEMS NL1, PL1
-
-
-def path_error(folder, analysis, increments):
-    """Return the largest error of stresses at the ends of the steps of the path."""
-    cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPE4"), *law("*PLASTIC", "5.",
-                                                                   elastic=(250e3, 0.25)),
-             "*BOUNDARY", "BODY.LEFT, 1", "BODY.BOTTOM, 2"]
-    strain = [0.0, 0.0]
-    for k in range(8):
-        strain[k // 2 % 2] += 2.5e-5 if k < 4 else -2.5e-5
-        cards += step(f"{analysis}, DIRECT", f"{1 / increments!r}, 1.", "*BOUNDARY",
-                      f"BODY.RIGHT, 1, 1, {strain[0]!r}", f"BODY.TOP, 2, 2, {strain[1]!r}",
-                      options=", AMPLITUDE=RAMP")
-    result = solve(write(folder / f"{analysis[1:]}-{increments}.inp", cards))
-    stress = datasets(result, "VTKHDF/PointData")["VTKHDF/PointData/stress"].reshape(-1, 4, 4)
-    ends = stress[increments - 1 :: increments, 0, :3]
-    return np.abs(ends - PATH).max()
-
-
-def test_path_of_nafems_has_the_order_of_its_scheme(tmp_path):
-    for analysis, order, least in (("*STATIC", 1, 2e-2), ("*VISCO", 2, 1e-4)):
-        errors = [path_error(tmp_path, analysis, n) for n in (20, 40, 80)]
-        assert errors[-1] < least
-        assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.15)
-        assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.15)
 
 
 @pytest.mark.changes("STATIC, STRAIN LIMIT")
 def test_limit_of_strain_cuts_increments_back(tmp_path):
     def make(limit):
         return [*bar("*PLASTIC", "200., 0.", "220., 0.04"),
-                *step(f"*STATIC, STRAIN LIMIT={limit!r}", "1., 1.", "*BOUNDARY",
-                      "BODY.RIGHT, 1, 1, 0.03")]
+                *stretched(0.03, f"*STATIC, STRAIN LIMIT={limit!r}", "1., 1.")]
 
     few, many = increments(tmp_path, make, 0.1, 0.01)
     assert few == 1
     assert many >= 3
 
 
-def tube(hill, *steps, kind="CAX8R", elements=20, elastic=(21e3, 0.499)):
-    """Return a tube 100/200 in plane strain."""
-    xs = [float(x) for x in np.linspace(100.0, 200.0, elements + 1)]
-    return [*mesh("BODY", xs, [0.0, 5.0], kind), *law(*hill, elastic=elastic), "*BOUNDARY",
-            "BODY, 2", *steps]
-
-
-PRESSED = "*DSLOAD", "BODY.LEFT, P, "
-
-
-def hill(radius):
-    """Return the pressure that makes a tube yield up to a radius, and how far its outside moves."""
-    k = 48.0 / math.sqrt(3.0)
-    return (k * (math.log(radius / 100.0) + (1 - (radius / 200.0) ** 2) / 2),
-            (1 - 0.499**2) * k * radius**2 / (21e3 * 200.0))
-
-
-@pytest.mark.parametrize("kind", ["CAX8R", "CAX8", "CAX4", "CAX4I"])
-def test_tube_of_hill(kind, tmp_path):
-    for radius in (120.0, 160.0):
-        pressure, moves = hill(radius)
-        cards = tube(["*PLASTIC", "24."], *step("*STATIC", "0.1, 1.", PRESSED[0],
-                                                 f"{PRESSED[1]}{pressure!r}"), kind=kind)
-        judge(tmp_path, cards, [("U1", "BODY.RIGHT", "LAST", moves, 1e-3)])
-
-
 def test_collapse_is_told_with_the_last_load(tmp_path):
-    cards = tube(["*PLASTIC", "24."], *step("*STATIC", "0.05, 1.", PRESSED[0], f"{PRESSED[1]}20."))
+    cards = tube(["*PLASTIC", f"{YIELD!r}"], *pressed(20.0, times="0.05, 1."))
     deck = write(tmp_path / "deck.inp", cards)
     process = run("run", "--quiet", deck, "--out", tmp_path)
     assert process.returncode == 2
-    last = float(process.stderr.split("collapse: the last load that was carried is that of time ")[1]
-                 .split(",")[0])
-    assert 20.0 * last == pytest.approx(hill(200.0)[0], rel=3e-3)
-
-
-def fit(*laws, steps, kind="CAX8R", free=False):
-    """Return a solid shaft 50 in a hub 50/100, with overlap 0.05 or more."""
-    shaft = mesh("SHAFT", [0.0, 12.5, 25.0, 37.5, 50.0], [0.0, 5.0], kind)
-    hub = mesh("BODY", [float(x) for x in np.linspace(50.0, 100.0, 21)], [0.0, 5.0], kind, first=101)
-    return [*shaft, *hub, *material("SHAFT", (YOUNG, POISSON)), *law(*laws),
-            "*SURFACE INTERACTION, NAME=JOINT", "*CONTACT PAIR, INTERACTION=JOINT, NAME=FIT",
-            "SHAFT.RIGHT, BODY.LEFT", "*BOUNDARY", "SHAFT.LEFT, 1",
-            *(["SHAFT.BOTTOM, 2", "BODY.BOTTOM, 2"] if free else ["SHAFT, 2", "BODY, 2"]), *steps]
-
-
-def overlap(value):
-    return ["*CLEARANCE, SLAVE=SHAFT.RIGHT, MASTER=BODY.LEFT, VALUE=" + repr(-value)]
-
-
-def test_press_fit_with_a_plastic_hub_is_between_tresca_and_its_bracket(tmp_path):
-    radius = 60.0
-    tresca = 300.0 / 2 * (1 - (radius / 100.0) ** 2 + 2 * math.log(radius / 50.0))
-    delta = 50.0 * 300.0 / YOUNG * (radius / 50.0) ** 2
-    cards = [*fit("*PLASTIC", "300.", steps=[], free=True), *overlap(delta),
-             *step("*STATIC", "0.1, 1.", "*CONTACT INTERFERENCE",
-                   f"SHAFT.RIGHT, BODY.LEFT, {delta!r}")]
-    force = datasets(solve(write(tmp_path / "fit.inp", cards)), "contact")
-    pressure = force["contact/FIT/normal_force"][-1] / (2 * math.pi * 50.0 * 5.0)
-    assert tresca < pressure < 2 / math.sqrt(3.0) * tresca
+    last = float(re.search("collapse: the last load that was carried is that of time ([0-9.]+)",
+                           process.stderr)[1])
+    assert 20.0 * last == pytest.approx(hill(OUTSIDE)[0], rel=3e-3)
 
 
 @pytest.mark.changes("CREEP", "VISCO")
@@ -254,18 +150,6 @@ def test_creep_hardens_by_time_or_by_strain(tmp_path):
             ("CEEQ", "BODY", "LAST", strain, 1e-6)]
 
     follows(tmp_path, make, "TIME", "STRAIN")
-
-
-def relaxing(card, times, *more):
-    """Return a bar that creeps at a fixed strain."""
-    return [*bar("*CREEP", f"{A!r}, {N!r}"), *more,
-            *step("*STATIC", "1., 1.", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {200.0 / YOUNG!r}"),
-            *step(card, times, "*BOUNDARY", f"BODY.RIGHT, 1, 1, {200.0 / YOUNG!r}")]
-
-
-def left(time):
-    """Return the stress that is left of 200."""
-    return (200.0**-4 + 4 * A * YOUNG * time) ** -0.25
 
 
 @pytest.mark.changes("VISCO, LOCAL ERROR")
@@ -294,49 +178,11 @@ def test_creep_tolerance_shortens_increments(tmp_path):
 def test_limit_of_strain_holds_in_real_time(tmp_path):
     def make(limit):
         return [*bar("*PLASTIC", "200., 0.", "220., 0.04"),
-                *step(f"*VISCO, STRAIN LIMIT={limit!r}, LOCAL ERROR=1.E3", "1., 1.", "*BOUNDARY",
-                      "BODY.RIGHT, 1, 1, 0.03", options=", AMPLITUDE=RAMP")]
+                *stretched(0.03, f"*VISCO, STRAIN LIMIT={limit!r}, LOCAL ERROR=1.E3", "1., 1.",
+                           options=", AMPLITUDE=RAMP")]
 
     few, many = increments(tmp_path, make, 0.1, 0.01)
     assert many > few == 1
-
-
-def test_orders_of_both_schemes_in_relaxation(tmp_path):
-    for scheme, order in (("IMPLICIT", 1), ("L-STABLE", 2)):
-        errors = []
-        for n in (80, 160):
-            result = solve(write(tmp_path / f"{scheme}-{n}.inp", relaxing(
-                "*VISCO, DIRECT", f"{1 / n!r}, 1.", f"*THERMAL SCHEME, TYPE={scheme}")))
-            stress = datasets(result, "VTKHDF/PointData")["VTKHDF/PointData/stress"]
-            errors.append(abs(stress.reshape(-1, 4)[-1, 0] - left(1.0)))
-        assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.2)
-
-
-def test_tube_that_creeps_becomes_stationary(tmp_path):
-    cards = tube(["*CREEP", f"{A!r}, {N!r}"], *step("*VISCO", "1.E-4, 10., 1.E-9", PRESSED[0],
-                 f"{PRESSED[1]}200."), elastic=(YOUNG, POISSON), elements=20)
-    bore = [line.split(",")[0] for line in cards if line.endswith(", 100, 0")][0]
-    outside = [line.split(",")[0] for line in cards if line.endswith(", 200, 0")][0]
-    judge(tmp_path, cards, [("S33", bore, "LAST", 130.38504, 1e-3),
-                            ("S33", outside, "LAST", 250.38504, 1e-3)])
-
-
-def test_press_fit_relaxes(tmp_path):
-    # In one-dimensional programs, +- 0.002
-    pressures = ((0.1, 73.773), (1.0, 56.350), (10.0, 36.158), (100.0, 21.003), (1000.0, 11.873))
-    cards = [*fit("*CREEP", f"{A!r}, {N!r}", steps=[]), *overlap(0.05),
-             *step("*STATIC", "1., 1."), *step("*VISCO", "1.E-4, 1000., 1.E-9")]
-    judge(tmp_path, cards, [("pressure", "FIT@2.5", 1.0, 82.4176, 1e-4), *(
-        ("pressure", "FIT@2.5", 1.0 + time, p, 2e-4) for time, p in pressures)])
-
-
-def test_bolt_relaxes(tmp_path):
-    # ANSYS VM132: a bar at a fixed length, rate 4.8e-30 s^7
-    cards = [*bar("*CREEP", "4.8E-30, 7.", elastic=(30e6, 0.3)),
-             *step("*STATIC", "1.E-6, 1.E-6", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {1000.0 / 30e6!r}"),
-             *step("*VISCO, LOCAL ERROR=1.E-4", "1., 690.", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {1000.0 / 30e6!r}")]
-    judge(tmp_path, cards, [("S11", "BODY", 190.000001, 974.985, 1e-5),
-                            ("S11", "BODY", "LAST", 925.026, 1e-5)])
 
 
 def test_transient_steps_creep_too(tmp_path):
@@ -344,12 +190,11 @@ def test_transient_steps_creep_too(tmp_path):
     for creep, stress in (("", left(1.0)), (", CREEP=NONE", 200.0)):
         cards = [*bar("*CREEP", f"{A!r}, {N!r}", conductivity=1.0, density=1.0, specific_heat=1.0),
                  "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.",
-                 *step("*STATIC", "1., 1.", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {200.0 / YOUNG!r}"),
-                 *step(f"*COUPLED TEMPERATURE-DISPLACEMENT{creep}", "1.E-4, 1., 1.E-9", "*BOUNDARY",
-                       f"BODY.RIGHT, 1, 1, {200.0 / YOUNG!r}")]
+                 *stretched(200.0 / YOUNG, "*STATIC", "1., 1."),
+                 *stretched(200.0 / YOUNG, f"*COUPLED TEMPERATURE-DISPLACEMENT{creep}",
+                            "1.E-4, 1., 1.E-9")]
         if creep:
-            cards += step("*VISCO", "1.E-9, 1.E-9", "*BOUNDARY",
-                          f"BODY.RIGHT, 1, 1, {200.0 / YOUNG!r}")
+            cards += stretched(200.0 / YOUNG, "*VISCO", "1.E-9, 1.E-9")
         judge(tmp_path, cards, [("S11", "BODY", 2.0, stress, 1e-3)])
 
 
@@ -363,7 +208,7 @@ def test_creep_and_plasticity_in_one_material(tmp_path):
 
 def test_restart_goes_on_bit_for_bit(tmp_path):
     cards = ["*RESTART, WRITE, FREQUENCY=1",
-             *fit("*PLASTIC", "100., 0.", "150., 0.01", "*CREEP", f"{A!r}, {N!r}", steps=[]),
+             *fit("*PLASTIC", "100., 0.", "150., 0.01", "*CREEP", f"{A!r}, {N!r}"),
              *overlap(0.05), *step("*STATIC", "0.25, 1.", "*CONTACT INTERFERENCE",
                                    "SHAFT.RIGHT, BODY.LEFT, 0.05"), *step("*VISCO", "0.01, 1.")]
     deck = write(tmp_path / "deck.inp", cards)
@@ -378,13 +223,13 @@ def test_restart_goes_on_bit_for_bit(tmp_path):
 def test_what_stays_elastic_answers_as_without_the_cards(tmp_path):
     results = []
     for laws in ([], ["*PLASTIC", "1.E6"]):
-        cards = [*fit(*laws, steps=[]), *overlap(0.05), *step("*STATIC", "0.5, 1.")]
+        cards = [*fit(*laws), *overlap(0.05), *step("*STATIC", "0.5, 1.")]
         results.append(datasets(solve(write(tmp_path / f"{len(laws)}.inp", cards)), "contact"))
     assert_alike(*results, 1e-8)
 
 
 def energies(result):
-    """Return energies stored, dissipated by plasticity, creep and friction, and the work of loads."""
+    """Return energies stored, those dissipated by plasticity, creep and friction, and the work."""
     found = datasets(result, "history")
     return [found[f"history/{name}"] for name in ("ALLSE", "ALLPD", "ALLCD", "ALLFD", "ALLWK")]
 
@@ -426,24 +271,6 @@ def test_friction_dissipates_what_slides(tmp_path):
     assert work[-1] - stored[-1] == pytest.approx(friction[-1], rel=1e-2)
 
 
-def bree(tension, thermal, *cycle, rows=40, yield_stress=100.0):
-    """Return Bree's plate of yield stress 100 under a constant tension, with temperatures across
-    it that come and go; parts of the yield stress."""
-    alpha = 1e-5
-    warmth = 2 * thermal * yield_stress / (YOUNG * alpha)
-    ys = [float(y) for y in np.linspace(0.0, 1.0, rows + 1)]
-    plate = mesh("BODY", [0.0, 0.05], ys, "CPS4")
-    nodes = nodes_of(plate)
-    right = [n for n, (x, _) in nodes.items() if x > 0.0]
-    tied = [line for n in right[1:] for line in ("2", f"{n}, 1, 1., {right[0]}, 1, -1.")]
-    hot = [f"{n}, {y * warmth!r}" for n, (_, y) in nodes.items()]
-    return [*plate, *law("*PLASTIC", f"{yield_stress!r}", expansion=alpha), "*EQUATION", *tied,
-            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 0.", "*BOUNDARY", "BODY.LEFT, 1",
-            "1, 2", *step("*STATIC", "1., 1.", "*CLOAD", f"{right[0]}, 1, {tension * yield_stress!r}"),
-            *step("*STATIC", "0.05, 1.", "*TEMPERATURE", *hot),
-            *step("*STATIC", "0.05, 1.", "*TEMPERATURE", "BODY, 0."), *cycle]
-
-
 def told(folder, cards, name="bree"):
     """Return what the summary says of the last cycle, and the times of the increments."""
     deck = write(folder / f"{name}.inp", cards)
@@ -453,25 +280,21 @@ def told(folder, cards, name="bree"):
     return words[0], times
 
 
-@pytest.mark.parametrize(("tension", "thermal", "rate"), [
-    (0.8, 1.5, 0.80911), (0.6, 2.0, 0.42229), (0.3, 4.0, 0.4)])
-def test_bree_ratchets_at_his_rates(tension, thermal, rate, tmp_path):
-    words, _ = told(tmp_path, bree(tension, thermal, "*CYCLE, STEPS=2, REPEAT=6"))
-    assert words.startswith("ratchets by ")
-    assert float(words.split()[2]) == pytest.approx(rate * 100.0 / YOUNG, rel=5e-3)
-
-
 @pytest.mark.parametrize(("tension", "thermal", "verdict"), [
-    (0.4, 0.55, "shakes down"), (0.8, 0.75, "shakes down"), (0.8, 0.85, "ratchets by"),
-    (0.3, 3.2, "alternates"), (0.3, 3.5, "ratchets by"), (0.2, 2.5, "alternates")])
-def test_boundaries_of_bree(tension, thermal, verdict, tmp_path):
-    words, _ = told(tmp_path, bree(tension, thermal, "*CYCLE, STEPS=2, REPEAT=40"))
+    (0.4, 0.55, "shakes down"), (0.8, 0.75, "shakes down"), (0.3, 3.2, "alternates"),
+    (0.8, 1.5, "ratchets by"), (0.3, 4.0, "ratchets by")])
+def test_summary_tells_what_the_last_cycle_of_bree_did(tension, thermal, verdict, tmp_path):
+    words, _ = told(tmp_path, bree(tension, thermal, "*CYCLE, STEPS=2, REPEAT=20"))
     assert words.startswith(verdict)
+    if verdict == "ratchets by":
+        before, last = (strain_of_bree(tension, thermal, cycles) for cycles in (1, 2))
+        rate = (last - before) * 100.0 / YOUNG
+        assert float(words.split()[2]) == pytest.approx(rate, rel=5e-3)
 
 
 def cycled(*parameters):
     """Return a bar that is strained to and fro, less plastically each time as it hardens."""
-    ends = [step("*STATIC", "0.2, 1.", "*BOUNDARY", f"BODY.RIGHT, 1, 1, {strain!r}")
+    ends = [stretched(strain, "*STATIC", "0.2, 1.")
             for strain in (0.003, 0.0)]
     return [*bar("*PLASTIC", "200., 0.", "700., 0.05"), *ends[0], *ends[1],
             "*CYCLE, " + ", ".join(parameters)]
@@ -535,11 +358,11 @@ def test_inelastic_work_heats_the_body(tmp_path):
     # An insulated bar of yield stress 200 that is strained by 0.011 and then relaxes by creep.
     def make(fraction):
         cards = [*bar("*PLASTIC", "200.", "*CREEP", f"{A!r}, {N!r}", "*INELASTIC HEAT FRACTION",
-                      f"{fraction!r}", conductivity=1.0, density=2.0, specific_heat=0.25), "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.",
-                 *step("*COUPLED TEMPERATURE-DISPLACEMENT", "1.E-7, 1.E-6", "*BOUNDARY",
-                       "BODY.RIGHT, 1, 1, 0.011", options=", AMPLITUDE=RAMP"),
-                 *step("*COUPLED TEMPERATURE-DISPLACEMENT", "1.E-3, 1., 1.E-9", "*BOUNDARY",
-                       "BODY.RIGHT, 1, 1, 0.011")]
+                      f"{fraction!r}", conductivity=1.0, density=2.0, specific_heat=0.25),
+                 "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.",
+                 *stretched(0.011, "*COUPLED TEMPERATURE-DISPLACEMENT", "1.E-7, 1.E-6",
+                            options=", AMPLITUDE=RAMP"),
+                 *stretched(0.011, "*COUPLED TEMPERATURE-DISPLACEMENT", "1.E-3, 1., 1.E-9")]
         plastic = 200.0 * (0.011 - 200.0 / YOUNG)
         creep = (200.0**2 - left(1.0) ** 2) / (2 * YOUNG)
         return cards, [
@@ -552,9 +375,11 @@ def test_inelastic_work_heats_the_body(tmp_path):
 
 def joint_of_esposito(held):
     """Return the joint of docs/compare.md [mm, MPa, s], with all planes held or its ends free."""
-    hub = mesh("BODY", [float(x) for x in np.linspace(4.51, 5.315, 17)], [0.0, 0.2], "CAX8R", first=101)
+    radii = [float(x) for x in np.linspace(4.51, 5.315, 17)]
+    hub = mesh("BODY", radii, [0.0, 0.2], "CAX8R", first=101)
     return [*mesh("SHAFT", [0.0, 1.5, 3.0, 4.5], [0.0, 0.2], "CAX8R"), *hub,
-            *material("SHAFT", (200e3, 0.345)), *law("*CREEP", "1.0083E-16, 3.", elastic=(99.3e3, 0.37)),
+            *material("SHAFT", (200e3, 0.345)),
+            *law("*CREEP", "1.0083E-16, 3.", elastic=(99.3e3, 0.37)),
             "*SURFACE INTERACTION, NAME=JOINT",
             "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR", "0., 0.", "3500., 1.",
             "*CONTACT PAIR, INTERACTION=JOINT, NAME=FIT", "SHAFT.RIGHT, BODY.LEFT",
@@ -573,7 +398,7 @@ def test_disputed_joint_is_that_of_plane_strain(tmp_path):
 
 
 def punch(kind, solver="SKYLINE", pairing="NODES"):
-    """Return a stiff punch that is pressed into a block that yields, taken off and pressed again."""
+    """Return a stiff punch that is pressed into a yielding block, taken off and pressed again."""
     xs = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0]
     block = mesh("BODY", xs, [0.0, 1.0, 2.0, 2.5, 3.0], kind)
     top = mesh("PUNCH", xs[:5], [3.0, 3.5, 4.0], kind, first=201)
