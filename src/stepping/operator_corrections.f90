@@ -36,6 +36,7 @@ module operator_corrections
    !> Part of terms that cancel which is their rounding: sqrt(n) epsilon in a solution of n = 2e5
    !> unknowns
    real(dp), parameter :: rounding = 1.0e-13_dp
+   real(dp), parameter :: elastic_part = 0.01_dp   !! of the elasticity in tangents
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
    ! Of laws.
@@ -462,10 +463,12 @@ contains
             call self%points%respond(model%mesh, e, u, at%temperature - &
                model%initial_temperature, self%history, points)
             do g = 1, points%count
-               associate (k => 16*(self%points%at_point(e, g) - 1))
-                  ! The part that energy has: operators are symmetric.
-                  tangent(k + 1:k + 16) = [(points%tangent(:, :, g) + transpose( &
-                     points%tangent(:, :, g)))/2]
+               associate (own => self%points%at_point(e, g))
+                  ! The part that energy has: operators are symmetric. A part of the elasticity
+                  ! keeps them regular.
+                  tangent(16*own - 15:16*own) = [(1.0_dp - elastic_part)/2*(points%tangent(:, :, &
+                     g) + transpose(points%tangent(:, :, g))) + elastic_part* &
+                     self%points%materials(own)%elasticity]
                end associate
             end do
          end associate
