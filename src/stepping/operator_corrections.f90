@@ -10,8 +10,9 @@
 !> A correction is the fixed point of linear solutions, and is mixed after Anderson. Where
 !> properties alone vary and one does not reduce what is left over to 0.3 of the one before, the
 !> operators are to be formed again. Laws of materials need more passes, which still cost less than
-!> factors: operators are formed, with the tangents of the laws, after 25 passes, or three that each
-!> leave more than 0.7.
+!> factors: operators are formed, with the tangents of the laws, after 25 passes, or six that each
+!> leave more than 0.7. After fewer the mixing knows too little of points that yield and stop in
+!> turn, and passes with the tangents of such a pass go round.
 module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
@@ -43,7 +44,7 @@ module operator_corrections
    real(dp), parameter :: slow = 0.7_dp         !! part that is left over by a slow pass
    real(dp), parameter :: grows = 2.0_dp        !! factor at which the mixing starts again
    real(dp), parameter :: least_rank = 1.0e-8_dp   !! tolerance of the mixing
-   integer, parameter :: most_slow = 3, most_with_operators = 25   !! passes
+   integer, parameter :: most_slow = 6, most_with_operators = 25   !! passes
 
    !> Fields at points, and the elements of the bodies whose materials vary.
    type :: corrections_type
