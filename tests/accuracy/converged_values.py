@@ -34,7 +34,8 @@ ANALYSIS = re.compile(r"^(\*(?:STATIC|VISCO|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)",
 
 def run(deck, level, part, folder, errors="LAST", checked=""):
     """Solve a deck with other elements and increments, and the errors of *OPTIONS; return the result file. The
-    level is that of all elements, or a pair with the one of those at the faces beyond it. Cards of `checked` are added."""
+    level is that of all elements, or a pair with the one of those at the faces beyond it.
+    Cards of `checked` are added."""
     # The faces of node pairs are divided together, those of mortar points each for itself, those of rigid bodies not.
     rigid = re.findall(r"^\*RIGID BODY.*(?:SURFACE|ELSET)=(\w+)", deck.text, re.M)
     divided = [face for pair, faces in re.findall(r"^(\*CONTACT PAIR.*)\n(.+)", deck.text, re.M)

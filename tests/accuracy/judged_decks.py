@@ -1,9 +1,9 @@
-"""Numerical uncertainties against true errors, on the decks of judged_families.
+"""Numerical uncertainties against true errors, on the decks of judged_families and inelastic_families.
 
 The true value at the end of a step is that of a mesh refined twice everywhere and twice more at the faces, with
 increments a quarter as long; what a sixteenth changes is added. Where the path does not matter the mesh alone is
 refined, and values that change by a steady ratio are extrapolated. The last changes of mesh and increments say how
-accurate it is: an error is judged where it is at least KNOWN times that. A deck holds where all ends of its steps
+accurate it is; some decks have true values from elsewhere (`exact`): an error is judged where it is at least KNOWN times that. A deck holds where all ends of its steps
 do; the shares of a family count each quantity of a deck.
 
 `python tests/accuracy/judged_decks.py SEED...` (or FIRST-LAST) adds the true values of the decks of seeds to
@@ -30,7 +30,8 @@ FAMILIES = ELASTIC | INELASTIC
 FILE = Path(__file__).resolve().parent / "judged.csv"
 HEAD = ["family", "deck", "step", "place", "quantity", "value", "known"]
 WORDS = QUANTITIES | {"von_mises": "largest stress", "temperature": "largest temperature",
-                      "displacement": "displacement", "dissipated": "dissipated energy", "work": "work of loads"}
+                      "displacement": "displacement", "dissipated": "dissipated energy",
+                      "work": "work of loads"}
 FINE, FACES = 2, 2                 # divisions of all elements, and beyond those of elements at the faces
 KNOWN = 3.0
 LEAST = 1e-5    # of the value: smaller errors are not judged; forces that loads prescribe have them
@@ -92,25 +93,27 @@ def place_of(node):
 
 def at_node(grid, node, ends):
     """Return the displacement of a node along x at times."""
-    row, written = int(np.flatnonzero(grid["PointData/node_id"][:] == node)[0]), grid["Steps/Values"][:]
-    firsts = (grid["Steps/PointDataOffsets/displacement"][int(np.argmin(np.abs(written - end)))] for end in ends)
+    row = int(np.flatnonzero(grid["PointData/node_id"][:] == node)[0])
+    firsts = [grid["Steps/PointDataOffsets/displacement"][int(k)] for k in (
+        np.argmin(np.abs(grid["Steps/Values"][:] - end)) for end in ends)]
     return np.array([grid["PointData/displacement"][first + row, 0] for first in firsts])
 
 
 def cards_of_checks(deck):
     """Return the cards of checks at the ends of all steps, which pass."""
-    cards = [f"{name}, {node or ''}, {float(end)!r}, 0., 1.E99, ABS\n" for end in ends_of_steps(deck.text)
-             for _, name, node in deck.checks]
+    cards = [f"{name}, {node or ''}, {float(end)!r}, 0., 1.E99, ABS\n"
+             for end in ends_of_steps(deck.text) for _, name, node in deck.checks]
     return "".join(['*VERIFY, KIND=ANALYTIC, SOURCE="inelastic_rings"\n' if cards else "", *cards])
 
 
 def judged_checks(listing, deck):
-    """Return the uncertainties of checks in a listing, NaN with the reason where there is none, by place, quantity
-    and step."""
+    """Return the uncertainties of checks in a listing, NaN with the reason where there is none, by
+    place, quantity and step."""
     told = re.findall(r"^ +found: +\S+ *(?:\+- (\S+)|\(no estimate: (.*)\))?", listing, re.M)
     keys = [(place_of(node), quantity, step) for step in range(1, len(ends_of_steps(deck.text)) + 1)
             for quantity, _, node in deck.checks]
-    return {key: (float(number or "nan"), why) for key, (number, why) in zip(keys, told, strict=True)}
+    return {key: (float(number or "nan"), why)
+            for key, (number, why) in zip(keys, told, strict=True)}
 
 
 def largest(grid, body, quantity, circle, ends):
@@ -139,8 +142,8 @@ def solved(deck, level, part, folder):
 
 
 def faces_of(deck):
-    """Return how many times elements at the faces are divided beyond all: less where bodies yield, all of whose
-    elements count, and take their time."""
+    """Return how many times elements at the faces are divided beyond all: less often where bodies
+    yield, all of whose elements count, and take their time."""
     return deck.own_levels + 1 if deck.own_levels or deck.checks else FACES
 
 
@@ -220,8 +223,9 @@ def cases_of(path, deck, told):
                 if deck.exact and (deck.name, place, quantity, step) not in told:
                     continue
                 true, known = told[deck.name, place, quantity, step]
-                value, uncertainty, reason = (own[step - 1], *checks[place, quantity, step]) if is_check else estimate(
-                    file, place, quantity, row)
+                value, uncertainty, reason = (
+                    (own[step - 1], *checks[place, quantity, step]) if is_check
+                    else estimate(file, place, quantity, row))
                 least = LEAST * abs(true)
                 if is_edge:
                     spacing = spacing_at(file[f"contact/{place}/s"][:], value)

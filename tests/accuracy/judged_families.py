@@ -152,13 +152,13 @@ def rigid(seed):
     pairing = "SURFACES" if seed // 3 % 2 else "NODES"
     # A rigid body with nodes on an axis cannot move but along it. Its elements cannot have hanging nodes.
     special = {"pairing": "SURFACES", "rounds": 0.0} if form == "mesh" else {"pairing": pairing}
-    return pressed(Joint("rigid", seed, False, ("8" if form == "mesh" and kind == "4" else kind, kind), **special),
-                   form)
+    kinds = "8" if form == "mesh" and kind == "4" else kind, kind
+    return pressed(Joint("rigid", seed, False, kinds, **special), form)
 
 
 def pressed(joint, form):
-    """Return the deck of a block under a drawn roller, a drawn punch with round edges, or a rigid mesh with a round
-    face."""
+    """Return the deck of a block under a drawn roller, a drawn punch with round edges, or a rigid
+    mesh with a round face."""
     joint.slave = "LOW"
     draw, start, end = joint.draw, 1.8 * FINE, 0.0 if joint.is_round else -0.5
     joint.lower()

@@ -16,9 +16,10 @@ BASE = 100001   # number of the first node of the lower body
 class JudgedDeck:
     """A deck, its interfaces, whether the path to its loads matters, how many times its faces alone are
     divided, the largest values of bodies that have a limit (number of the body, quantity, and centre and
-    radius of the circle where it is, or None), whether contact ends at corners, where pressure has none, values of
-    the model or of nodes that are judged as checks (quantity, what *VERIFY calls it, node or 0), and true values
-    from elsewhere: a function that returns pairs of value and accuracy for each step, by place and quantity."""
+    radius of the circle where it is, or None), whether contact ends at corners, where pressure has none,
+    values of the model or of nodes that are judged as checks (quantity, what *VERIFY calls it, node
+    or 0), and true values from elsewhere: a function that returns pairs of value and accuracy for
+    each step, by place and quantity."""
 
     family: str
     name: str

@@ -39,8 +39,9 @@ How accurate results are, what more accuracy costs, and how another program comp
 The script `tests/accuracy/report.py` writes this document from runs of the program; the tests
 `accuracy_*` repeat a part of them.
 """
-DOCUMENT = Document("accuracy.md", HERE, ("estimate", "judged", "judged_inelastic", "maxima", "wavy", "new", "requested",
-                                          "pairing", "recovered", "trade", "cylinder", "needed", "calculix"), PREFACE)
+THEMES = ("estimate", "judged", "judged_inelastic", "maxima", "wavy", "new", "requested", "pairing",
+          "recovered", "trade", "cylinder", "needed", "calculix")
+DOCUMENT = Document("accuracy.md", HERE, THEMES, PREFACE)
 check, check_parts, rows = DOCUMENT.check, DOCUMENT.check_parts, DOCUMENT.rows
 check_rows = DOCUMENT.check_rows
 

@@ -26,8 +26,8 @@ chosen on them.
 | punches | a block that yields under a roller, a rounded punch or an elastic body, with friction or without, then sheared, heated or unloaded in part |
 
 Yield surfaces stay, grow or move. True values of tubes and fits are those of a program of one
-dimension (`tests/reference/inelastic_rings.py`) that agrees with Hill's tube and other closed forms;
-those of punches are found [as above](#uncertainties-judged-on-decks-drawn-afterwards), with faces
+dimension (`tests/reference/inelastic_rings.py`) that agrees with Hill's tube and other closed
+forms; those of punches are found [as above](#uncertainties-judged-on-decks-drawn-afterwards), with faces
 divided once, not twice, beyond the rest. Displacements are those of the outside of rings; energies
 are `ALLPD` or `ALLCD`, and `ALLWK`. Both have an uncertainty where \\*VERIFY names them.
 
@@ -123,7 +123,7 @@ def test_reference_creeps():
     assert np.allclose(pressures, [82.4176, 36.158], rtol=0.0, atol=0.002)
 
 
-@pytest.mark.parametrize(("family", "seed"), [("tubes", 0), ("tubes", 1), ("fits", 1), ("fits", 2)])
+@pytest.mark.parametrize(("family", "seed"), [("tubes", 1), ("tubes", 9), ("fits", 1), ("fits", 2)])
 def test_the_program_comes_to_the_reference(family, seed, tmp_path):
     """At least in the first order, on a quarter of the elements, in an eighth of the increments."""
     deck = FAMILIES[family](seed)
