@@ -29,12 +29,13 @@ FILE = Path(__file__).resolve().parent / "converged.csv"
 # and moves by 1.5 % from mesh to mesh.
 UNSETTLED = {("ball 17", 1, "edge_contact")}
 LEAST_EDGE = 0.01   # of the spacing of the contact points: errors that converged edges may have
-ANALYSIS = re.compile(r"^(\*(?:STATIC|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)", re.M | re.I)
+ANALYSIS = re.compile(r"^(\*(?:STATIC|VISCO|COUPLED|HEAT).*\n)\s*([0-9.eE+-]+)", re.M | re.I)
 
 
-def run(deck, level, part, folder, errors="LAST"):
+def run(deck, level, part, folder, errors="LAST", checked=""):
     """Solve a deck with other elements and increments, and the errors of *OPTIONS; return the result file. The
-    level is that of all elements, or a pair with the one of those at the faces beyond it."""
+    level is that of all elements, or a pair with the one of those at the faces beyond it.
+    Cards of `checked` are added."""
     # The faces of node pairs are divided together, those of mortar points each for itself, those of rigid bodies not.
     rigid = re.findall(r"^\*RIGID BODY.*(?:SURFACE|ELSET)=(\w+)", deck.text, re.M)
     divided = [face for pair, faces in re.findall(r"^(\*CONTACT PAIR.*)\n(.+)", deck.text, re.M)
@@ -52,7 +53,7 @@ def run(deck, level, part, folder, errors="LAST"):
     for mesh in EXAMPLES.glob("*.mesh"):
         (folder / mesh.name).write_text(mesh.read_text())
     path = folder / f"{re.sub('[^a-z0-9]+', '_', deck.name.lower())}_{everywhere}_{at_faces}_{part}.inp"
-    path.write_text(text)
+    path.write_text(text + checked)
     return solve(path, seconds=900)
 
 

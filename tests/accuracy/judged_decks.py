@@ -1,9 +1,9 @@
-"""Numerical uncertainties against true errors, on the decks of judged_families.
+"""Numerical uncertainties against true errors, on the decks of judged_families and inelastic_families.
 
 The true value at the end of a step is that of a mesh refined twice everywhere and twice more at the faces, with
 increments a quarter as long; what a sixteenth changes is added. Where the path does not matter the mesh alone is
 refined, and values that change by a steady ratio are extrapolated. The last changes of mesh and increments say how
-accurate it is: an error is judged where it is at least KNOWN times that. A deck holds where all ends of its steps
+accurate it is; some decks have true values from elsewhere (`exact`): an error is judged where it is at least KNOWN times that. A deck holds where all ends of its steps
 do; the shares of a family count each quantity of a deck.
 
 `python tests/accuracy/judged_decks.py SEED...` (or FIRST-LAST) adds the true values of the decks of seeds to
@@ -23,11 +23,15 @@ import report  # isort: skip, it makes the modules below known
 import h5py
 import numpy as np
 from converged_values import ANALYSIS, LEAST_EDGE, QUANTITIES, rest, run
-from judged_families import FAMILIES
+from inelastic_families import FAMILIES as INELASTIC
+from judged_families import FAMILIES as ELASTIC
 
+FAMILIES = ELASTIC | INELASTIC
 FILE = Path(__file__).resolve().parent / "judged.csv"
 HEAD = ["family", "deck", "step", "place", "quantity", "value", "known"]
-WORDS = QUANTITIES | {"von_mises": "largest stress", "temperature": "largest temperature"}
+WORDS = QUANTITIES | {"von_mises": "largest stress", "temperature": "largest temperature",
+                      "displacement": "displacement", "dissipated": "dissipated energy",
+                      "work": "work of loads"}
 FINE, FACES = 2, 2                 # divisions of all elements, and beyond those of elements at the faces
 KNOWN = 3.0
 LEAST = 1e-5    # of the value: smaller errors are not judged; forces that loads prescribe have them
@@ -76,7 +80,40 @@ def values_of(file, deck):
             found[name, "peak_pressure"] = face["pressure"][:].max(axis=1)[rows]
     for body, quantity, circle in deck.maxima:
         found[f"body {body}", quantity] = largest(file["VTKHDF"], body, quantity, circle, ends)
+    for quantity, name, node in deck.checks:
+        values = at_node(file["VTKHDF"], node, ends) if node else file[f"history/{name}"][:][rows]
+        found[place_of(node), quantity] = values
     return found
+
+
+def place_of(node):
+    """Return the name of the place of a check."""
+    return f"node {node}" if node else "model"
+
+
+def at_node(grid, node, ends):
+    """Return the displacement of a node along x at times."""
+    row = int(np.flatnonzero(grid["PointData/node_id"][:] == node)[0])
+    firsts = [grid["Steps/PointDataOffsets/displacement"][int(k)] for k in (
+        np.argmin(np.abs(grid["Steps/Values"][:] - end)) for end in ends)]
+    return np.array([grid["PointData/displacement"][first + row, 0] for first in firsts])
+
+
+def cards_of_checks(deck):
+    """Return the cards of checks at the ends of all steps, which pass."""
+    cards = [f"{name}, {node or ''}, {float(end)!r}, 0., 1.E99, ABS\n"
+             for end in ends_of_steps(deck.text) for _, name, node in deck.checks]
+    return "".join(['*VERIFY, KIND=ANALYTIC, SOURCE="inelastic_rings"\n' if cards else "", *cards])
+
+
+def judged_checks(listing, deck):
+    """Return the uncertainties of checks in a listing, NaN with the reason where there is none, by
+    place, quantity and step."""
+    told = re.findall(r"^ +found: +\S+ *(?:\+- (\S+)|\(no estimate: (.*)\))?", listing, re.M)
+    keys = [(place_of(node), quantity, step) for step in range(1, len(ends_of_steps(deck.text)) + 1)
+            for quantity, _, node in deck.checks]
+    return {key: (float(number or "nan"), why)
+            for key, (number, why) in zip(keys, told, strict=True)}
 
 
 def largest(grid, body, quantity, circle, ends):
@@ -105,13 +142,16 @@ def solved(deck, level, part, folder):
 
 
 def faces_of(deck):
-    """Return how many times elements at the faces are divided beyond all."""
-    return deck.own_levels + 1 if deck.own_levels else FACES
+    """Return how many times elements at the faces are divided beyond all: less often where bodies
+    yield, all of whose elements count, and take their time."""
+    return deck.own_levels + 1 if deck.own_levels or deck.checks else FACES
 
 
 def reference(deck, folder):
     """Return true values at the ends of the steps, and how accurate they are, by place and quantity."""
     faces = faces_of(deck)
+    if deck.exact:
+        return {key: tuple(np.array(pairs).T) for key, pairs in deck.exact().items()}
     if deck.has_path:
         coarse, fine = (solved(deck, (k, faces), PARTS[0], folder) for k in (FINE - 1, FINE))
         longer, shorter = (solved(deck, 1, part, folder) for part in PARTS)
@@ -170,17 +210,22 @@ def estimate(file, place, quantity, row=-1):
 def cases_of(path, deck, told):
     """Return the cases of a result file: errors that are more than rounding, of edges that are not the ends of
     the face and of largest values at their place."""
-    found = []
+    found, checks = [], judged_checks(path.with_suffix(".lst").read_text(), deck)
     with h5py.File(path) as file:
         times = file["uncertainty/time"][:]
         rows = [int(np.argmin(np.abs(times - end))) for end in ends_of_steps(deck.text)]
         for (place, quantity), own in values_of(file, deck).items():
-            if quantity not in file["uncertainty"].get(place, ()):
+            is_check = (place, quantity, 1) in checks
+            if not is_check and quantity not in file["uncertainty"].get(place, ()):
                 continue
             is_edge = quantity.startswith("edge")
             for step, row in enumerate(rows, 1):
+                if deck.exact and (deck.name, place, quantity, step) not in told:
+                    continue
                 true, known = told[deck.name, place, quantity, step]
-                value, uncertainty, reason = estimate(file, place, quantity, row)
+                value, uncertainty, reason = (
+                    (own[step - 1], *checks[place, quantity, step]) if is_check
+                    else estimate(file, place, quantity, row))
                 least = LEAST * abs(true)
                 if is_edge:
                     spacing = spacing_at(file[f"contact/{place}/s"][:], value)
@@ -203,7 +248,8 @@ def spacing_at(places, value):
 def judged(deck, told, errors="LAST"):
     """Solve a deck as written; return its cases."""
     with tempfile.TemporaryDirectory() as folder:
-        return cases_of(run(deck, (0, deck.own_levels), 1, Path(folder), errors), deck, told)
+        path = run(deck, (0, deck.own_levels), 1, Path(folder), errors, cards_of_checks(deck))
+        return cases_of(path, deck, told)
 
 
 def by_deck(cases):

@@ -14,6 +14,7 @@ from physics import material, mesh, nodes_of
 
 REFERENCE = 900001   # number of the reference node of a section or a rigid body
 SHIFT = 101          # to the seed of another family of drawn_decks
+FORMS = "roller", "punch", "mesh"   # of rigid bodies
 
 
 def stacked(joint, **of_materials):
@@ -145,13 +146,19 @@ def tables(seed):
 
 
 def rigid(seed):
-    """Rigid bodies: a drawn roller, a drawn punch with round edges, or a rigid mesh with a round face."""
+    """Rigid bodies."""
     kind = str(np.random.default_rng([seed, 403]).choice(["8", "8R", "6", "4"]))
-    form = ("roller", "punch", "mesh")[seed % 3]
+    form = FORMS[seed % 3]
     pairing = "SURFACES" if seed // 3 % 2 else "NODES"
     # A rigid body with nodes on an axis cannot move but along it. Its elements cannot have hanging nodes.
     special = {"pairing": "SURFACES", "rounds": 0.0} if form == "mesh" else {"pairing": pairing}
-    joint = Joint("rigid", seed, False, ("8" if form == "mesh" and kind == "4" else kind, kind), **special)
+    kinds = "8" if form == "mesh" and kind == "4" else kind, kind
+    return pressed(Joint("rigid", seed, False, kinds, **special), form)
+
+
+def pressed(joint, form):
+    """Return the deck of a block under a drawn roller, a drawn punch with round edges, or a rigid
+    mesh with a round face."""
     joint.slave = "LOW"
     draw, start, end = joint.draw, 1.8 * FINE, 0.0 if joint.is_round else -0.5
     joint.lower()

@@ -16,7 +16,10 @@ BASE = 100001   # number of the first node of the lower body
 class JudgedDeck:
     """A deck, its interfaces, whether the path to its loads matters, how many times its faces alone are
     divided, the largest values of bodies that have a limit (number of the body, quantity, and centre and
-    radius of the circle where it is, or None), and whether contact ends at corners, where pressure has none."""
+    radius of the circle where it is, or None), whether contact ends at corners, where pressure has none,
+    values of the model or of nodes that are judged as checks (quantity, what *VERIFY calls it, node
+    or 0), and true values from elsewhere: a function that returns pairs of value and accuracy for
+    each step, by place and quantity."""
 
     family: str
     name: str
@@ -26,6 +29,8 @@ class JudgedDeck:
     own_levels: int = 0
     maxima: tuple = ()
     has_corners: bool = False
+    checks: tuple = ()
+    exact: object = None
 
 
 class Joint:
@@ -56,6 +61,7 @@ class Joint:
         self.down = self.draw.uniform(1.2, 3.5) * (FINE - self.flat) ** 2 / (2 * self.radius)
         self.is_moved = is_whole or self.draw.uniform() < 0.6
         self.cards, self.law, self.held, self.steps = [], [], [], []
+        self.laws = {}        # cards behind the elasticity of bodies
         self.top = "UP.TOP"   # what the loads act on
 
     def corners(self, end, is_master):
@@ -86,7 +92,8 @@ class Joint:
         for k, name in enumerate(names):
             given = {"elastic": (self.young[k], self.poisson[k]), "expansion": self.expansion[k],
                      "conductivity": self.conductivity[k]} | {key: values[k] for key, values in more.items()}
-            self.cards += material(name, **given)
+            cards = material(name, **given)
+            self.cards += [*cards[:3], *self.laws.get(name, ()), *cards[3:]]
         self.cards += ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", *(f"{name}, 0." for name in names)]
 
     def conductance(self, times=1.0):

@@ -46,7 +46,8 @@ def tables(folder):
     """Judge all decks whose true values are kept, in folders of their own."""
     told = told_values(FILE)
     names = dict.fromkeys(key[0] for key in told)
-    decks = [FAMILIES[family](int(seed)) for family, seed in (name.split(" ") for name in names)]
+    decks = [FAMILIES[family](int(seed)) for family, seed in (name.split(" ") for name in names)
+             if family in FAMILIES]
     found = {errors: [case for deck in decks for case in judged(deck, told, errors)] for errors in ERRORS}
     known, number = sum(case.is_known for case in found["FULL"]), len(found["FULL"])
     missed = [float(row[-1]) for row in misses(found).rows]
