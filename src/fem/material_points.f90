@@ -18,7 +18,7 @@ module material_points
    use shape_functions, only: node_position
    implicit none
    private
-   public :: material_points_type, point_history_type, history_count
+   public :: material_points_type, point_history_type, history_count, elastic_part
 
    !> The points of all elements.
    type, extends(point_materials_type) :: material_points_type
@@ -53,6 +53,7 @@ module material_points
 
    integer, parameter :: most_enhancements = 50       ! passes for enhanced strains
    integer, parameter :: most_straight = 8            ! of these, with tangents alone
+   real(dp), parameter :: elastic_part = 0.01_dp      !! of the elasticity in tangents
    integer, parameter :: most_searches = 5            ! for the length of a change
    real(dp), parameter :: settled = 1.0e-12_dp        ! part of the strains that they change last
 
@@ -222,13 +223,12 @@ contains
       strains = 0.0_dp
       do pass = 1, most_enhancements
          if (points%failed) return
-         change = self%changes_of_modes(mesh, element, points)
-         if (pass > most_straight .and. modulo(pass, 2) == 0) then
-            ! Newton's changes go to and fro where points yield and unload by turns.
-            stiffer = points
-            stiffer%tangent = (points%tangent + elastic%tangent)/2
-            change = self%changes_of_modes(mesh, element, stiffer)
-         end if
+         ! A part of the elasticity keeps modes regular; Newton's changes alone go to and fro where
+         ! points yield and unload by turns.
+         part = merge(0.5_dp, elastic_part, pass > most_straight .and. modulo(pass, 2) == 0)
+         stiffer = points
+         stiffer%tangent = (1.0_dp - part)*points%tangent + part*elastic%tangent
+         change = self%changes_of_modes(mesh, element, stiffer)
          if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + &
             maxval(abs(elastic%strain(:4, :))))) return
          slope = work_on(change)

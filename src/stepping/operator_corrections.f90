@@ -24,7 +24,7 @@ module operator_corrections
    use materials, only: has_law, varies
    use model, only: model_type
    use material_laws, only: law_points_type
-   use material_points, only: material_points_type, point_history_type
+   use material_points, only: elastic_part, material_points_type, point_history_type
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
@@ -37,7 +37,6 @@ module operator_corrections
    !> Part of terms that cancel which is their rounding: sqrt(n) epsilon in a solution of n = 2e5
    !> unknowns
    real(dp), parameter :: rounding = 1.0e-13_dp
-   real(dp), parameter :: elastic_part = 0.01_dp   !! of the elasticity in tangents
    integer, parameter :: most_passes = 60
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
    ! Of laws.
