@@ -340,7 +340,8 @@ def punch(folder, faces, columns, cards=(), width=None, length=1):
 @pytest.mark.parametrize(("columns", "width"), [(8, None), (12, 4)], ids=["mortar points", "node pairs"])
 def test_a_pressure_without_limit_is_never_reached_and_costs_no_round(tmp_path, faces, columns, width):
     """The pressure at the edge of a punch grows without limit, whichever face is the slave."""
-    reason = "1 round: a pressure without a limit meets no target, and *ACCURACY can leave it out"
+    reason = "1 round: a pressure without a limit meets no target: ask for other quantities, on " \
+        "*ACCURACY or as --accuracy force=5%"
     deck = punch(tmp_path, faces, columns, width=width)
     process = run("run", deck, "--out", tmp_path, "--accuracy", "95%")
     assert process.returncode == 4, process.stderr
