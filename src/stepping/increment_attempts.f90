@@ -23,7 +23,7 @@ module increment_attempts
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
-   use text, only: percent
+   use text, only: to_text
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
@@ -123,13 +123,13 @@ contains
       associate (step => model%steps(run%control%step), growth => attempt%record%strain_growth)
          growth = run%corrections%largest_growth(model, attempt%next, run%state)
          if (growth(1) <= step%strain_limit) return
-         words = 'plastic strains grow by '//percent(growth(1))
+         ! A growth that is not carried, as beyond collapse, has no meaning.
+         words = 'plastic strains grow in an increment by more than STRAIN LIMIT='// &
+            to_text(step%strain_limit)
          if (step%direct) then
-            call attempt%record%warn(words//' in an increment, which DIRECT does not '// &
-               'allow to be cut back')
+            call attempt%record%warn(words//', which DIRECT does not allow to be cut back')
          else
-            call set_error(error, status_no_convergence, words//', more than the '// &
-               percent(step%strain_limit)//' of an increment')
+            call set_error(error, status_no_convergence, words)
          end if
       end associate
    end subroutine check_strains
