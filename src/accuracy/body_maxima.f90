@@ -1,6 +1,6 @@
-!> The largest von Mises stress and temperature of each body: where they are on the mesh of a run,
-!> and on one some of whose elements are divided. Stress counts in elements without singular
-!> corners, and in the children of these.
+!> The largest von Mises stress, temperature and inelastic strains of each body: where they are on
+!> the mesh of a run, and on one some of whose elements are divided. Stress and strains count in
+!> elements without singular corners, and in the children of these.
 module body_maxima
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use divided_mesh, only: divided_mesh_type
@@ -20,11 +20,12 @@ module body_maxima
    private
    public :: body_maxima_type
 
-   integer, parameter :: of_stress = 1, of_temperature = 2   !! as in maxima
+   logical, parameter :: is_of_temperature(*) = maxima%unit == 'temperature'
 
    !> Maxima of the bodies of a mesh.
    type :: body_maxima_type
-      real(dp), allocatable :: value(:, :)       !! (maxima, bodies); -huge where there is none
+      !> (maxima, bodies) where there is none -huge, of strains 0
+      real(dp), allocatable :: value(:, :)
       integer, allocatable :: node(:, :)         !! (maxima, bodies) likewise 0
       logical, allocatable :: counts(:, :)       !! (maxima, elements) those looked at
       logical, allocatable :: is_singular(:)     !! (nodes)
@@ -42,16 +43,21 @@ contains
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation        !! the run at its end
       type(increment_record_type), intent(in) :: record      !! with its fields
-      integer :: i
+      logical :: is_sound(size(model%mesh%element_kind))
+      integer :: i, q
 
       allocate (self%is_singular(size(model%mesh%node_number)), source=.false.)
-      allocate (self%counts(size(maxima), size(model%mesh%element_kind)), source=.false.)
-      self%counts(of_temperature, :) = allocated(record%fields%reaction_heat)
+      is_sound = .false.
       if (allocated(record%fields%stress)) then
          call find_singular_corners(model, simulation, record, self%is_singular)
-         self%counts(of_stress, :) = .not. elements_about(model%mesh, &
+         is_sound = .not. elements_about(model%mesh, &
             pack([(i, i=1, size(self%is_singular))], self%is_singular))
       end if
+      allocate (self%counts(size(maxima), size(is_sound)))
+      do q = 1, size(maxima)
+         self%counts(q, :) = is_sound
+         if (is_of_temperature(q)) self%counts(q, :) = allocated(record%fields%reaction_heat)
+      end do
       call find_places(self, model%mesh, simulation%recovery%points, record%fields)
    end subroutine find
 
@@ -144,25 +150,31 @@ contains
       end do
    end function largest_of
 
-   !> Singular corners in one of whose elements stress is at least the body's largest elsewhere.
+   !> Singular corners in one of whose elements stress or a strain is at least the body's largest
+   !> elsewhere.
    pure function larger_corners(self, mesh, points, fields) result(is_larger)
       class(body_maxima_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points
       type(field_record_type), intent(in) :: fields
       logical :: is_larger(size(self%is_singular))           !! (nodes)
-      integer :: e, n
+      real(dp), allocatable :: values(:)
+      real(dp) :: largest
+      integer :: e, n, q
 
       is_larger = .false.
       if (.not. any(self%is_singular)) return
-      associate (stress => point_values('von_mises', fields, points%node))
+      do q = 1, size(maxima)
+         if (is_of_temperature(q)) cycle
+         values = point_values(trim(maxima(q)%name), fields, points%node)
+         if (size(values) == 0) cycle
          do e = 1, size(mesh%element_kind)
             n = element_node_count(mesh%element_kind(e))
-            if (maxval(stress(points%element_points(:n, e))) < self%value(of_stress, &
-               mesh%element_body(e))) cycle
+            largest = maxval(values(points%element_points(:n, e)))
+            if (largest <= 0.0_dp .or. largest < self%value(q, mesh%element_body(e))) cycle
             is_larger(mesh%element_nodes(:n, e)) = .true.
          end do
-      end associate
+      end do
       is_larger = is_larger .and. self%is_singular
    end function larger_corners
 
@@ -172,22 +184,22 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points          ! of stress
       type(field_record_type), intent(in) :: fields
-      integer :: e, n
+      real(dp), allocatable :: values(:)
+      integer :: e, n, q
 
       allocate (self%node(size(maxima), mesh%body_count), source=0)
-      allocate (self%value(size(maxima), mesh%body_count), source=-huge(1.0_dp))
-      associate (stress => point_values('von_mises', fields, points%node))
-         do e = 1, size(self%counts, 2)
+      allocate (self%value(size(maxima), mesh%body_count))
+      do q = 1, size(maxima)
+         self%value(q, :) = merge(0.0_dp, -huge(1.0_dp), maxima(q)%unit == '-')
+         values = point_values(trim(maxima(q)%name), fields, points%node)
+         do e = 1, merge(size(self%counts, 2), 0, size(values) > 0)
+            if (.not. self%counts(q, e)) cycle
             n = element_node_count(mesh%element_kind(e))
             associate (places => points%element_points(:n, e))
-               if (size(stress) > 0 .and. self%counts(of_stress, e)) call take(self, of_stress, &
-                  mesh%element_body(e), points%node(places), stress(places))
-               if (self%counts(of_temperature, e)) call take(self, of_temperature, &
-                  mesh%element_body(e), points%node(places), &
-                  fields%temperature(points%node(places)))
+               call take(self, q, mesh%element_body(e), points%node(places), values(places))
             end associate
          end do
-      end associate
+      end do
    end subroutine find_places
 
    !> Keeps the largest value at some nodes of a body where it exceeds what was found.

@@ -214,7 +214,7 @@ contains
       call self%heat%release()
    end subroutine release
 
-   !> Stress of a state, where mechanics is solved.
+   !> Stress of a state, and its inelastic strains, where mechanics is solved.
    subroutine recover_stress(self, state)
       type(divided_mesh_type), intent(inout) :: self
       type(solution_state_type), intent(in) :: state
@@ -223,6 +223,8 @@ contains
       if (allocated(state%stress_temperature)) call self%run%recovery%recover_stress(self%model, &
          reshape(state%displacement, [2, size(state%temperature)]), state%stress_temperature - &
          self%model%initial_temperature, state%history, self%record%fields%stress, estimate)
+      if (allocated(state%history)) call self%run%recovery%recover_strains(self%model, &
+         state%history, self%record%fields%inelastic_strain)
    end subroutine recover_stress
 
    !> Divides the elements at the contact and some more, and prepares what solving ends of steps

@@ -361,6 +361,8 @@ contains
          q = 0
          if (quantity == 'MISES') q = find_quantity(maxima, 'von_mises')
          if (quantity == 'NT') q = find_quantity(maxima, 'temperature')
+         if (quantity == 'PEEQ') q = find_quantity(maxima, 'equivalent_plastic_strain')
+         if (quantity == 'CEEQ') q = find_quantity(maxima, 'equivalent_creep_strain')
          if (q > 0 .and. where == 'MAX') then
             k = maxloc(found%value(q, :), dim=1)
             if (found%node(q, k) > 0) then
@@ -392,7 +394,7 @@ contains
          quantity = verifiable(find_quantity(verifiable, check%quantity))
          call read_integer(check%where, number, is_node)
          holds = .false.
-         if (is_node .and. quantity%unit == 'stress') holds(at_corner) = &
+         if (is_node .and. any(quantity%unit == ['stress', '-     '])) holds(at_corner) = &
             any(found%is_singular .and. model%mesh%node_number == number)
          holds(of_step) = .not. (self%is_full .or. quantity%kind == of_nodes .and. is_node)
          call values_asked_for(check, record, model, interfaces, simulation%recovery%points%node, &

@@ -344,8 +344,8 @@ contains
          only_corners_are_missed = all(findings%is_met() .or. findings%no_estimate == at_corner)
       end associate
       if (only_corners_are_missed) then
-         self%reason = 'a pressure without a limit meets no target, and *ACCURACY can '// &
-            'leave it out'
+         self%reason = 'a pressure without a limit meets no target: ask for other '// &
+            'quantities, on *ACCURACY or as --accuracy force=5%'
       else if (self%stands_still()) then
          self%reason = 'the last two came no nearer to the targets'
       else if (nothing_is_left) then

@@ -100,11 +100,13 @@ contains
       class(uncertainty_type), intent(in) :: errors
       integer :: i
 
-      do i = 1, size(errors%value)
+      ! Strains come last, and are left out without laws.
+      do i = 1, size(self%sets) - 1
          call self%sets(i)%append([errors%value(i), errors%total(i), errors%change(i), &
             errors%scatter(i), errors%iteration(i)])
       end do
-      call self%sets(size(self%sets))%append(real(errors%no_estimate, dp))
+      call self%sets(size(self%sets))%append(real(errors%no_estimate(:size(self%sets) - &
+         1), dp))
    end subroutine append_uncertainties
 
    !> Quantities with uncertainties, as they are in `/uncertainty/<name>`, and why there are none.

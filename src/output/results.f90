@@ -184,7 +184,8 @@ contains
          end do
          do i = 1, bodies
             call tables(4 + 2*n + i)%start('/uncertainty/body '//to_text(i), &
-               with_uncertainty(maxima), 0, steps)
+               with_uncertainty(pack(maxima, has(maxima%needs) .or. maxima%needs /= needs_laws)), &
+               0, steps)
          end do
          if (is_full(model)) call tables(size(tables))%start('/uncertainty/increment', &
             with_uncertainty(history_estimated), 0, steps)

@@ -12,7 +12,7 @@ module summary
    use mesh, only: mesh_type
    use model, only: model_type
    use model_words, only: has_many
-   use no_estimates, only: mark_of, no_reason, reason_inside_step, reason_of_run
+   use no_estimates, only: at_corner, mark_of, no_reason, reason_inside_step, reason_of_run
    use quantity_types, only: needs_heat, quantity_type
    use records, only: body_uncertainty_type, contact_record_type, increment_record_type, &
       uncertainty_type
@@ -37,6 +37,7 @@ module summary
    character(field_width), parameter :: displacement_name = 'displacement up to'
    character(*), parameter :: strain_names(2) = [character(field_width) :: &
       'plastic strain up to', 'creep strain up to']
+   integer, parameter :: first_strain = size(maxima) - size(strain_names)   !! before it in maxima
    character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
       'highest temperature', 'heat in', 'heat out']
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
@@ -204,16 +205,30 @@ contains
             end do
          end if
       end if
-      if (allocated(self%inelastic_strain)) then
-         do i = 1, size(strain_names)
-            if (maxval(self%inelastic_strain(i, :)) > 0.0_dp) call append(lines, summary_line( &
-               strain_names(i), maxval(self%inelastic_strain(i, :)), '', '', 'body '//to_text( &
-               maxloc(self%inelastic_strain(i, :), dim=1))))
-         end do
-      end if
+      if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines
+
+   !> The largest inelastic strains where they are not among the maxima of bodies.
+   subroutine add_strains(self, model, lines)
+      class(summary_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      integer :: b, i, reason
+
+      do i = 1, size(strain_names)
+         b = maxloc(self%inelastic_strain(i, :), dim=1)
+         if (self%inelastic_strain(i, b) <= 0.0_dp) cycle
+         reason = reason_inside_step(model)
+         if (reason == no_reason .and. allocated(self%body_errors)) then
+            if (.not. ieee_is_nan(self%body_errors(b)%value(first_strain + i))) cycle
+            reason = at_corner
+         end if
+         call append(lines, summary_line(strain_names(i), self%inelastic_strain(i, b), &
+            mark_of(reason), '', 'body '//to_text(b)))
+      end do
+   end subroutine add_strains
 
    !> The maxima of a body.
    subroutine add_maxima(model, errors, body, lines)
@@ -274,7 +289,8 @@ contains
 
       words = ''
       if (size(errors%corners) == 0) return
-      words = 'singular corner, round which stress is larger, may have no limit and has no '// &
+      words = 'singular corner, round which stress '//trim(merge('or strain is', 'is          ', &
+         any(errors%node(first_strain + 1:) > 0)))//' larger, may have no limit and has no '// &
          'estimate: '
       do i = 1, min(size(errors%corners), most_corners)
          if (i > 1) words = words//', '
@@ -295,7 +311,8 @@ contains
 
       label = name
       value = to_text(number)
-      line = trim('  '//label//adjustr(value)//uncertainty//' '//unit)
+      line = trim('  '//label//adjustr(value)//uncertainty)
+      if (unit /= '-') line = trim('  '//label//adjustr(value)//uncertainty//' '//unit)
       if (words /= '') line = line//', '//words
    end function summary_line
 

@@ -2,8 +2,9 @@
 !> by those of the result file.
 module field_quantities
    use kinds, only: dp
-   use quantity_types, only: needs_creep, needs_heat, needs_plasticity, needs_mechanics, &
-      needs_stability, needs_temperature, of_bodies, of_elements, of_nodes, of_points, quantity_type
+   use quantity_types, only: needs_creep, needs_heat, needs_laws, needs_mechanics, &
+      needs_plasticity, needs_stability, needs_temperature, of_bodies, of_elements, of_nodes, &
+      of_points, quantity_type
    use records, only: field_record_type
    implicit none
    private
@@ -72,7 +73,12 @@ module field_quantities
       order=0.9_dp, &
       description='largest equivalent stress of von Mises away from singular corners'), &
       quantity_type('temperature', of_bodies, 'temperature', needs_heat, label='temperature', &
-      order=0.9_dp, description='largest temperature')]
+      order=0.9_dp, description='largest temperature'), &
+      quantity_type('equivalent_plastic_strain', of_bodies, '-', needs_laws, &
+      label='plastic strain', order=0.9_dp, &
+      description='largest equivalent plastic strain away from singular corners'), &
+      quantity_type('equivalent_creep_strain', of_bodies, '-', needs_laws, label='creep strain', &
+      order=0.9_dp, description='largest equivalent creep strain away from singular corners')]
 
 contains
 

@@ -63,7 +63,7 @@ module increment_quantities
       quantity_type('ALLFD', of_history, 'stress length^3', needs_laws, &
       description='energy that friction dissipated so far'), &
       quantity_type('ALLWK', of_history, 'stress length^3', needs_laws, &
-      description='work of loads and supports so far'), &
+      description='work of loads, supports, temperatures and interferences so far'), &
       quantity_type('unstable_modes', of_history, '-', needs_stability, &
       description='small motions of the state that grow'), &
       quantity_type('certain', of_history, '-', needs_stability, is_integer=.true., &

@@ -1,6 +1,8 @@
 !> Energies of bodies that remember, and the work of loads and friction on the way to them. The work
-!> of a load in an increment is that of its mean; what materials dissipate is in their histories.
+!> of a load, an interference or a temperature in an increment is that of the mean of its force or
+!> stress; what materials dissipate is in their histories.
 module energies
+   use connections, only: connections_type
    use friction_heating, only: slips
    use kinds, only: dp
    use material_laws, only: law_points_type
@@ -15,6 +17,15 @@ module energies
    private
    public :: add_friction_work, measure_energies
 
+   !> What the integration points of all elements have in a state.
+   type :: point_fields_type
+      real(dp) :: energies(3) = 0.0_dp         !! stored, dissipated by plasticity and by creep
+      real(dp), allocatable :: volume(:)       !! (points) that each stands for [length^3]
+      real(dp), allocatable :: stress(:, :)    !! (4, points) [stress]
+      real(dp), allocatable :: elastic(:, :)   !! (4, points) strain by the stress
+      real(dp), allocatable :: free(:, :)      !! (4, points) strain by the temperature
+   end type point_fields_type
+
 contains
 
    !> Adds the work of friction in a stage to its state.
@@ -28,54 +39,111 @@ contains
          slips(run%bodies, next%contact)))
    end subroutine add_friction_work
 
-   !> Adds the work of the loads in an increment, and records all energies at its end.
+   !> Adds the work of loads, interferences and temperatures in an increment, and records all
+   !> energies at its end.
    subroutine measure_energies(run, model, next, record)
       type(simulation_type), intent(inout) :: run            !! at the start of the increment
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(inout) :: next       !! at its end
       type(increment_record_type), intent(inout) :: record
+      type(point_fields_type) :: after, before
       real(dp) :: forces(2, size(next%temperature))
 
       forces = record%fields%external_force
       if (allocated(run%state%reaction)) forces = forces + run%state%reaction + on_nodes( &
          run%bodies%points%partners, reshape(run%state%force_load, shape(forces)))
       next%work(2) = next%work(2) + dot_product([forces], next%displacement - &
-         run%state%displacement)/2
-      record%energies = [energies_of(run, model, next), next%work]
+         run%state%displacement)/2 + work_of_overlaps(run%bodies%points, run%state, next)
+      if (heats(model, run%state, next)) before = fields_of(run, model, run%state)
+      after = fields_of(run, model, next)
+      if (allocated(before%stress)) next%work(2) = next%work(2) + work_of_temperatures(before, &
+         after)
+      record%energies = [after%energies, next%work]
    end subroutine measure_energies
 
-   !> Energy that is stored, and dissipated by plasticity and by creep.
-   function energies_of(run, model, state) result(energies)
+   !> Work of the pressures on the bodies as what keeps the faces of closed contact points apart
+   !> changes: interferences, and overlaps of soft faces, which store what bodies lose.
+   pure real(dp) function work_of_overlaps(points, before, after) result(work)
+      type(connections_type), intent(in) :: points
+      type(solution_state_type), intent(in) :: before, after   ! at both ends of the increment
+
+      work = -dot_product(before%contact%force + after%contact%force, distance(after) - &
+         distance(before))/2
+   contains
+      pure function distance(state)
+         type(solution_state_type), intent(in) :: state
+         real(dp) :: distance(size(points%slave))
+
+         distance = max(state%contact%gap, 0.0_dp) + sum(points%relative(state%displacement)* &
+            points%normal, dim=1)
+      end function distance
+   end function work_of_overlaps
+
+   !> Whether temperatures change in an increment.
+   pure logical function heats(model, before, after)
+      type(model_type), intent(in) :: model
+      type(solution_state_type), intent(in) :: before, after
+
+      if (allocated(before%stress_temperature)) then
+         heats = any(abs(after%stress_temperature - before%stress_temperature) > 0.0_dp)
+      else
+         heats = any(abs(after%stress_temperature - model%initial_temperature) > 0.0_dp)
+      end if
+   end function heats
+
+   !> Work of the stresses on strains that temperatures free, and what elasticity that follows them
+   !> adds to the energy that is stored.
+   pure real(dp) function work_of_temperatures(before, after) result(work)
+      type(point_fields_type), intent(in) :: before, after   ! at both ends of the increment
+
+      work = dot_product(after%volume, sum(after%stress*before%elastic - before%stress* &
+         after%elastic - (before%stress + after%stress)*(after%free - before%free), dim=1))/2
+   end function work_of_temperatures
+
+   !> Fields of a state at all integration points, and its energies.
+   function fields_of(run, model, state) result(found)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: state
-      real(dp) :: energies(3)
+      type(point_fields_type) :: found
       type(point_history_type) :: history
       type(law_points_type) :: points
-      real(dp) :: u(2, size(state%temperature)), warming(size(state%temperature))
-      real(dp) :: work(most, 2)
-      integer :: e, g
+      real(dp), dimension(size(state%temperature)) :: there, warming
+      real(dp) :: u(2, size(state%temperature)), work(most, 2)
+      integer :: e, g, p
 
-      energies = 0.0_dp
       history%before = state%history
       history%after = state%history
       u = reshape(state%displacement, shape(u))
-      warming = state%stress_temperature - model%initial_temperature
+      there = model%initial_temperature
+      if (allocated(state%stress_temperature)) there = state%stress_temperature
+      warming = there - model%initial_temperature
       associate (mesh => model%mesh, fields => run%recovery%integration)
-         call fields%set_temperature(mesh, state%stress_temperature, model%initial_temperature)
+         call fields%set_temperature(mesh, there, model%initial_temperature)
+         found%volume = fields%volume(:fields%first(size(fields%first)) - 1)
+         allocate (found%stress(4, size(found%volume)), source=0.0_dp)
+         found%elastic = found%stress
+         found%free = found%stress
          do e = 1, size(mesh%element_kind)
             call fields%respond(mesh, e, u, warming, history, points)
             work = fields%inelastic_work(mesh, e, state%history)
-            do g = 1, fields%rules(mesh%element_kind(e))%count
-               associate (volume => fields%volume(fields%first(e) + g - 1), &
-                  s => points%stress(g, :))
-                  energies(1) = energies(1) + volume*dot_product(s, matmul(fields%materials( &
-                     fields%at_point(e, g))%compliance, s))/2
-                  energies(2:3) = energies(2:3) + volume*work(g, :)
-               end associate
-            end do
+            associate (rule => fields%rules(mesh%element_kind(e)))
+               do g = 1, rule%count
+                  p = fields%first(e) + g - 1
+                  associate (material => fields%materials(fields%at_point(e, g)), &
+                     nodes => mesh%element_nodes(:rule%nodes, e))
+                     found%stress(:, p) = points%stress(g, :)
+                     found%elastic(:, p) = matmul(material%compliance, found%stress(:, p))
+                     found%free(:, p) = matmul(material%compliance, material%thermal_stress + &
+                        material%thermal_modulus*dot_product(rule%shape(g, :rule%nodes), &
+                        warming(nodes)))
+                  end associate
+                  found%energies = found%energies + found%volume(p)*[dot_product( &
+                     found%stress(:, p), found%elastic(:, p))/2, work(g, :)]
+               end do
+            end associate
          end do
       end associate
-   end function energies_of
+   end function fields_of
 
 end module energies

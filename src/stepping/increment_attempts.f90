@@ -23,11 +23,14 @@ module increment_attempts
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
-   use text, only: percent
+   use text, only: to_text
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
    public :: attempt_type, attempt_increment, begin_record
+
+   !> Growth of plastic strains that no equilibrium has, but with forces that rounding makes
+   real(dp), parameter :: of_collapse = 1.0_dp
 
    !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
    type, extends(trial_type) :: attempt_type
@@ -112,7 +115,7 @@ contains
    end subroutine return_to_elasticity
 
    !> Whether plastic strains grow by no more than the step allows an increment; where increments
-   !> are fixed they may.
+   !> are fixed they may, unless forces are those of rounding.
    subroutine check_strains(run, model, attempt, error)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
@@ -123,13 +126,13 @@ contains
       associate (step => model%steps(run%control%step), growth => attempt%record%strain_growth)
          growth = run%corrections%largest_growth(model, attempt%next, run%state)
          if (growth(1) <= step%strain_limit) return
-         words = 'plastic strains grow by '//percent(growth(1))
-         if (step%direct) then
-            call attempt%record%warn(words//' in an increment, which DIRECT does not '// &
-               'allow to be cut back')
+         ! A growth that is not carried, as beyond collapse, has no meaning.
+         words = 'plastic strains grow in an increment by more than STRAIN LIMIT='// &
+            to_text(step%strain_limit)
+         if (step%direct .and. growth(1) < of_collapse) then
+            call attempt%record%warn(words//', which DIRECT does not allow to be cut back')
          else
-            call set_error(error, status_no_convergence, words//', more than the '// &
-               percent(step%strain_limit)//' of an increment')
+            call set_error(error, status_no_convergence, words)
          end if
       end associate
    end subroutine check_strains

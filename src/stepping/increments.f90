@@ -130,18 +130,15 @@ contains
          to_text(record%time)//'): '//error%message
    end subroutine try_again
 
-   !> What a run was carrying last before bodies that have yielded found no equilibrium; nothing for
+   !> What a run was carrying last before bodies that yield found no equilibrium; nothing for
    !> others.
    function words_of_collapse(run, model) result(words)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
       character(:), allocatable :: words
-      real(dp) :: strain(2, model%mesh%body_count)
 
       words = ''
-      if (.not. allocated(run%state%history)) return
-      strain = run%corrections%points%largest_growth(model%mesh, run%state%history)
-      if (all(strain(1, :) <= 0.0_dp)) return
+      if (.not. run%corrections%yields(model)) return
       associate (control => run%control)
          words = '; collapse: the last load that was carried is that of time '// &
             to_text(control%step_start + control%step_time)//', '//percent(control%step_time/ &

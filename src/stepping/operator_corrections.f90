@@ -84,6 +84,7 @@ module operator_corrections
       procedure :: true_contents
       procedure :: keep
       procedure :: largest_growth
+      procedure :: yields
       procedure :: inelastic_heat
       procedure :: find_tangents
    end type corrections_type
@@ -314,6 +315,18 @@ contains
       if (allocated(state%history)) growth = maxval(self%points%largest_growth(model%mesh, &
          state%history, before%history), 2)
    end function largest_growth
+
+   !> Whether bodies yield in the last pass, or find no stress there.
+   pure logical function yields(self, model)
+      class(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp) :: growth(2, model%mesh%body_count)
+
+      yields = any(model%materials%law%strains(1) > 0) .and. allocated(self%history%after)
+      if (.not. yields) return
+      growth = self%points%largest_growth(model%mesh, self%history%after, self%history%before)
+      yields = self%law_failed .or. any(growth(1, :) > 0.0_dp)
+   end function yields
 
    !> Corrections that temperatures and displacements at the end of a stage ask for.
    function corrections_of(self, model, bodies, temperature, displacement) result(values)

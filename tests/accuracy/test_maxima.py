@@ -27,6 +27,10 @@ meet; ends of ties and of contacts, where one face goes on; and nodes with a for
 their own. Summary and listing name those round which stress is larger. Where straight sides turn by more than
 30 degrees from one to the next, as two linear elements for a quarter of a circle do, they make such a corner.
 
+With ERRORS=FULL the largest plastic and creep strain of each body have theirs in the same way. Of 36 tubes
+that yield to 1.2, 1.5 and 1.8 times their bore (CAX8R, CAX8, CAX4, CAX4I; 4, 8 and 16 elements) and 6 that
+creep, every exact strain of the bore is within the uncertainty, which is 1.6 to 4.8 times the error.
+
 No uncertainty knows the shape of faces that linear elements make straight. Forces on nodes along a side act as
 single forces on the divided mesh, so that uncertainties there are far too large: use \\*DSLOAD.
 

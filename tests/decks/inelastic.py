@@ -12,7 +12,7 @@ A, N = 3.125e-14, 5.0   # Norton's law [MPa, h]
 def law(*cards, elastic=(YOUNG, POISSON), name="BODY", **more):
     """Return a material with laws behind its elasticity, and its section."""
     given = material(name, elastic=elastic, **more)
-    return [*given[:3], *cards, *given[3:]]
+    return [*given[:-1], *cards, given[-1]]
 
 
 def bar(*cards, kind="CPS4", **more):
@@ -62,15 +62,15 @@ def hill(radius):
             (1 - poisson**2) * hoop / young * OUTSIDE, hoop)
 
 
-def fit(*laws, free=False, elements=20):
+def fit(*laws, free=False, elements=20, joint=()):
     """Return a solid shaft 50 in a hub 50/100 with elements through it; ends are free, or all
     planes are held."""
     hub = [float(x) for x in np.linspace(50.0, 100.0, elements + 1)]
     return [*mesh("SHAFT", [0.0, 12.5, 25.0, 37.5, 50.0], [0.0, 5.0], "CAX8R"),
             *mesh("BODY", hub, [0.0, 5.0], "CAX8R", first=101),
             *material("SHAFT", (YOUNG, POISSON)), *law(*laws),
-            "*SURFACE INTERACTION, NAME=JOINT", "*CONTACT PAIR, INTERACTION=JOINT, NAME=FIT",
-            "SHAFT.RIGHT, BODY.LEFT", "*BOUNDARY", "SHAFT.LEFT, 1",
+            "*SURFACE INTERACTION, NAME=JOINT", *joint,
+            "*CONTACT PAIR, INTERACTION=JOINT, NAME=FIT", "SHAFT.RIGHT, BODY.LEFT", "*BOUNDARY", "SHAFT.LEFT, 1",
             *(["SHAFT.BOTTOM, 2", "BODY.BOTTOM, 2"] if free else ["SHAFT, 2", "BODY, 2"])]
 
 

@@ -340,7 +340,8 @@ def punch(folder, faces, columns, cards=(), width=None, length=1):
 @pytest.mark.parametrize(("columns", "width"), [(8, None), (12, 4)], ids=["mortar points", "node pairs"])
 def test_a_pressure_without_limit_is_never_reached_and_costs_no_round(tmp_path, faces, columns, width):
     """The pressure at the edge of a punch grows without limit, whichever face is the slave."""
-    reason = "1 round: a pressure without a limit meets no target, and *ACCURACY can leave it out"
+    reason = "1 round: a pressure without a limit meets no target: ask for other quantities, on " \
+        "*ACCURACY or as --accuracy force=5%"
     deck = punch(tmp_path, faces, columns, width=width)
     process = run("run", deck, "--out", tmp_path, "--accuracy", "95%")
     assert process.returncode == 4, process.stderr
@@ -361,7 +362,7 @@ def test_the_other_targets_are_met_beside_a_pressure_without_limit(tmp_path, col
     deck = punch(tmp_path, "A.BOTTOM, B.TOP", columns, width=width)
     process = run("run", deck, "--out", tmp_path, "--accuracy", "1%")
     assert process.returncode == 4, process.stderr
-    assert "meets no target, and *ACCURACY can leave it out; not met: P peak pressure\n" in process.stderr
+    assert "or as --accuracy force=5%; not met: P peak pressure\n" in process.stderr
     _, known, _ = rounds_of(tmp_path / "punch.vtkhdf", "P")
     force, peak = known["normal_force"], known["peak_pressure"]
     assert force[0, 2] > force[0, 3] and force[-1, 2] <= force[-1, 3]

@@ -72,7 +72,9 @@ def last_load(result):
     return f"{words}, {plain(load)}"
 
 
-LARGEST = {"von_mises": "largest von Mises stress", "temperature": "largest temperature"}
+LARGEST = {"von_mises": "largest von Mises stress", "temperature": "largest temperature",
+           "equivalent_plastic_strain": "largest plastic strain",
+           "equivalent_creep_strain": "largest creep strain"}
 
 
 def uncertainties(result):

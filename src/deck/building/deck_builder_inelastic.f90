@@ -103,18 +103,23 @@ contains
          yield%first = [pack([(k, k=1, n)], begins), n + 1]
          yield%temperature = temperature(yield%first(:size(yield%first) - 1))
       end associate
-      do k = 1, size(yield%temperature)
-         associate (first => yield%first(k), last => yield%first(k + 1) - 1)
-            if (values(2, first) > 0.0_dp) call deck%error(card%data(first)%place(2), &
-               'the first plastic strain'//trim(merge(' of a temperature', '                 ', &
-               size(yield%temperature) > 1))//' must be 0')
-            call check_ascending(card%data(first:last), 2, 'the plastic strains', &
-               values(2, first:last), deck)
-         end associate
-      end do
       k = findloc(values(3, 2:) < values(3, :size(values, 2) - 1), .true., dim=1)
       if (k > 0) call deck%error(card%data(k + 1)%place(3), 'the temperatures of the rows must '// &
          'ascend: '//to_text(values(3, k + 1))//' follows '//to_text(values(3, k)))
+      ! Rows out of order are one mistake.
+      do k = 1, size(yield%temperature)
+         if (deck%error_count() > errors) return
+         associate (first => yield%first(k), last => yield%first(k + 1) - 1)
+            if (values(2, first) > 0.0_dp) then
+               call deck%error(card%data(first)%place(2), 'the first plastic strain'//trim(merge( &
+                  ' of a temperature', '                 ', size(yield%temperature) > 1))// &
+                  ' must be 0')
+            else
+               call check_ascending(card%data(first:last), 2, 'the plastic strains', &
+                  values(2, first:last), deck)
+            end if
+         end associate
+      end do
       if (deck%error_count() > errors) return
       yield%stress = values(1, :)
       yield%strain = values(2, :)
@@ -194,10 +199,13 @@ contains
          call deck%error(card%data(k)%place(3), 'm must lie above -1 and not above 0')
       end do
       call check_ascending(card%data, 4, 'the temperatures of the rows', values(4, :), deck)
-      if (card%lacks('LAW') .and. any(abs(values(3, :)) > 0.0_dp)) call deck%error(card%place, &
-         '*CREEP with m other than 0 needs LAW=: NORTON or TIME with a rate A q^n t^m, STRAIN '// &
-         'with one of the strain so far; programs differ in what they take without it')
       if (deck%error_count() > errors) return
+      if (card%lacks('LAW') .and. any(abs(values(3, :)) > 0.0_dp)) then
+         call deck%error(card%place, '*CREEP with m other than 0 needs LAW=: NORTON or TIME '// &
+            'with a rate A q^n t^m, STRAIN with one of the strain so far; programs differ in '// &
+            'what they take without it')
+         return
+      end if
       if (law == 'STRAIN') material%law%creep%kind = hardens_by_strain
       material%law%creep%temperature = values(4, :)
       material%law%creep%constants = values(:3, :)

@@ -325,21 +325,21 @@ contains
       type(printed_diagnostic_type), allocatable :: told(:)
       type(name_index_type) :: kinds
       character(:), allocatable :: kind, line
-      integer, allocatable :: first_of(:)          ! (kinds)
+      integer, allocatable :: first_of(:), order(:)   ! (kinds), (told)
       integer :: first(self%count), card, cards(self%source%count), i, last
 
-      told = [(printed_diagnostic_type(i), i=1, self%count)]
-      told%index = order_of(self)
+      order = without_repeats(self, order_of(self))
+      told = [(printed_diagnostic_type(order(i)), i=1, size(order))]
       cards = 0
       last = 0
       ! Fewer messages are all told.
-      do i = 1, merge(size(cards), 0, self%count > most_alike)
+      do i = 1, merge(size(cards), 0, size(told) > most_alike)
          line = adjustl(self%source%images(i)%value)
          if (index(line, '*') == 1 .and. index(line, '**') /= 1) last = i
          cards(i) = last
       end do
       allocate (first_of(0))
-      do i = 1, self%count
+      do i = 1, size(told)
          first(i) = i
          associate (diagnostic => self%diagnostics(told(i)%index))
             if (diagnostic%place%image == 0 .or. diagnostic%places > 1) cycle
@@ -354,7 +354,7 @@ contains
             first(i) = first_of(kinds%find(kind))
          end associate
       end do
-      do i = 1, self%count
+      do i = 1, size(told)
          associate (leader => told(first(i)), image => self%diagnostics(told(i)%index)%place%image)
             if (first(i) == i) then
                leader%last = image
@@ -365,8 +365,29 @@ contains
          end associate
       end do
       where (told%more_lines < most_alike) told%more_lines = 0
-      told = pack(told, [(first(i) == i .or. told(first(i))%more_lines == 0, i=1, self%count)])
+      told = pack(told, [(first(i) == i .or. told(first(i))%more_lines == 0, i=1, size(told))])
    end function told_by
+
+   !> An order without the messages that a card has again as *CYCLE repeats it.
+   function without_repeats(self, order) result(kept)
+      class(deck_report_type), intent(in) :: self
+      integer, intent(in) :: order(:)
+      integer, allocatable :: kept(:)
+      type(name_index_type) :: known
+      character(:), allocatable :: key
+      logical :: is_new(size(order))
+      integer :: i
+
+      do i = 1, size(order)
+         associate (diagnostic => self%diagnostics(order(i)))
+            key = to_text(diagnostic%place%image)//':'//to_text(diagnostic%place%column)//' '// &
+               diagnostic%message
+         end associate
+         is_new(i) = known%find(key) == 0
+         if (is_new(i)) call known%add(key)
+      end do
+      kept = pack(order, is_new)
+   end function without_repeats
 
    !> The order of the diagnostics by image, then column, then as reported.
    function order_of(self) result(order)
