@@ -131,11 +131,10 @@ def quarter(kind, across, poisson, share):
 
 
 LOCKING = """Take CPE8R, which has the collapse load on all meshes, or CPE4I or CPE4, which come to
-it from above; CPE4R is CPE4I here. CPE8 locks in flow that keeps the volume: its load goes on
-growing beyond collapse on all but the finest mesh. With nu = 0.499 its elasticity locks, too, hence
-u(b) on coarse meshes. CPE3 and CPE6 carry about the right load by a flow of their own, a tube that
-becomes oval, CPE6 less so on finer meshes; near collapse their corrections may not converge, and
-the run ends up to some percent early."""
+it from above; CPE4R is CPE4I here. CPE8 locks in flow that keeps the volume: on coarse meshes its
+load goes on growing beyond collapse. With nu = 0.499 its elasticity locks, too, hence u(b) on
+coarse meshes. CPE3 and CPE6 carry about the right load by a flow of their own, a tube that becomes
+oval, CPE6 less so on finer meshes."""
 
 
 @dataclass
