@@ -7,6 +7,7 @@ module print_requests
    public :: print_request_type
    public :: print_displacement, print_temperature, print_force, print_heat
    public :: print_stress, print_heat_flux, print_position
+   public :: print_peeq, print_plastic, print_ceeq, print_creep
 
    ! Quantities of a table, by their key in the deck.
    integer, parameter :: print_displacement = 1   !! U: displacements of nodes
@@ -15,7 +16,11 @@ module print_requests
    integer, parameter :: print_heat = 4           !! RFL: external heat into nodes
    integer, parameter :: print_stress = 5         !! S: stresses at integration points
    integer, parameter :: print_heat_flux = 6      !! HFL: heat fluxes at integration points
-   integer, parameter :: print_position = 7       !! COORD: is in every table
+   integer, parameter :: print_peeq = 7           !! PEEQ: equivalent plastic strains there
+   integer, parameter :: print_plastic = 8        !! PE: plastic strains
+   integer, parameter :: print_ceeq = 9           !! CEEQ: equivalent creep strains
+   integer, parameter :: print_creep = 10         !! CE: creep strains
+   integer, parameter :: print_position = 11      !! COORD: is in every table
 
    !> One card: a table of the nodes, or of the integration points of the elements, of a set.
    type :: print_request_type
@@ -25,7 +30,7 @@ module print_requests
       integer, allocatable :: quantities(:)  !! constants above, each once, as on the card
       logical :: each_node = .true.          !! print_force and print_heat of every node
       logical :: totals = .false.            !! sums of them over the set
-      !> Stress and flux along the axes of the section's orientation, vectors along those of the
+      !> What points have along the axes of the section's orientation, vectors along those of the
       !> nodes, else along x and y.
       logical :: local_axes = .false.
    contains

@@ -10,8 +10,9 @@ module listing_tables
    use kinds, only: dp
    use listing_text, only: column, in_columns, page_type, table_heads, table_row, to_right
    use model, only: model_type, verify_type
-   use print_requests, only: print_displacement, print_force, print_heat, print_heat_flux, &
-      print_position, print_request_type, print_stress, print_temperature
+   use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, &
+      print_heat, print_heat_flux, print_peeq, print_plastic, print_position, &
+      print_request_type, print_stress, print_temperature
    use quantity_types, only: needs_heat, of_contact_points, of_passes, quantity_type
    use records, only: contact_record_type, element_points_record_type, field_record_type, &
       increment_record_type
@@ -32,11 +33,12 @@ module listing_tables
    integer, parameter :: head_length = 4
    character(*), parameter :: node_head = '    node           x           y'
    character(*), parameter :: point_head = ' element point           x           y'
-   character(*), parameter :: print_keys(print_displacement:print_heat_flux) = [character(3) :: &
-      'U', 'NT', 'RF', 'RFL', 'S', 'HFL']
-   character(*), parameter :: print_heads(4, print_displacement:print_heat_flux) = reshape([ &
+   character(*), parameter :: print_keys(print_displacement:print_creep) = [character(4) :: &
+      'U', 'NT', 'RF', 'RFL', 'S', 'HFL', 'PEEQ', 'PE', 'CEEQ', 'CE']
+   character(*), parameter :: print_heads(4, print_displacement:print_creep) = reshape([ &
       character(head_length) :: 'U1', 'U2', '', '', 'NT', '', '', '', 'RF1', 'RF2', '', '', &
-      'RFL', '', '', '', 'S11', 'S22', 'S33', 'S12', 'HFL1', 'HFL2', '', ''], [4, 6])
+      'RFL', '', '', '', 'S11', 'S22', 'S33', 'S12', 'HFL1', 'HFL2', '', '', 'PEEQ', '', '', '', &
+      'PE11', 'PE22', 'PE33', 'PE12', 'CEEQ', '', '', '', 'CE11', 'CE22', 'CE33', 'CE12'], [4, 10])
 
 contains
 
@@ -287,6 +289,7 @@ contains
       type(print_request_type), intent(in) :: request
       type(model_type), intent(in) :: model
       type(element_points_record_type), intent(in) :: points
+      real(dp), allocatable :: values(:, :)
       type(string_type), allocatable :: rows(:)
       character(:), allocatable :: title
       integer :: i, axes
@@ -300,11 +303,11 @@ contains
       end do
       do i = 1, size(request%quantities)
          associate (quantity => request%quantities(i))
-            if (quantity == print_stress .and. allocated(points%stress)) then
-               call add(rows, quantity, points%stress)
-            else if (quantity == print_heat_flux .and. allocated(points%heat_flux)) then
-               call add(rows, quantity, points%heat_flux)
-            else if (quantity /= print_position) then   ! positions are in every table
+            if (quantity == print_position) cycle   ! positions are in every table
+            values = values_at(points, quantity)
+            if (size(values, 1) > 0) then
+               call add(rows, quantity, values)
+            else
                call print_absence(page, title, quantity)
             end if
          end associate
@@ -316,6 +319,32 @@ contains
       end do
       call page%table(title, rows)
    end subroutine print_points
+
+   !> A quantity of integration points: (components, points), no component where the step does not
+   !> have it.
+   pure function values_at(points, quantity) result(values)
+      type(element_points_record_type), intent(in) :: points
+      integer, intent(in) :: quantity
+      real(dp), allocatable :: values(:, :)
+
+      allocate (values(0, size(points%element)))
+      if (quantity == print_stress .and. allocated(points%stress)) values = points%stress
+      if (quantity == print_heat_flux .and. allocated(points%heat_flux)) values = points%heat_flux
+      if (.not. allocated(points%inelastic_strain)) return
+      associate (strain => points%inelastic_strain)
+         select case (quantity)
+         case (print_plastic)
+            values = strain(:4, :)
+         case (print_peeq)
+            values = strain(5:5, :)
+         case (print_creep)
+            values = strain(6:9, :)
+         case (print_ceeq)
+            values = strain(10:, :)
+         case default   ! above
+         end select
+      end associate
+   end function values_at
 
    subroutine print_absence(page, title, quantity)
       type(page_type), intent(inout) :: page

@@ -70,6 +70,9 @@ module records
       real(dp), allocatable :: stress(:, :)
       !> (2, points) along 1, 2; unallocated without heat [power/length^2]
       real(dp), allocatable :: heat_flux(:, :)
+      !> (10, points) plastic strain 11, 22, 33, the angle 12 and the equivalent one, then those of
+      !> creep; unallocated without laws [-]
+      real(dp), allocatable :: inelastic_strain(:, :)
    end type element_points_record_type
 
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and

@@ -322,7 +322,7 @@ contains
       type(element_points_record_type) :: record
       type(point_history_type) :: history
       type(law_points_type) :: response
-      real(dp) :: flux(most, 2)
+      real(dp) :: flux(most, 2), strains(most, 10)
       integer :: first, g, i, last, n
 
       if (allocated(state%history)) then
@@ -355,6 +355,15 @@ contains
                record%stress(:, i:last) = transpose(response%stress(:last - i + 1, :))
             end do
          end if
+         if (allocated(state%history)) then
+            allocate (record%inelastic_strain(10, n))
+            do i = 1, n
+               if (record%point(i) > 1) cycle
+               call fields%take_strains(mesh, record%element(i), state%history, strains)
+               last = i - 1 + point_count(mesh%element_kind(record%element(i)))
+               record%inelastic_strain(:, i:last) = transpose(strains(:last - i + 1, :))
+            end do
+         end if
          if (with_heat) then
             if (any(varies(model%materials))) call fields%set_temperature(mesh, &
                state%temperature, model%initial_temperature)
@@ -373,8 +382,9 @@ contains
    pure subroutine turn(model, record)
       type(model_type), intent(in) :: model
       type(element_points_record_type), intent(inout) :: record
+      real(dp), parameter :: of_tensor(4) = [1.0_dp, 1.0_dp, 1.0_dp, 0.5_dp]   ! angles are twice it
       real(dp) :: axes(2, 2)
-      integer :: k
+      integer :: first, k
 
       do k = 1, size(record%element)
          axes = material_axes(model%orientations, model%sections( &
@@ -382,6 +392,11 @@ contains
          if (allocated(record%stress)) record%stress(:, k) = along_axes(axes, record%stress(:, k))
          if (allocated(record%heat_flux)) record%heat_flux(:, k) = &
             matmul(record%heat_flux(:, k), axes)
+         do first = 1, merge(6, 0, allocated(record%inelastic_strain)), 5
+            associate (strain => record%inelastic_strain(first:first + 3, k))
+               strain = along_axes(axes, strain*of_tensor)/of_tensor
+            end associate
+         end do
       end do
    end subroutine turn
 

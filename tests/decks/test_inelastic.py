@@ -170,6 +170,27 @@ def test_norton_creep(tmp_path):
     follows(tmp_path, make, A, 3 * A)
 
 
+def test_tables_have_strains_along_the_axes_of_the_section(tmp_path):
+    # A bar that yields by 0.01 and creeps by 0.002 along x, seen from axes 30 degrees away.
+    cards = bar("*PLASTIC", "200., 0.", "300., 0.02", "*CREEP", f"{0.002 / 250.0**N!r}, {N!r}")
+    section = next(k for k, card in enumerate(cards) if card.startswith("*SOLID SECTION"))
+    cards[section] += ", ORIENTATION=AXES"
+    cards += ["*ORIENTATION, NAME=AXES", "1., 0., 0., 0., 1., 0.", "3, 30."]
+    deck = write(tmp_path / "deck.inp", [
+        *cards, *step("*STATIC", "0.1, 1.", "*DSLOAD", "BODY.RIGHT, P, -250.",
+                      "*EL PRINT, FREQUENCY=1000", "PEEQ, PE, CE, CEEQ"), *step("*VISCO", "0.5, 1.")])
+    solve(deck)
+    head, *rows = deck.with_suffix(".lst").read_text().split("   INTEGRATION POINTS OF ALL\n")[
+        -1].split("\n\n")[0].splitlines()
+    assert head.split()[4:] == ["PEEQ", "PE11", "PE22", "PE33", "PE12", "CE11", "CE22", "CE33",
+                                "CE12", "CEEQ"]
+    # e11 = e (1 + 3 cos 2a)/4, e22 with -cos, 2 e12 = -3/2 e sin 2a
+    turned = [(1 + 1.5) / 4, (1 - 1.5) / 4, -0.5, -1.5 * math.sqrt(0.75)]
+    exact = 0.01 * np.array([1.0, *turned, *np.multiply(0.2, turned), 0.2])
+    for row in rows:
+        np.testing.assert_allclose([float(word) for word in row.split()[4:14]], exact, rtol=1e-5)
+
+
 @pytest.mark.changes("CREEP, LAW")
 def test_creep_hardens_by_time_or_by_strain(tmp_path):
     def make(name):

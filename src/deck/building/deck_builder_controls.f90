@@ -11,8 +11,9 @@ module deck_builder_controls
    use deck_context, only: deck_type
    use kinds, only: dp
    use steps, only: step_controls_type
-   use print_requests, only: print_displacement, print_force, print_heat, &
-      print_heat_flux, print_position, print_request_type, print_stress, print_temperature
+   use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, print_heat, &
+      print_heat_flux, print_peeq, print_plastic, print_position, print_request_type, &
+      print_stress, print_temperature
    use spelling, only: known_choices
    use text, only: split_words, string_type, to_text, to_upper
    use time_points, only: time_points_type
@@ -24,14 +25,16 @@ module deck_builder_controls
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
 
    ! Keys of a card: those that are computed, what they are, and those that only CalculiX has.
-   character(*), parameter :: node_keys = 'U/NT/TS/RF/RFL', element_keys = 'S/HFL/COORD'
+   character(*), parameter :: node_keys = 'U/NT/TS/RF/RFL', &
+      element_keys = 'S/HFL/COORD/PEEQ/PE/CEEQ/CE'
    integer, parameter :: node_quantities(5) = [print_displacement, print_temperature, &
       print_temperature, print_force, print_heat]
-   integer, parameter :: element_quantities(3) = [print_stress, print_heat_flux, print_position]
+   integer, parameter :: element_quantities(7) = [print_stress, print_heat_flux, print_position, &
+      print_peeq, print_plastic, print_ceeq, print_creep]
    character(*), parameter :: foreign_node_keys = &
       '/PN/PS/PT/PSF/PTF/TSF/TTF/TT/V/VF/MF/MACH/CP/DEPF/TURB/'
    character(*), parameter :: foreign_element_keys = &
-      '/SVF/E/ME/PEEQ/CEEQ/ENER/SDV/HFLF/ELSE/ELKE/EVOL/EMAS/EBHE/CENT/'
+      '/SVF/E/ME/ENER/SDV/HFLF/ELSE/ELKE/EVOL/EMAS/EBHE/CENT/'
 
 contains
 
@@ -275,7 +278,12 @@ contains
       key = to_upper(data%text(position))
       i = findloc([(known(i)%value == key, i=1, size(known))], .true., dim=1)
       if (i > 0) then
-         if (all(quantities /= meanings(i))) quantities = [quantities, meanings(i)]
+         if (is_of_no_material(meanings(i))) then
+            call deck%warning(data%place(position), key//' of *'//card%name//' is not there '// &
+               'without *PLASTIC or *CREEP: it is not printed')
+         else if (all(quantities /= meanings(i))) then
+            quantities = [quantities, meanings(i)]
+         end if
       else if (index(foreign, '/'//key//'/') > 0) then
          call deck%warning(data%place(position), key//' of *'//card%name//' is not '// &
             'computed: it is not printed')
@@ -283,6 +291,17 @@ contains
          call deck%warning(data%place(position), 'unknown quantity '//key//' of *'//card%name// &
             ' is not printed'//known_choices(key, known))
       end if
+   contains
+      !> Whether a quantity is that of a law which no material has.
+      pure logical function is_of_no_material(quantity)
+         integer, intent(in) :: quantity
+
+         associate (law => deck%model%materials%law)
+            is_of_no_material = any(quantity == [print_peeq, print_plastic]) .and. &
+               .not. any(law%strains(1) > 0) .or. any(quantity == [print_ceeq, print_creep]) &
+               .and. .not. any(law%strains(2) > 0)
+         end associate
+      end function is_of_no_material
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.
