@@ -213,6 +213,7 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: next          !! solved with the present corrections
       type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: words
       real(dp), allocatable :: left_over(:), x(:)
       real(dp) :: last
 
@@ -233,8 +234,10 @@ contains
       if (.not. self%is_settled .and. size(self%elements) > 0) call judge_pass(self, last)
       if (self%is_settled .or. self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
-         call set_error(error, status_no_convergence, 'heat and stress of bodies do not follow '// &
-            'their temperatures'//trim(merge(' and strains', '            ', self%has_laws))// &
+         words = 'heat and stress of bodies do not follow their temperatures'
+         if (self%has_laws) words = 'stresses of bodies that yield or creep do not follow their '// &
+            'strains'
+         call set_error(error, status_no_convergence, words// &
             ' within '//to_text(most_passes)//' corrections')
          return
       end if
