@@ -1,6 +1,7 @@
 !> Strings of any length, and numbers as text and back.
 module text
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_null_char, c_null_ptr, c_ptr
    use kinds, only: dp, long
    implicit none
    private
@@ -20,6 +21,15 @@ module text
    type :: string_type
       character(:), allocatable :: value   !! the text
    end type string_type
+
+   interface
+      !> Takes a fifth of the instructions of a read statement, which calls it, too.
+      pure real(c_double) function c_strtod(string, end) bind(c, name='strtod')
+         import :: c_char, c_double, c_ptr
+         character(kind=c_char), intent(in) :: string(*)
+         type(c_ptr), value, intent(in) :: end
+      end function c_strtod
+   end interface
 
    !> A number as text without blanks around it.
    interface to_text
@@ -249,7 +259,8 @@ contains
       character(*), intent(in) :: string   !! text without blanks around it
       real(dp), intent(out) :: number      !! its value, 0 when not valid
       logical, intent(out) :: valid        !! whether it is a number in that range
-      integer :: status, mark, exponent
+      character(len(string) + 1, kind=c_char) :: copy
+      integer :: mark, exponent
 
       number = 0.0_dp
       valid = has_form_of_real(string)
@@ -260,9 +271,10 @@ contains
          if (valid) valid = abs(exponent) <= largest_exponent
          if (.not. valid) return
       end if
-      read (string, *, iostat=status) number
-      valid = status == 0
-      if (valid) valid = ieee_is_finite(number)
+      copy = string//c_null_char
+      if (mark > 0) copy(mark:mark) = 'e'
+      number = c_strtod(copy, c_null_ptr)
+      valid = ieee_is_finite(number)
       if (valid) valid = abs(number) <= largest_magnitude .and. &
          (abs(number) <= 0.0_dp .or. abs(number) >= smallest_magnitude)
       if (.not. valid) number = 0.0_dp

@@ -282,16 +282,19 @@ contains
       real(dp), intent(in) :: corners(:, :)
       integer, intent(in) :: terms            !! linear_terms, quadratic_terms or cubic_terms
       type(fit_type) :: fit
-      real(dp) :: column(size(sites, 2))
+      real(dp) :: column(size(sites, 2)), places(2, size(sites, 2))
       integer :: i, j
 
       fit%terms = terms
       fit%origin = sum(corners, dim=2)/size(corners, 2)
       fit%scaling = scaling_of(corners, fit%origin)
+      do i = 1, size(sites, 2)
+         places(:, i) = matmul(fit%scaling, sites(:, i) - fit%origin)
+      end do
       allocate (fit%q(size(sites, 2), terms), source=0.0_dp)
       do j = 1, terms
          do i = 1, size(sites, 2)
-            column(i) = term(j, matmul(fit%scaling, sites(:, i) - fit%origin))
+            column(i) = term(j, places(:, i))
          end do
          do i = 1, j - 1
             if (.not. fit%kept(i)) cycle

@@ -4,8 +4,7 @@ module growing_datasets
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only: c_loc
    use hdf5, only: h5dclose_f, h5dcreate_f, h5dget_space_f, h5dopen_f, h5dset_extent_f, &
-      h5dwrite_f, h5p_dataset_create_f, h5p_dataset_xfer_f, h5pclose_f, h5pcreate_f, &
-      h5pset_buffer_f, h5pset_chunk_f, h5s_select_set_f, h5s_unlimited_f, h5sclose_f, &
+      h5dwrite_f, h5pset_chunk_f, h5s_select_set_f, h5s_unlimited_f, h5sclose_f, &
       h5screate_simple_f, h5sselect_hyperslab_f, h5t_native_double, hid_t, hsize_t
    use hdf5_writer, only: as_integer, as_real, hdf5_writer_type, stored_type
    use kinds, only: dp, long
@@ -16,8 +15,6 @@ module growing_datasets
       write_integers, write_once
 
    integer, parameter :: chunk_bytes = 32768   !! bytes of a chunk, unless one append is larger
-   !> Bytes of the buffer in which HDF5 converts types; its own default, 1 MB, is cleared each time.
-   integer(hsize_t), parameter :: conversion_bytes = 16384_hsize_t
 
    !> One dataset and the rows of it that are not in the file yet.
    type :: growing_dataset_type
@@ -199,8 +196,8 @@ contains
       class(growing_dataset_type), target, intent(inout) :: self
       type(hdf5_writer_type), intent(inout) :: file              !! the open file
       integer(hsize_t) :: offset(2), extent(2), whole(2)
-      integer(hid_t) :: dataset, memory, space, transfer
-      integer :: rank, status(12)
+      integer(hid_t) :: dataset, memory, space
+      integer :: rank, status(9)
 
       if (allocated(file%error)) return
       if (self%used == 0 .and. self%in_file .and. .not. self%is_cut) return
@@ -210,23 +207,20 @@ contains
       offset = [0_hsize_t, self%rows_in_file]
       whole = [extent(1), offset(2) + extent(2)]
       if (.not. self%in_file) then
-         call create(self, file%id, whole, dataset, status(1))
+         call create(self, file, whole, dataset, status(1))
       else
          call h5dopen_f(file%id, self%path, dataset, status(1))
          call h5dset_extent_f(dataset, whole(3 - rank:), status(2))
       end if
       if (extent(2) > 0) then
-         call h5pcreate_f(h5p_dataset_xfer_f, transfer, status(10))
-         call h5pset_buffer_f(transfer, conversion_bytes, status(11))
          call h5dget_space_f(dataset, space, status(3))
          call h5sselect_hyperslab_f(space, h5s_select_set_f, offset(3 - rank:), &
             extent(3 - rank:), status(4))
          call h5screate_simple_f(rank, extent(3 - rank:), memory, status(5))
          call h5dwrite_f(dataset, h5t_native_double, c_loc(self%buffer), status(6), memory, space, &
-            transfer)
+            file%transfer)
          call h5sclose_f(memory, status(7))
          call h5sclose_f(space, status(8))
-         call h5pclose_f(transfer, status(12))
       end if
       call file%note(status, 'cannot write dataset '//self%path)
       if (.not. self%in_file) call file%describe(dataset, self%path, self%description, self%unit, &
@@ -241,25 +235,23 @@ contains
 
    subroutine create(self, file, whole, dataset, status)
       class(growing_dataset_type), intent(in) :: self
-      integer(hid_t), intent(in) :: file
+      type(hdf5_writer_type), intent(in) :: file
       integer(hsize_t), intent(in) :: whole(2)
       integer(hid_t), intent(out) :: dataset
       integer, intent(out) :: status
       integer(hsize_t) :: chunk(2), largest(2)
-      integer(hid_t) :: creation, space
-      integer :: results(5), rank
+      integer(hid_t) :: space
+      integer :: results(4), rank
 
       rank = merge(1, 2, self%width == 0)
       chunk = [whole(1), self%chunk_rows]
       largest = [whole(1), h5s_unlimited_f]
-      call h5pcreate_f(h5p_dataset_create_f, creation, results(1))
-      call h5pset_chunk_f(creation, rank, chunk(3 - rank:), results(2))
-      call h5screate_simple_f(rank, whole(3 - rank:), space, results(3), largest(3 - rank:))
-      call h5dcreate_f(file, self%path, stored_type(self%storage), space, dataset, results(4), &
-         creation)
-      call h5sclose_f(space, results(5))
+      call h5pset_chunk_f(file%creation, rank, chunk(3 - rank:), results(1))
+      call h5screate_simple_f(rank, whole(3 - rank:), space, results(2), largest(3 - rank:))
+      call h5dcreate_f(file%id, self%path, stored_type(self%storage), space, dataset, results(3), &
+         file%creation)
+      call h5sclose_f(space, results(4))
       status = minval(results)
-      call h5pclose_f(creation, results(1))
    end subroutine create
 
 end module growing_datasets

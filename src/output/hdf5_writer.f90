@@ -7,7 +7,8 @@ module hdf5_writer
    use errors, only: error_type, set_error, status_internal
    use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5close_f, h5dont_atexit_f, h5eset_auto_f, &
       h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, h5f_acc_rdwr_f, &
-      h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5p_file_access_f, &
+      h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5pset_buffer_f, h5p_file_access_f, &
+      h5p_dataset_create_f, h5p_dataset_xfer_f, &
       h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
       h5ldelete_f, h5lexists_f, &
       h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f, h5dcreate_f, h5dwrite_f, &
@@ -28,10 +29,15 @@ module hdf5_writer
    integer, parameter :: as_integer = 2   !! stored as 32-bit integer
    integer, parameter :: as_long = 3      !! stored as 64-bit integer
    integer, parameter :: as_byte = 4      !! stored as unsigned byte
+   !> Bytes of the buffer in which HDF5 converts types; its own default, 1 MB, is cleared each time.
+   integer(hsize_t), parameter :: conversion_bytes = 16384_hsize_t
 
    !> A file that is being written.
    type :: hdf5_writer_type
       integer(hid_t) :: id = -1                          !! HDF5's handle while the file is open
+      integer(hid_t) :: creation = -1                    !! properties of datasets, likewise
+      integer(hid_t) :: transfer = -1                    !! properties of writing them, likewise
+      integer(hid_t), private :: text = -1               !! type of text, likewise
       type(error_type), allocatable :: error             !! the first one since it was opened
       type(unit_labels_type) :: labels                   !! units of the deck
    contains
@@ -93,6 +99,7 @@ contains
       call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status(3), access_prp=access)
       call h5pclose_f(access, status(4))
       call self%note(status, 'cannot write "'//path//'"')
+      call make_properties(self)
    end subroutine create_file
 
    !> Opens a file to extend it.
@@ -104,18 +111,36 @@ contains
 
       call h5fopen_f(path, h5f_acc_rdwr_f, self%id, status)
       call self%note([status], 'cannot open "'//path//'"')
+      call make_properties(self)
    end subroutine open_file
+
+   !> Makes what all datasets of the file share, because making it for each takes longer than
+   !> writing a small one.
+   subroutine make_properties(self)
+      class(hdf5_writer_type), intent(inout) :: self
+      integer :: status(4)
+
+      if (self%id < 0) return
+      call h5pcreate_f(h5p_dataset_create_f, self%creation, status(1))
+      call h5pcreate_f(h5p_dataset_xfer_f, self%transfer, status(2))
+      call h5pset_buffer_f(self%transfer, conversion_bytes, status(3))
+      call make_text_type(self%text, status(4))
+      call self%note(status, 'cannot set properties of HDF5')
+   end subroutine make_properties
 
    !> Closes the file, which is then complete unless there was an error.
    !> Error: the first one since it was opened; status_internal, when the rest cannot be written.
    subroutine close_file(self, error)
       class(hdf5_writer_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
-      integer :: status
+      integer :: status(4)
 
       if (self%id >= 0) then
-         call h5fclose_f(self%id, status)
-         call self%note([status], 'cannot finish the result file')
+         call h5pclose_f(self%creation, status(1))
+         call h5pclose_f(self%transfer, status(2))
+         call h5tclose_f(self%text, status(3))
+         call h5fclose_f(self%id, status(4))
+         call self%note(status, 'cannot finish the result file')
       end if
       self%id = -1
       call move_alloc(self%error, error)
@@ -206,8 +231,8 @@ contains
       character(*), intent(in) :: description
       character(kind=c_char), allocatable, target :: characters(:)
       type(c_ptr), allocatable, target :: starts(:)
-      integer(hid_t) :: dataset, space, type
-      integer :: i, k, position, status(7)
+      integer(hid_t) :: dataset, space
+      integer :: i, k, position, status(5)
 
       if (allocated(self%error)) return
       position = 0
@@ -224,15 +249,13 @@ contains
          position = position + len(strings(i)%value) + 1
          characters(position) = c_null_char
       end do
-      call make_text_type(type, status(1))
-      call h5screate_simple_f(1, shape(starts, kind=hsize_t), space, status(2))
-      call h5dcreate_f(self%id, path, type, space, dataset, status(3))
-      call h5dwrite_f(dataset, type, c_loc(starts), status(4))
-      call self%note(status(:4), 'cannot write dataset '//path)
+      call h5screate_simple_f(1, shape(starts, kind=hsize_t), space, status(1))
+      call h5dcreate_f(self%id, path, self%text, space, dataset, status(2))
+      call h5dwrite_f(dataset, self%text, c_loc(starts), status(3), xfer_prp=self%transfer)
+      call self%note(status(:3), 'cannot write dataset '//path)
       call self%describe(dataset, path, description, '-', '')
-      call h5dclose_f(dataset, status(5))
-      call h5sclose_f(space, status(6))
-      call h5tclose_f(type, status(7))
+      call h5dclose_f(dataset, status(4))
+      call h5sclose_f(space, status(5))
       call self%note(status, 'cannot write dataset '//path)
    end subroutine write_strings
 
@@ -305,16 +328,11 @@ contains
       integer(hid_t), intent(in), optional :: opened   ! the object at the path
       character(len(value) + 1, kind=c_char), target :: copy
       type(c_ptr), target :: start
-      integer(hid_t) :: type
-      integer :: status(2)
 
-      if (allocated(self%error)) return
       copy = value//c_null_char
       start = c_loc(copy)
-      call make_text_type(type, status(1))
-      call set_value(self, path, name, stored_value_type(type, type, c_loc(start)), opened)
-      call h5tclose_f(type, status(2))
-      call self%note(status, 'cannot write attribute '//path//'@'//name)
+      call set_value(self, path, name, stored_value_type(self%text, self%text, c_loc(start)), &
+         opened)
    end subroutine set_text
 
    subroutine set_value(self, path, name, value, opened)

@@ -34,7 +34,7 @@ How accurate results are, what more accuracy costs, and how another program comp
 | What should I spend time on? | On the mesh, at the contact faces first. Shorter increments help only the edge of stick | [Speed for accuracy](#speed-for-accuracy-measured) |
 | How accurate is the published cylinder? | On the mesh of the paper, from 60 C on: force 0.4 %, heat rate 2.1 %, peak pressure 3 %, edge of contact 0.15 cm, edge of stick 0.3 cm | [The published cylinder](#the-published-cylinder-with-uncertainty) |
 | Do I pay for physics that is off? | No: below 1 % of the instructions | [Only what is needed](#only-what-is-needed) |
-| How does CalculiX compare? | At equal error it takes 30 to 120 times as much CPU time | [Against CalculiX](#against-calculix-at-equal-error) |
+| How does CalculiX compare? | At equal error it takes 25 to 160 times as much CPU time | [Against CalculiX](#against-calculix-at-equal-error) |
 
 The script `tests/accuracy/report.py` writes this document from runs of the program; the tests
 `accuracy_*` repeat a part of them.

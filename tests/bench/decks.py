@@ -85,11 +85,12 @@ def material(name, poisson, small):
             "*EXPANSION", f"{EXPANSION / small:.12g}", "*CONDUCTIVITY", "0.18"]
 
 
-def common_cards(case):
+def common_cards(case, divided=True):
     """Return what both programs read alike, up to the interaction."""
-    small = case.small
-    return [*mesh_cards(bodies_of(case), case.element), *material("UPPER", 0.4, small),
-            *material("LOWER", 0.2, small),
+    small, bodies = case.small, bodies_of(case, divided)
+    return [*mesh_cards(bodies, case.element),
+            *(hanging_cards(bodies) if divided else refinement(case)),
+            *material("UPPER", 0.4, small), *material("LOWER", 0.2, small),
             "*SOLID SECTION, ELSET=CYLINDER, MATERIAL=UPPER", "1.",
             "*SOLID SECTION, ELSET=BASE, MATERIAL=LOWER", "1.",
             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "CYLINDER, 0.", "BASE, 0.",
@@ -116,15 +117,35 @@ def course(case, start=0.0):
                                        if (t, v) not in first[:-1])]
 
 
-def bodies_of(case):
+def bodies_of(case, divided=True):
     """Return cylinder and base as meshed."""
-    return meshes.make(case.family, case.sides, case.order, RADIUS * case.small)
+    return meshes.make(case.family, case.sides, case.order, RADIUS * case.small, divided)
+
+
+def refinement(case):
+    """Return the cards that refine a mesh where contact ends; the base follows the cylinder."""
+    if case.family != "refined":
+        return []
+    row = meshes.face(case.family, case.sides)
+    sides = [k for k, side in enumerate(zip(row, row[1:], strict=False), start=1)
+             if meshes.is_divided(*side)]
+    return ["*ELSET, ELSET=EDGE", *listed(sides), "*REFINE, LEVELS=1, ELSET=EDGE"]
+
+
+def hanging_cards(bodies):
+    """Return the equations of hanging nodes."""
+    cards = []
+    for node, terms in (item for body in bodies for item in body.hanging.items()):
+        for dof in (1, 2, 11):
+            cards += ["*EQUATION", f"{len(terms) + 1}", ", ".join(
+                [f"{node}, {dof}, -1."] + [f"{n}, {dof}, {factor}" for n, factor in terms.items()])]
+    return cards
 
 
 def thercon_deck(case):
     """Return the deck for thercon, which writes fields at the end alone."""
     law = LAWS[MODELS[case.model][1]]
-    return ["*OPTIONS, WIDTH=200, LOAD=TOP,11, ERRORS=NO", *common_cards(case),
+    return ["*OPTIONS, WIDTH=200, LOAD=TOP,11, ERRORS=NO", *common_cards(case, divided=False),
             "*FRICTION", "0.155", *law,
             "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "CURVED, FLAT", *course(case),
             f"*STEP, INC={case.increments}", COUPLED, f"{1 / case.each!r}, {case.sections}",

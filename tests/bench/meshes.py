@@ -1,5 +1,5 @@
-"""Meshes of the cylinder on its base: structured ones, and ones that are thinned by transitions,
-even on the contact or graded towards the axis.
+"""Meshes of the cylinder on its base: structured ones, ones that are thinned by transitions, even
+on the contact or graded towards the axis, and graded ones that are refined where contact ends.
 
 A body is strips between rows of points, from the contact outwards; the base is the mirror image of
 the cylinder with a flat face. Nodes of both faces stand opposite each other.
@@ -11,17 +11,21 @@ import numpy as np
 
 WIDTH, HEIGHT, FINE = 30.0, 60.0, 9.0   # [cm]; contact never reaches beyond FINE
 GRADED = 3.0   # last by first length up to there in a graded mesh
+# Middles of the sides that are divided in a refined mesh: contact ends from 2.9 to 7.5.
+DIVIDED = 2.5, 8.0   # [cm]
 # Corner abscissae of the published mesh's contact.
 PUBLISHED = [0.0, 0.8, 1.7, 2.6, 3.6, 4.8, 6.0, 7.4, 9.0, 14.0, WIDTH]
 
 
 @dataclass(frozen=True)
 class Body:
-    """Places of nodes by their numbers, elements as corners and midside nodes, sides in contact."""
+    """Places of nodes by their numbers, elements as corners and midside nodes, sides in contact,
+    and of each hanging node the nodes of the larger side with their factors."""
 
     nodes: dict
     elements: list
     sides: int
+    hanging: dict
 
 
 def growth(first, total, count):
@@ -34,9 +38,9 @@ def growth(first, total, count):
     return low
 
 
-def face(count, ratio=1.0):
-    """Return the corner abscissae of the contact: up to FINE with a ratio of the last length to the
-    first, then ever longer."""
+def face(family, count):
+    """Return the corner abscissae of the contact: up to FINE even or graded, then ever longer."""
+    ratio = GRADED if family in ("graded", "refined") else 1.0
     if count == len(PUBLISHED) - 1 and ratio == 1.0:
         return list(PUBLISHED)
     outside = max(2, round(2 * np.log2(count / 5)))
@@ -113,37 +117,91 @@ def quadrilaterals(rows, heights):
     return quads
 
 
-def body(rows, heights, radius, order):
-    """Return a body; its face is on y = x^2/(2 radius), or flat with an infinite radius."""
+def middle(p, q):
+    """Return the point between two, as a key."""
+    return tuple(np.round(np.add(p, q) / 2, 9))
+
+
+def quarters(quad):
+    """Return the quadrilaterals into which a rectangle is divided, the lower ones first."""
+    (left, low), (right, high) = quad[0], quad[2]
+    x, y = middle(*quad[::2])
+    return [[(a, c), (b, c), (b, d), (a, d)]
+            for c, d in ((low, y), (y, high)) for a, b in ((left, x), (x, right))]
+
+
+def is_divided(left, right):
+    """Return whether a side of the contact is divided in a refined mesh."""
+    return DIVIDED[0] < (left + right) / 2 < DIVIDED[1]
+
+
+def hanging_points(large, small, order):
+    """Return the points of small elements that hang on sides of large ones, with their factors."""
+    ends, found = {p for corners in small for p in corners}, {}
+    for corners in large:
+        for p, q in zip(corners, corners[1:] + corners[:1], strict=True):
+            m = middle(p, q)
+            if m in ends and order == 1:
+                found[m] = {p: 0.5, q: 0.5}
+            elif m in ends:
+                found |= {middle(p, m): {p: 0.375, m: 0.75, q: -0.125},
+                          middle(q, m): {q: 0.375, m: 0.75, p: -0.125}}
+    return found
+
+
+def body(rows, heights, radius, order, refined=False):
+    """Return a body; its face is on y = x^2/(2 radius), or flat with an infinite radius. A refined
+    one is divided along the face as *REFINE does it: new nodes are where the shape functions of
+    the element are that they divide."""
     def bent(x, y):
         return x, y + (1 - y / HEIGHT) * x * x / (2 * radius)
 
-    places, elements = {}, []
-    for quad in quadrilaterals(rows, heights):
-        corners = [tuple(np.round(p, 9)) for p in quad]
-        middles = [tuple(np.round(np.add(corners[k], corners[(k + 1) % 4]) / 2, 9))
-                   for k in range(4)]
-        places |= {p: bent(*p) for p in corners}
-        if order == 2:
-            places |= {p: bent(*p) if p[1] == 0.0 else tuple(
-                np.mean([bent(*corners[k]), bent(*corners[(k + 1) % 4])], axis=0))
-                for k, p in enumerate(middles)}
-        elements.append(corners + middles * (order == 2))
+    def inside(quad, x, y):
+        (left, low), (right, high) = quad[0], quad[2]
+        s, t = (x - left) / (right - left), (y - low) / (high - low)
+        x, y = np.dot([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t],
+                      [bent(*corner) for corner in quad])
+        sag = s * (1 - s) * (right - left)**2 / (2 * radius)   # of the chord above the face
+        return x, y - (1 - t) * sag * (order == 2)
+
+    places, faces, others, large, small = {}, [], [], [], []
+    for k, quad in enumerate(quadrilaterals(rows, heights)):
+        quad = [tuple(np.round(p, 9)) for p in quad]
+        on_face = k < len(rows[0]) - 1
+        divided = refined and on_face and is_divided(quad[0][0], quad[1][0])
+        for n, corners in enumerate(quarters(quad) if divided else [quad]):
+            middles = [middle(corners[k], corners[(k + 1) % 4]) for k in range(4)]
+            (small if divided else large).append(corners)
+            (faces if on_face and n < 2 else others).append(corners + middles * (order == 2))
+            if divided:
+                places |= {p: inside(quad, *p) for p in corners + middles * (order == 2)}
+                continue
+            places |= {p: bent(*p) for p in corners}
+            if order == 2:
+                places |= {p: bent(*p) if p[1] == 0.0 else tuple(
+                    np.mean([bent(*corners[k]), bent(*corners[(k + 1) % 4])], axis=0))
+                    for k, p in enumerate(middles)}
     number = {p: n for n, p in enumerate(sorted(places, key=lambda p: (p[1], p[0])), start=1)}
     return Body({number[p]: tuple(map(float, places[p])) for p in number},
-                [[number[p] for p in element] for element in elements], len(rows[0]) - 1)
+                [[number[p] for p in element] for element in faces + others], len(faces),
+                {number[p]: {number[q]: factor for q, factor in terms.items()}
+                 for p, terms in hanging_points(large, small, order).items()})
 
 
 def below(upper, first):
     """Return the mirror image of a body, its numbers behind `first`."""
     turned = (1, 0, 3, 2, 4, 7, 6, 5)
     return Body({n + first: (x, 0.0 - y) for n, (x, y) in upper.nodes.items()},
-                [[e[k] + first for k in turned[: len(e)]] for e in upper.elements], upper.sides)
+                [[e[k] + first for k in turned[: len(e)]] for e in upper.elements], upper.sides,
+                {n + first: {q + first: factor for q, factor in terms.items()}
+                 for n, terms in upper.hanging.items()})
 
 
-def make(family, count, order, radius):
-    """Return cylinder and base of a family."""
-    row = face(count, GRADED if family == "graded" else 1.0)
+def make(family, count, order, radius, divided=True):
+    """Return cylinder and base of a family, of a refined mesh before its sides are divided if they
+    are not."""
+    row = face(family, count)
     rows = structured_rows(row, 1.6) if family == "structured" else thinned_rows(row)
-    flat = body(*rows, np.inf, order)
-    return body(*rows, radius, order), below(flat, 10 ** len(str(len(flat.nodes) + 1)))
+    refined = divided and family == "refined"
+    flat = body(*rows, np.inf, order, refined)
+    return body(*rows, radius, order, refined), below(flat, 10 ** len(str(len(flat.nodes) + 1)))

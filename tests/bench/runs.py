@@ -2,9 +2,9 @@
 
 import os
 import re
-import resource
 import shutil
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,17 +24,26 @@ class Cost:
     memory: float
 
 
+# Runs a command and writes its cost and exit status to a file. A small process does this, because
+# memory and the end of the process that starts a program count as the program's.
+LAUNCHER = """
+import os, resource, sys
+resource.setrlimit(resource.RLIMIT_CPU, (int(sys.argv[1]),) * 2)
+_, status, usage = os.wait4(os.posix_spawnp(sys.argv[2], sys.argv[2:], os.environ), 0)
+with open("cost", "w") as file:
+    print(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, status, file=file)
+"""
+
+
 def measured(command, folder, seconds=SECONDS):
     """Run a command in a folder; return its cost, None where it failed or took too long."""
     with open(folder / "said", "w") as said:
-        process = subprocess.Popen(
-            command, cwd=folder, stdout=said, stderr=subprocess.STDOUT,
-            env=dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1"),
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds)))
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-    cost = Cost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
-    return cost if process.returncode == 0 else None
+        subprocess.run(
+            [sys.executable, "-I", "-S", "-c", LAUNCHER, str(seconds), *command], cwd=folder,
+            stdout=said, stderr=subprocess.STDOUT, check=True,
+            env=dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1"))
+    cpu, memory, status = map(float, (folder / "cost").read_text().split())
+    return Cost(cpu, memory) if status == 0 else None
 
 
 def thercon_values(result):
