@@ -235,8 +235,8 @@ contains
       if (self%is_settled .or. self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
          words = 'heat and stress of bodies do not follow their temperatures'
-         if (self%has_laws) words = 'stresses of bodies that yield or creep do not follow their '// &
-            'strains'
+         if (self%has_laws) words = &
+            'stresses of bodies that yield or creep do not follow their strains'
          call set_error(error, status_no_convergence, words// &
             ' within '//to_text(most_passes)//' corrections')
          return
