@@ -37,14 +37,6 @@ from thercon_post.result import Result  # noqa: E402
 from thercon_post.units import Units  # noqa: E402
 
 
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    """Draw few dots: the tests look at what is written, not at the pictures."""
-    monkeypatch.setitem(style.SETTINGS, "savefig.dpi", 50)
-    monkeypatch.setitem(style.SETTINGS, "savefig.bbox", None)
-    monkeypatch.setattr(fields, "FINE_CELLS", 1000)
-
-
 @pytest.fixture
 def draw(tmp_path, capsys):
     """Return a function that calls plot with --out and gives the names of the files written."""
