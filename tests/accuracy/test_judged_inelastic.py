@@ -127,7 +127,7 @@ def test_reference_creeps():
 def test_the_program_comes_to_the_reference(family, seed, tmp_path):
     """At least in the first order, on a quarter of the elements, in an eighth of the increments."""
     deck = FAMILIES[family](seed)
-    deck = replace(deck, text=re.sub("LOCAL ERROR=.*", "LOCAL ERROR=1.E-5", deck.text))
+    deck = replace(deck, text=re.sub("LOCAL ERROR=.*", "LOCAL ERROR=1.E-4", deck.text))
     runs = [solved(deck, level, part, tmp_path) for level, part in ((0, 1), (2, 8))]
     for key, (value, known) in reference(deck, tmp_path).items():
         coarse, fine = (np.nanmax(np.abs(run[key] - value)) / np.abs(value).max() for run in runs)

@@ -173,14 +173,15 @@ def test_calculix_softens_where_kinematic_hardening_has_small_strains(tmp_path):
 
 
 def test_what_differs_in_real_time_is_the_increments_of_calculix(tmp_path):
-    """Its rule is of first order: with a quarter of CETOL, and half of the increments, half."""
+    """Its rule is of first order: with a quarter of CETOL, and half of the increments, half; by
+    that much again it comes to what thercon has."""
     found = []
-    for allowed in (2e-5, 5e-6):
+    for allowed in (8e-5, 2e-5):
         theirs, ours = tables(tmp_path, bolt(f"*VISCO, CETOL={allowed}", "1.E-4, 0.1", "L-STABLE"),
                               f"{allowed}")
         found.append(kept(theirs) / kept(ours) - 1.0)
     assert 0.0 < found[1] < 0.6 * found[0]
-    assert found[1] < WITHIN
+    assert abs(2 * found[1] - found[0]) < WITHIN
 
 
 def test_calculix_makes_one_viscous_law_of_both_cards(tmp_path):

@@ -334,8 +334,14 @@ def test_schemes_are_varied_in_the_steps_that_follow_them(tmp_path):
 
 
 def test_increments_by_error_are_varied_by_their_error(tmp_path):
-    """Half of the factor takes twice the increments, whose error is a quarter."""
-    deck = transients.two_blocks(tmp_path / "deck.inp", how="")
+    """Half of the factor takes twice the increments, whose error is a quarter. Fields follow y, for
+    which a column of elements does."""
+    column = [0.0, 1.0]
+    deck = transients.write_deck(
+        tmp_path / "deck.inp",
+        transients.bodies(upper=(column, transients.HIGH), lower=(column, transients.LOW)),
+        transients.contact(), ["*FIXED POINT, TOL=1.E-12"],
+        transients.heated(how=", LOCAL ERROR=2.E-3"))
     rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.01")
     found = {row["increment_factor"]: row for row in rows[:-1] if row["elements"] == "Q8"
              and (row["level"], row["contact_level"], row["varied"]) == ("0", "0", "")}

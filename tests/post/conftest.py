@@ -1,5 +1,7 @@
 """Fixtures of several tests, and the marks of tests/decks, whose decks some tests here use."""
 
+import sys
+
 import pytest
 from browser import Browser
 from synthetic import write_result
@@ -7,6 +9,17 @@ from synthetic import write_result
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "changes(*cards): of tests/decks")
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    """Draw few dots: the tests look at what is written, not at the pictures."""
+    if "thercon_post.fields" in sys.modules:
+        from thercon_post import fields, style
+
+        monkeypatch.setitem(style.SETTINGS, "savefig.dpi", 50)
+        monkeypatch.setitem(style.SETTINGS, "savefig.bbox", None)
+        monkeypatch.setattr(fields, "FINE_CELLS", 1000)
 
 
 @pytest.fixture(scope="module")

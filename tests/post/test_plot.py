@@ -37,14 +37,6 @@ from thercon_post.result import Result  # noqa: E402
 from thercon_post.units import Units  # noqa: E402
 
 
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    """Draw few dots: the tests look at what is written, not at the pictures."""
-    monkeypatch.setitem(style.SETTINGS, "savefig.dpi", 50)
-    monkeypatch.setitem(style.SETTINGS, "savefig.bbox", None)
-    monkeypatch.setattr(fields, "FINE_CELLS", 1000)
-
-
 @pytest.fixture
 def draw(tmp_path, capsys):
     """Return a function that calls plot with --out and gives the names of the files written."""
@@ -76,16 +68,15 @@ def tabulate(unrendered, draw):
     return draw
 
 
-@pytest.fixture
-def kept(unrendered, draw, monkeypatch):
-    """Return a function that calls plot and gives the figures drawn, laid out as on paper."""
+def keeper(draw, monkeypatch, before_write=lambda figure: None):
+    """Return a function that calls plot and gives the figures drawn."""
 
     def call(*arguments):
         figures, write = [], style.write
 
         def keep(figure, *rest):
             figures.append(figure)
-            figure.draw_without_rendering()  # places in dots of the figure, not of the file
+            before_write(figure)
             return write(figure, *rest)
 
         with monkeypatch.context() as patch:
@@ -94,6 +85,19 @@ def kept(unrendered, draw, monkeypatch):
         return figures
 
     return call
+
+
+@pytest.fixture
+def kept(unrendered, draw, monkeypatch):
+    """Return a keeper for tests of what figures contain."""
+    return keeper(draw, monkeypatch)
+
+
+@pytest.fixture
+def laid_out(unrendered, draw, monkeypatch):
+    """Return a keeper for tests of places, which are those on paper; it takes twice as long."""
+    # Places in dots are those of the figure, not of the file.
+    return keeper(draw, monkeypatch, Figure.draw_without_rendering)
 
 
 @pytest.fixture
@@ -138,10 +142,10 @@ def test_mesh_is_drawn_with_the_coordinates_of_the_file(draw, result, tmp_path):
     np.testing.assert_array_equal(numbers(drawn["y"]), points[connectivity, 1])
 
 
-def test_the_legend_of_a_mesh_without_contact_leaves_the_axis_label_free(kept, tmp_path):
+def test_the_legend_of_a_mesh_without_contact_leaves_the_axis_label_free(laid_out, tmp_path):
     path = tmp_path / "alone.vtkhdf"
     write_result(path, contacts=())
-    (figure,) = kept("mesh", path)
+    (figure,) = laid_out("mesh", path)
     label = figure.axes[0].xaxis.label.get_window_extent()
     assert figure.legends[0].get_window_extent().y1 < label.y0
 
@@ -164,10 +168,10 @@ def test_the_slave_face_is_seen_below_the_master_face_where_both_touch(kept, res
     assert drawn[0].get_linewidth() > 1.5 * drawn[1].get_linewidth()
 
 
-def test_the_close_up_of_a_wide_model_is_named_clear_of_its_frame(kept, result):
+def test_the_close_up_of_a_wide_model_is_named_clear_of_its_frame(laid_out, result):
     with h5py.File(result, "r+") as file:
         file["VTKHDF/Points"][:, 0] *= 4.0
-    (figure,) = kept("mesh", result)
+    (figure,) = laid_out("mesh", result)
     (name,) = figure.axes[0].texts
     (window,) = figure.axes[0].patches
     assert name.get_text() == "(b)"
@@ -178,13 +182,13 @@ def test_the_close_up_of_a_wide_model_is_named_clear_of_its_frame(kept, result):
 
 
 @pytest.mark.parametrize("columns", [10, 41])
-def test_a_close_up_of_the_whole_model_is_left_out(kept, tmp_path, columns):
+def test_a_close_up_of_the_whole_model_is_left_out(laid_out, tmp_path, columns):
     path = tmp_path / "flat.vtkhdf"
     write_result(path, columns=columns)
     with h5py.File(path, "r+") as file:
         file["contact/CYLINDER/status"][...] = 1
         file["VTKHDF/Points"][:, 1] *= 0.1
-    (figure,) = kept("mesh", path)
+    (figure,) = laid_out("mesh", path)
     (axes,) = figure.axes
     assert not axes.texts and not axes.get_title(loc="left")
     marked = [line.get_marker() for line in axes.lines]
@@ -426,11 +430,11 @@ def test_an_edge_that_is_there_at_one_increment_is_seen(kept, result):
     assert len({text.get_text() for text in figure.legends[0].get_texts()}) == 5
 
 
-def test_zones_over_the_logarithm_of_the_load_show_the_first_increments(kept, fail, result):
+def test_zones_over_the_logarithm_of_the_load_show_the_first_increments(laid_out, fail, result):
     loads = np.geomspace(0.01, 300.0, 15)
     with h5py.File(result, "r+") as file:
         file["history/load"][...] = loads
-    (figure,) = kept("zones", result, "--log")
+    (figure,) = laid_out("zones", result, "--log")
     axes = figure.axes[0]
     assert axes.get_xscale() == "log"
     at = (axes.transData + axes.transAxes.inverted()).transform([(load, 0.0) for load in loads])[:, 0]
@@ -454,7 +458,7 @@ def test_the_left_edge_of_a_symmetric_contact_is_an_edge(kept, result):
                for line in figure.axes[0].lines)
 
 
-def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(kept, tmp_path):
+def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(laid_out, tmp_path):
     path = tmp_path / "late.vtkhdf"
     write_result(path, loads=(300.0, 450.0, 600.0, 750.0, 900.0))
     with h5py.File(path, "r+") as file:
@@ -465,7 +469,7 @@ def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(kept
         status[np.arange(5), first - 1] = 1  # one pair slips: too narrow for its name
         contact["status"][...] = status
         contact["edge_stick"][...] = 0.9 * contact["edge_contact"][()]
-    (figure,) = kept("zones", path)
+    (figure,) = laid_out("zones", path)
     (axes,) = figure.axes
     boxes = [text.get_window_extent() for text in axes.texts]
     assert [text.get_text()[-4:] for text in axes.texts].count("slip") == 1
@@ -478,7 +482,7 @@ def test_names_of_zones_stand_apart_inside_the_axes_where_there_are_results(kept
 
 
 @pytest.mark.parametrize("count", [5, 60])
-def test_names_of_zones_cover_no_mark_where_there_is_room_between_them(kept, tmp_path, count):
+def test_names_of_zones_cover_no_mark_where_there_is_room_between_them(laid_out, tmp_path, count):
     """Of a few loads, in whose middle is a column of marks; of many no edge."""
     path = tmp_path / "slip.vtkhdf"
     write_result(path, loads=tuple(np.linspace(300.0, 900.0, count)))
@@ -490,7 +494,7 @@ def test_names_of_zones_cover_no_mark_where_there_is_room_between_them(kept, tmp
             contact[key][...] = np.nan
 
     def name_and_marks(kinds):
-        (figure,) = kept("zones", path)
+        (figure,) = laid_out("zones", path)
         (axes,) = figure.axes
         marks = [axes.transData.transform(line.get_xydata()) for line in axes.lines
                  if line.get_marker() in kinds]  # fmt: skip
@@ -503,7 +507,7 @@ def test_names_of_zones_cover_no_mark_where_there_is_room_between_them(kept, tmp
     with h5py.File(path, "r+") as file:
         contact = file["contact/CYLINDER"]
         contact["edges_contact"][:, 0], contact["edges_contact"][:, 1] = place, contact["s"][-3]
-    (figure,) = kept("zones", path)
+    (figure,) = laid_out("zones", path)
     (axes,) = figure.axes
     (box,) = [text.get_window_extent() for text in axes.texts if text.get_text() == "II\nslip"]
     y = axes.transData.transform((0.0, place))[1]
@@ -677,22 +681,22 @@ def test_compression_is_blue_and_tension_red_in_every_panel(levels):
         assert (np.diff(darkness[same][np.argsort(np.abs(middles[same]))]) > 0.0).all()
 
 
-def test_a_uniform_panel_has_one_colour_with_its_value(kept, result):
+def test_a_uniform_panel_has_one_colour_with_its_value(laid_out, result):
     with h5py.File(result, "r+") as file:
         stress = file["VTKHDF/PointData/stress"]
         stress[:, 1] = -100.0 + 0.04 * np.tile(np.linspace(-1.0, 1.0, len(stress) // 15), 15)
-    (figure,) = kept("fields", result, "--quantity", "yy")
+    (figure,) = laid_out("fields", result, "--quantity", "yy")
     (bar,) = bars_of(figure)
     assert [text.get_text() for text in bar.get_xticklabels() + bar.get_yticklabels()
             if text.get_text()] == ["\N{MINUS SIGN}100"]
 
 
-def test_the_rounding_of_stresses_that_have_gone_is_no_concentration(kept, result):
+def test_the_rounding_of_stresses_that_have_gone_is_no_concentration(laid_out, result):
     """As of bodies that come apart: nothing is left but 1e-7 of what there was."""
     with h5py.File(result, "r+") as file:
         stress = file["VTKHDF/PointData/stress"]
         stress[-len(stress) // 15:] *= 1e-7
-    (figure,) = kept("fields", result, "--quantity", "yy")
+    (figure,) = laid_out("fields", result, "--quantity", "yy")
     (bar,) = bars_of(figure)
     labels = [text.get_text() for text in bar.get_xticklabels() + bar.get_yticklabels() if text.get_text()]
     assert labels == ["0"]
@@ -700,7 +704,7 @@ def test_the_rounding_of_stresses_that_have_gone_is_no_concentration(kept, resul
 
 @pytest.mark.parametrize("factors", [(1.0, 0.02), (0.02, 1.0), (1.0, 0.4), (1.0, 1.0)])
 @pytest.mark.parametrize("colours", ["panel", "body"])
-def test_colour_bars_of_thin_and_flat_bodies_overlap_nothing(kept, result, factors, colours):
+def test_colour_bars_of_thin_and_flat_bodies_overlap_nothing(laid_out, result, factors, colours):
     with h5py.File(result, "r+") as file:
         for axis in (0, 1):
             file["VTKHDF/Points"][:, axis] *= factors[axis]
@@ -708,7 +712,8 @@ def test_colour_bars_of_thin_and_flat_bodies_overlap_nothing(kept, result, facto
         data[...] = np.where(np.tile(np.arange(points) < points // 2, 15), data[...], 20.0 + 0.01 * data[...])
         file["VTKHDF/PointData/displacement"][...] = 0.0
         file["VTKHDF/PointData/stress"][...] *= 1e-6  # whose labels have many digits
-    (figure,) = kept("fields", result, "--colours", colours, "--quantity", "temperature", "xx", "yy")
+    (figure,) = laid_out("fields", result, "--colours", colours,
+                         "--quantity", "temperature", "xx", "yy")
     assert len(bars_of(figure)) == (3 if colours == "panel" else 4)
     groups = [[axes.get_window_extent() for axes in panels_of(figure)]
               + [bar.get_tightbbox() for bar in bars_of(figure)]]
@@ -788,20 +793,20 @@ def test_a_quantity_that_there_is_not_is_named(last):
             parser().parse_args(spread(["fields", *sum(words[:: 1 - 2 * last], [])]))
 
 
-def test_titles_of_fields_side_by_side_stand_apart(kept, result):
+def test_titles_of_fields_side_by_side_stand_apart(laid_out, result):
     with h5py.File(result, "r+") as file:
         file["VTKHDF/Points"][:, 0] *= 0.3  # a slender model has narrow panels
     for quantities in ((), ("--quantity", "stress_error", "heat_flux_error")):
-        (figure,) = kept("fields", result, *quantities)
+        (figure,) = laid_out("fields", result, *quantities)
         titles = [axes._left_title for axes in panels_of(figure)]
         boxes = [title.get_window_extent() for title in titles]
         assert [title.get_text()[:3] for title in titles] == ["(a)", "(b)", "(c)"][: len(boxes)]
         for left, right in zip(boxes, boxes[1:]):
             assert right.x0 - left.x1 > 0.1 * figure.dpi
 
-def test_many_fields_are_drawn_in_rows_of_panels_large_enough(kept, result):
+def test_many_fields_are_drawn_in_rows_of_panels_large_enough(laid_out, result):
     quantities = ["xx", "yy", "zz", "xy", "von_mises"]
-    (figure,) = kept("fields", result, "--region", "contact", "--quantity", *quantities)
+    (figure,) = laid_out("fields", result, "--region", "contact", "--quantity", *quantities)
     panels = panels_of(figure)
     boxes = [axes.get_window_extent() for axes in panels]
     assert len(boxes) == 5 and min(min(box.size) for box in boxes) > figure.dpi  # an inch
@@ -921,12 +926,12 @@ def test_magnified_displacements_name_their_factor_and_why_bodies_overlap(result
     assert words(1.0).endswith("touching faces are drawn their *CLEARANCE apart, or overlapping")
 
 
-def test_uniform_contact_is_tinted_and_names_hide_no_symbol(kept, result):
+def test_uniform_contact_is_tinted_and_names_hide_no_symbol(laid_out, result):
     with h5py.File(result, "r+") as file:
         status = file["contact/CYLINDER/status"]
         status[:5] = 0
         status[5:] = 1
-    (figure,) = kept("zones", result)
+    (figure,) = laid_out("zones", result)
     (axes,) = figure.axes
     (tints,) = [each for each in axes.collections if isinstance(each, QuadMesh)]
     np.testing.assert_array_equal(tints.get_array().ravel(), [0] * 5 + [1] * 10)
@@ -1037,11 +1042,11 @@ def test_convergence_holds_every_iteration_and_marks_what_failed(draw, tmp_path)
     assert both["result"].count("good") == 12 and "failed" in both["outcome"]
 
 
-def test_convergence_has_ticks_at_increments_and_room_above_g(kept, tmp_path):
+def test_convergence_has_ticks_at_increments_and_room_above_g(laid_out, tmp_path):
     for loads, ticks in (((60.0,), [1]), (np.arange(1.0, 46.0), [10, 20, 30, 40])):
         path = tmp_path / "many.vtkhdf"
         write_result(path, loads=tuple(loads))
-        (figure,) = kept("convergence", path)
+        (figure,) = laid_out("convergence", path)
         axes = figure.axes[-1]
         low, high = axes.get_xlim()
         assert [tick for tick in axes.get_xticks() if low <= tick <= high] == ticks
@@ -1424,7 +1429,7 @@ def test_what_is_no_trade_is_refused(fail, result, tmp_path):
     assert "nothing to draw" in fail("trade", empty)
 
 
-def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_path):
+def test_accuracy_draws_each_target_against_the_cost(laid_out, fail, result, tmp_path):
     """Uncertainties over targets, at the CPU seconds of all rounds so far."""
     assert "no accuracy was requested" in fail("accuracy", result)
     asked = tmp_path / "asked.vtkhdf"
@@ -1435,14 +1440,14 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
         group["elements"], group["increments"] = [10, 40], [15, 15]
         group["uncertainty/CYLINDER/normal_force"] = [[1, 5.0, 0.4, 0.1], [1, 5.1, 0.05, 0.1]]
         group["uncertainty/CYLINDER/heat_rate"] = np.zeros((2, 4))
-    (figure,) = kept("accuracy", asked)
+    (figure,) = laid_out("accuracy", asked)
     (line, limit) = figure.axes[0].get_lines()
     np.testing.assert_allclose(line.get_xdata(), [0.1, 0.4])
     np.testing.assert_allclose(line.get_ydata(), [4.0, 0.5])
     assert list(limit.get_ydata()) == [1.0, 1.0]
     with h5py.File(asked, "a") as file:
         file["accuracy/uncertainty/CYLINDER/normal_force"][...] = [[1, 5.0, np.nan, 0.1], [1, 5.1, 1e-9, 0.1]]
-    (figure,) = kept("accuracy", asked)
+    (figure,) = laid_out("accuracy", asked)
     (_, foot, top, *_) = figure.axes[0].get_lines()
     assert (foot.get_marker(), list(foot.get_xdata())) == ("v", [0.4])
     assert (top.get_marker(), list(top.get_xdata())) == ("^", [0.1])
@@ -1455,7 +1460,7 @@ def test_accuracy_draws_each_target_against_the_cost(kept, fail, result, tmp_pat
         "no estimate"]
     with h5py.File(asked, "a") as file:
         file["accuracy/uncertainty/CYLINDER/normal_force"][...] = [[1, 5.0, 0.4, 0.1], [0, 0.0, 0.0, 0.0]]
-    (figure,) = kept("accuracy", asked)
+    (figure,) = laid_out("accuracy", asked)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         "CYLINDER normal force, target 0.1", "target"]
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy.special import eval_legendre, j0, jn_zeros, jv, spherical_jn
+from scipy.special import eval_legendre, j0, jn_zeros, jv, roots_legendre, spherical_jn
 
 MODES, HEATED = 5000, 1000   # of pressure, of flux
 TERMS, OUTER = 16, 24        # in the contact, outside
@@ -128,7 +128,7 @@ class Layer:
 
 def gauss(count, end):
     """Return places and weights of Gauss and Legendre from 0 to an end."""
-    x, weight = legendre.leggauss(count)
+    x, weight = roots_legendre(count)
     return (x + 1) * end / 2, weight * end / 2
 
 

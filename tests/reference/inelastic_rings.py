@@ -7,6 +7,7 @@ fall to a quarter where elements are halved and increments quartered, and are ex
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg.lapack import dgtsv
 
 DEVIATOR = np.eye(3) - 1 / 3
 GRIDS = (50, 50), (100, 200), (200, 800)   # elements of each ring, increments of each step
@@ -81,8 +82,9 @@ class Rings:
         left, right = self.u[:-1].copy(), self.u[1:]
         if len(self.rings) == 2:
             left[self.joint] += self.overlap
-        plane = left[:, None] * self.left + right[:, None] * self.right
-        return np.pad(plane, ((0, 0), (0, 1)))
+        found = np.zeros((len(left), 3))
+        found[:, :2] = left[:, None] * self.left + right[:, None] * self.right
+        return found
 
     def respond(self, elastic, time):
         """Return stress, its derivative by strain, the inelastic strain that is added and its
@@ -111,7 +113,10 @@ class Rings:
         y, factor = q.copy(), 3 * self.shear * time * self.rate
         for _ in range(PASSES):
             grown = factor * y**self.power
-            y = y - (y + grown - q) / (1 + self.power * grown / y)
+            change = (y + grown - q) / (1 + self.power * grown / y)
+            y = y - change
+            if np.all(np.abs(change) <= 1e-14 * y):
+                break
         return (q - y) / (3 * self.shear), 1 / (1 + self.power * factor * y ** (self.power - 1))
 
     def advance(self, pressure, overlap, temperatures, time):
@@ -140,21 +145,16 @@ class Rings:
 
     def solved(self, blocks, force):
         """Return the solution of a matrix of three diagonals, by those of elements."""
-        d = (np.append(blocks[0], 0.0) + np.append(0.0, blocks[3])).tolist()
-        upper, lower, f = blocks[1].tolist(), blocks[2].tolist(), force.tolist()
+        middle = np.append(blocks[0], 0.0) + np.append(0.0, blocks[3])
         if self.r[0] == 0:
-            d[0], upper[0] = 1.0, 0.0
-        for k in range(1, len(d)):
-            part = lower[k - 1] / d[k - 1]
-            d[k] -= part * upper[k - 1]
-            f[k] -= part * f[k - 1]
-        f[-1] /= d[-1]
-        for k in range(len(d) - 2, -1, -1):
-            f[k] = (f[k] - upper[k] * f[k + 1]) / d[k]
-        return np.array(f)
+            middle[0], blocks[1][0] = 1.0, 0.0
+        return dgtsv(blocks[2], middle, blocks[1], force)[3]
 
     def follow(self, step, before, increments):
-        """Go on to the end of a step, through increments that grow where rings creep."""
+        """Go on to the end of a step, through increments that grow where rings creep, and in one
+        where all stay elastic."""
+        if not step.time and np.isinf(self.limit).all():
+            increments = 1
         parts = np.linspace(0.0, 1.0, increments + 1)[1:]
         sizes = np.diff(step.time * parts**4, prepend=0.0)
         for part, size in zip(np.ones_like(parts) if step.time else parts, sizes, strict=True):
