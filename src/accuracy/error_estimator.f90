@@ -344,7 +344,8 @@ contains
       !> of the only one, or of a maximum of a body, which it takes.
       logical function is_copied(check)
          type(verify_type), intent(in) :: check
-         character(:), allocatable :: quantity, where
+         character(:), allocatable :: quantity, reason, where
+         real(dp), allocatable :: values(:)
          integer :: k, q
 
          quantity = to_upper(check%quantity)
@@ -367,6 +368,11 @@ contains
             k = maxloc(found%value(q, :), dim=1)
             if (found%node(q, k) > 0) then
                call copy(record%body_uncertainties(k), q)
+               call values_asked_for(check, record, model, interfaces, &
+                  simulation%recovery%points%node, values, reason)
+               ! It may be the value of a singular corner.
+               if (maxval(values) > found%value(q, k)) call settle(checks, i, at_corner, &
+                  spread(0.0_dp, 1, 3))
                return
             end if
          end if

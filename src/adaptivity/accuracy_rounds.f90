@@ -288,24 +288,19 @@ contains
       end associate
    end function is_reached
 
-   !> The step in which a demand is furthest from its target; 0 where none has it.
+   !> The step in which a demand is furthest from its target; 0 where none has it. A pressure at a
+   !> corner, which no mesh brings to its target, is told where no other step misses it.
    pure integer function worst_step(self, d)
       class(accuracy_round_type), intent(in) :: self
       integer, intent(in) :: d                    !! the demand
-      real(dp) :: excess, largest
+      logical :: is_there(size(self%findings, 2)), counts(size(self%findings, 2))
       integer :: s
 
-      worst_step = 0
-      largest = -1.0_dp
-      do s = 1, size(self%findings, 2)
-         associate (finding => self%findings(d, s))
-            if (.not. finding%is_there) cycle
-            excess = over_target(finding)
-            if (excess <= largest) cycle
-            largest = excess
-            worst_step = s
-         end associate
-      end do
+      is_there = self%findings(d, :)%is_there
+      counts = is_there .and. self%findings(d, :)%no_estimate /= at_corner
+      if (all(self%findings(d, :)%is_met() .or. .not. counts)) counts = is_there
+      worst_step = maxloc([(over_target(self%findings(d, s)), s=1, size(counts))], dim=1, &
+         mask=counts)
    end function worst_step
 
    !> Largest uncertainty of a demand over what its target allows; 0 for none, huge where it is

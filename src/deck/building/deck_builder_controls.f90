@@ -278,9 +278,10 @@ contains
       key = to_upper(data%text(position))
       i = findloc([(known(i)%value == key, i=1, size(known))], .true., dim=1)
       if (i > 0) then
-         if (is_of_no_material(meanings(i))) then
-            call deck%warning(data%place(position), key//' of *'//card%name//' is not there '// &
-               'without *PLASTIC or *CREEP: it is not printed')
+         if (needed(meanings(i)) /= '') then
+            ! Its card may be one with an error.
+            if (.not. deck%has_errors()) call deck%warning(data%place(position), ' of *'// &
+               card%name//' is not there without *'//needed(meanings(i))//': it is not printed')
          else if (all(quantities /= meanings(i))) then
             quantities = [quantities, meanings(i)]
          end if
@@ -292,16 +293,19 @@ contains
             ' is not printed'//known_choices(key, known))
       end if
    contains
-      !> Whether a quantity is that of a law which no material has.
-      pure logical function is_of_no_material(quantity)
+      !> The card without which no material has a quantity; empty where one has it.
+      pure function needed(quantity)
          integer, intent(in) :: quantity
+         character(:), allocatable :: needed
 
+         needed = ''
          associate (law => deck%model%materials%law)
-            is_of_no_material = any(quantity == [print_peeq, print_plastic]) .and. &
-               .not. any(law%strains(1) > 0) .or. any(quantity == [print_ceeq, print_creep]) &
-               .and. .not. any(law%strains(2) > 0)
+            if (any(quantity == [print_peeq, print_plastic]) .and. .not. any(law%strains(1) > 0)) &
+               needed = 'PLASTIC'
+            if (any(quantity == [print_ceeq, print_creep]) .and. .not. any(law%strains(2) > 0)) &
+               needed = 'CREEP'
          end associate
-      end function is_of_no_material
+      end function needed
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.
