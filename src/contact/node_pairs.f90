@@ -164,8 +164,6 @@ contains
 
       body_angle = 0.0_dp
       do e = 1, size(mesh%element_number)
-         ! Most elements end here, at every end of every line.
-         if (all(mesh%element_nodes(:, e) /= node)) cycle
          associate (n => element_corner_count(mesh%element_kind(e)))
             k = findloc(mesh%element_nodes(:n, e), node, dim=1)
             if (k == 0) cycle

@@ -79,10 +79,7 @@ contains
    pure real(dp) function extent_of(coordinates)
       real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes) x and y [length]
 
-      integer :: c
-
-      ! By sections: maxval along a dimension is a call for each of its entries.
-      extent_of = maxval([(maxval(coordinates(c, :)) - minval(coordinates(c, :)), c=1, 2)])
+      extent_of = maxval(maxval(coordinates, dim=2) - minval(coordinates, dim=2))
    end function extent_of
 
 end module mesh
