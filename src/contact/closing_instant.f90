@@ -120,7 +120,7 @@ contains
       type(contact_workspace_type), intent(inout) :: work, sticking
       type(contact_state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      type(closing_law_type) :: laws(size(state%contact_state))
+      type(closing_law_type), allocatable :: laws(:)
       logical :: holds(size(state%contact_state))
       real(dp) :: change, swing   ! of the last pass, of the last one before changes are halved
       integer :: k, pass
@@ -157,7 +157,7 @@ contains
          work%keeps_laws = pass == plain_passes + few_halves .and. change > lasting*swing .or. &
             pass == most_passes
          if (work%keeps_laws) exit
-         work%closing = laws   ! laws that stay keep the factors
+         call move_alloc(laws, work%closing)   ! laws that stay keep the factors
       end do
       ! Laws that never settle belong to states that call for each other. The last ones are kept,
       ! for other conductances, too: else the fixed point would go from the one to the other.
@@ -183,31 +183,54 @@ contains
       type(contact_workspace_type), intent(inout) :: sticking
       type(closing_law_type), intent(inout) :: laws(:)
       type(error_type), allocatable, intent(out) :: error
-      logical :: closes(size(state%contact_state))
+      logical :: closes(size(state%contact_state)), is_held(0:system%schur%order)
       integer :: i, k
 
       closes = previous%contact_state == contact_open .and. holds
       call sticking%keep_holding(holds, size(system%interface_start) - 1)
+      if (.not. any(closes .and. system%tangent > 0)) return
+      call hold_closed(system, state, sticking, is_held, error)
+      if (allocated(error)) return
       do i = 1, size(system%interface_start) - 1
          associate (first => system%interface_start(i), last => system%interface_start(i + 1) - 1)
             if (.not. any(closes(first:last) .and. system%tangent(first:last) > 0)) cycle
             call find_path(system, previous, state, pack([(k, k=first, last)], &
-               closes(first:last)), i, sticking, laws, error)
+               closes(first:last)), i, is_held, sticking, laws)
          end associate
-         if (allocated(error)) return
       end do
    end subroutine find_laws
 
-   !> Closing laws of one interface.
+   !> Factors the set in which all closed contact points hold their positions.
    !> Error: a singular system.
-   subroutine find_path(system, previous, state, points, number, sticking, laws, error)
+   subroutine hold_closed(system, state, sticking, is_held, error)
+      type(contact_system_type), intent(in) :: system
+      type(contact_state_type), intent(in) :: state
+      type(contact_workspace_type), intent(inout) :: sticking
+      logical, intent(out) :: is_held(0:)          ! (tail) whether the set holds a row
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_state_type) :: holding
+
+      holding = state
+      holding%direction = 0
+      holding%contact_state = merge(contact_stick, contact_open, sticking%kept%holds)
+      where (sticking%kept%holds .and. system%compliance > 0.0_dp) &
+         holding%contact_state = contact_slip
+      call sticking%factor_set(system, holding, error)
+      if (allocated(error)) return
+      is_held = .true.
+      is_held(0) = .false.
+      is_held(sticking%rows%free) = .false.
+   end subroutine hold_closed
+
+   !> Closing laws of one interface.
+   subroutine find_path(system, previous, state, points, number, is_held, sticking, laws)
       type(contact_system_type), intent(in) :: system
       type(contact_state_type), intent(in) :: previous, state
       integer, intent(in) :: points(:)         ! that close
       integer, intent(in) :: number            ! of the interface
+      logical, intent(in) :: is_held(0:)       ! (tail) as from hold_closed
       type(contact_workspace_type), intent(inout) :: sticking
       type(closing_law_type), intent(inout) :: laws(:)
-      type(error_type), allocatable, intent(out) :: error
       type(closing_path_type) :: path
       integer :: k
 
@@ -231,8 +254,7 @@ contains
       end associate
       associate (kept => sticking%kept%compliance(number))
          if (.not. allocated(kept%matrix)) then
-            call find_stiffness(system, state, sticking, path, error)
-            if (allocated(error)) return
+            call find_stiffness(system, is_held, sticking, path)
             call go_freely(system, path, laws)
             call find_compliance(path)
             if (all(path%is_open) .and. .not. path%is_loose) kept%matrix = path%compliance
@@ -266,29 +288,17 @@ contains
    !> Forces and motions of the contact points on their way beside what holds all others. With h the
    !> rows that the set of all holds and s those that it leaves free, of cycles and of soft faces,
    !> unit displacements of h need the forces K and move s by D, unit forces on s move s by F.
-   !> Error: a singular system.
-   subroutine find_stiffness(system, state, sticking, path, error)
+   subroutine find_stiffness(system, is_held, sticking, path)
       type(contact_system_type), intent(in) :: system
-      type(contact_state_type), intent(in) :: state
-      type(contact_workspace_type), intent(inout) :: sticking
+      logical, intent(in) :: is_held(0:)           ! (tail) as from hold_closed
+      type(contact_workspace_type), intent(in) :: sticking
       type(closing_path_type), intent(inout) :: path
-      type(error_type), allocatable, intent(out) :: error
-      type(contact_state_type) :: holding
       integer, allocatable :: free(:), held(:), near(:)
       real(dp), allocatable :: columns(:, :), forces(:, :), response(:, :)
-      logical :: is_held(0:system%schur%order)
-      integer :: i, place(system%schur%order)
+      integer :: i
+      integer :: place(system%schur%order)         ! of near rows; others have none
 
-      holding = state
-      holding%direction = 0
-      holding%contact_state = merge(contact_stick, contact_open, sticking%kept%holds)
-      where (sticking%kept%holds .and. system%compliance > 0.0_dp) &
-         holding%contact_state = contact_slip
-      call sticking%factor_set(system, holding, error)
-      if (allocated(error)) return
-      is_held = .true.
-      is_held(0) = .false.
-      is_held(sticking%rows%free) = .false.
+      path%is_loose = .false.
       associate (rows => [system%normal(path%point), system%tangent(path%point)])
          path%held = pack([(i, i=1, size(rows))], is_held(rows))
          path%free = pack([(i, i=1, size(rows))], rows > 0 .and. .not. is_held(rows))
@@ -296,7 +306,6 @@ contains
          free = rows(path%free)
       end associate
       near = system%schur%neighbours([held, free])
-      place = 0
       place(near) = [(i, i=1, size(near))]
       columns = system%schur%block(near, held)
       allocate (forces(size(near), size(held) + size(free)), source=0.0_dp)
@@ -314,7 +323,6 @@ contains
       path%lever = response(place(free), :size(held))
       path%flexibility = response(place(free), size(held) + 1:)
       path%spring = sticking%rows%spring(free)
-      path%is_loose = .false.
       if (size(held) > 0) path%is_loose = any(system%motions%moves(held))
    end subroutine find_stiffness
 

@@ -45,7 +45,8 @@ contains
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
       type(surface_chain_type), allocatable :: masters(:), slaves(:)
-      logical :: in_set(size(mesh%node_number))
+      logical, allocatable :: in_set(:)
+      real(dp) :: largest                                     ! coordinate [length]
 
       associate (slave_surface => mesh%surfaces(definition%slave), &
          master_surface => mesh%surfaces(definition%master))
@@ -65,13 +66,13 @@ contains
          end if
          if (allocated(error)) return
       end associate
-      points%finest_gap = max(points%finest_gap, single*maxval(abs(mesh%coordinates)))
-      where (abs(points%initial_gap) <= touching*maxval(abs(mesh%coordinates))) &
-         points%initial_gap = 0.0_dp
+      largest = maxval(abs(mesh%coordinates))
+      points%finest_gap = max(points%finest_gap, single*largest)
+      where (abs(points%initial_gap) <= touching*largest) points%initial_gap = 0.0_dp
       if (definition%adjusts .and. definition%adjusted_set == 0) then
          where (points%initial_gap <= definition%adjusted) points%initial_gap = 0.0_dp
       else if (definition%adjusts) then
-         in_set = .false.
+         allocate (in_set(size(mesh%node_number)), source=.false.)
          in_set(mesh%node_sets(definition%adjusted_set)%members) = .true.
          where (in_set(points%slave)) points%initial_gap = 0.0_dp
       end if

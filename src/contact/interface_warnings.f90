@@ -92,6 +92,7 @@ contains
       integer :: k
 
       warning = ''
+      if (all(points%initial_gap >= 0.0_dp)) return   ! without a search of all nodes
       if (.not. any(-points%initial_gap > rounding*extent_of(mesh%coordinates))) return
       k = minloc(points%initial_gap, dim=1)
       warning = 'contact pair '//points%name//': the faces overlap by '// &

@@ -316,18 +316,18 @@ contains
    pure subroutine solve(self, x)
       class(front_factors_type), intent(in) :: self
       real(dp), intent(inout) :: x(:, :)         !! (unknowns, n) right-hand sides in, solutions out
-      integer :: f, i
+      integer :: f
       real(dp) :: solution(size(x, 1), size(x, 2))
 
       solution = 0.0_dp
-      associate (place => [(i, i=1, size(x, 1))])
-         do f = 1, size(self%front)
-            call eliminate_forward(self%front(f), place, x, solution)
-         end do
-         do f = size(self%front), 1, -1
-            call substitute_back(self%front(f), place, solution)
-         end do
-      end associate
+      do f = 1, size(self%front)
+         associate (front => self%front(f))
+            call eliminate_forward(front, front%row, front%column, x, solution)
+         end associate
+      end do
+      do f = size(self%front), 1, -1
+         call substitute_back(self%front(f), self%front(f)%column, solution)
+      end do
       x = solution
    end subroutine solve
 
@@ -356,24 +356,27 @@ contains
       allocate (x(places, size(rhs, 2)), solution(places, size(rhs, 2)), source=0.0_dp)
       x(place(rows), :) = rhs
       do f = 1, size(visited)
-         if (visited(f)) call eliminate_forward(self%front(f), place, x, solution)
+         associate (front => self%front(f))
+            if (visited(f)) call eliminate_forward(front, place(front%row), place(front%column), &
+               x, solution)
+         end associate
       end do
       do f = size(visited), 1, -1
-         if (visited(f)) call substitute_back(self%front(f), place, solution)
+         if (visited(f)) call substitute_back(self%front(f), place(self%front(f)%column), solution)
       end do
       part = solution(place(rows), :)
    end function solve_part
 
    !> L^-1 of a front.
-   pure subroutine eliminate_forward(front, place, x, solution)
+   pure subroutine eliminate_forward(front, row, column, x, solution)
       type(front_type), intent(in) :: front
-      integer, intent(in) :: place(:)              ! (unknowns) in x and in the solution
+      integer, intent(in) :: row(:), column(:)     ! its rows in x, its columns in the solution
       real(dp), intent(inout) :: x(:, :)
       real(dp), intent(inout) :: solution(:, :)    ! receives the pivots' rows
       real(dp) :: own(size(front%row))
       integer :: j, k
 
-      associate (p => front%pivots, row => place(front%row), column => place(front%column))
+      associate (p => front%pivots)
          if (p == 0) return
          do j = 1, size(x, 2)
             own = x(row, j)
@@ -393,14 +396,14 @@ contains
    end subroutine eliminate_forward
 
    !> U^-1 of a front.
-   pure subroutine substitute_back(front, place, solution)
+   pure subroutine substitute_back(front, column, solution)
       type(front_type), intent(in) :: front
-      integer, intent(in) :: place(:)
+      integer, intent(in) :: column(:)             ! its columns in the solution
       real(dp), intent(inout) :: solution(:, :)
       real(dp) :: own(size(front%column))
       integer :: j, k
 
-      associate (p => front%pivots, column => place(front%column))
+      associate (p => front%pivots)
          if (p == 0) return
          do j = 1, size(solution, 2)
             own = solution(column, j)

@@ -163,10 +163,16 @@ contains
       real(dp) :: column(self%order)
       integer :: j
 
+      column = 0.0_dp
       do j = 1, size(columns)
-         column = 0.0_dp
          call self%add_row(columns(j), 1.0_dp, column)
          block(:, j) = column(rows)
+         if (self%is_sparse()) then
+            column(self%sparse%column(self%sparse%row_start(columns(j)): &
+               self%sparse%row_start(columns(j) + 1) - 1)) = 0.0_dp
+         else
+            column = 0.0_dp
+         end if
       end do
    end function block_of
 

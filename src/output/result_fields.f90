@@ -22,6 +22,7 @@ module result_fields
    use growing_datasets, only: flush_sets, growing_dataset, growing_dataset_type, &
       quantity_dataset, write_integers, write_once
    use result_tables, only: write_geometry
+   use sorting, only: invert_lists
    implicit none
    private
    public :: field_results_type, contact_grid_type, node_sets, cell_sets, interface_sets, &
@@ -80,8 +81,8 @@ module result_fields
    type, extends(vtk_grid_type) :: field_results_type
       private
       integer, allocatable :: point_node(:)                      !! (points) node index
-      integer, allocatable :: face_point(:)                      !! points on contact faces
-      integer, allocatable :: face_interface(:)                  !! their interface
+      integer, allocatable :: face_point(:)  !! points on contact faces, by their interfaces
+      integer, allocatable :: face_start(:)  !! (interfaces + 1) the first of each
       integer, allocatable :: face_row(:)                        !! their row of its at_face_nodes
       !> (2, points) unit vectors away from the origin in plane models; else unallocated
       real(dp), allocatable :: radial(:, :)
@@ -161,8 +162,9 @@ contains
             row_of(nodes) = [(k, k=1, size(nodes))]
          end associate
       end do
-      self%face_point = pack([(k, k=1, size(self%point_node))], interface_of(self%point_node) > 0)
-      self%face_interface = interface_of(self%point_node(self%face_point))
+      call invert_lists(reshape(interface_of(self%point_node), [1, size(self%point_node)]), &
+         merge(1, 0, interface_of(self%point_node) > 0), size(interfaces), self%face_start, &
+         self%face_point)
       self%face_row = row_of(self%point_node(self%face_point))
    end subroutine find_faces
 
@@ -211,8 +213,8 @@ contains
                call at_nodes%add_totals(of_points, face)
             end if
          end associate
-         do k = 1, size(self%face_point)
-            if (self%face_interface(k) == i) values(self%face_point(k)) = face(self%face_row(k))
+         do k = self%face_start(i), self%face_start(i + 1) - 1
+            values(self%face_point(k)) = face(self%face_row(k))
          end do
       end do
    end function face_values
@@ -277,27 +279,29 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:)
       integer, intent(in) :: node_number(:)               !! (nodes) numbers in the deck
       real(dp), allocatable :: points(:, :)
-      integer, allocatable :: ends(:), interface_of(:)
-      integer :: first, i, k, m
+      integer, allocatable :: ends(:, :), interface_of(:)
+      integer :: cells, first, i, k, m
 
       allocate (points(3, sum([(size(interfaces(i)%slave), i=1, size(interfaces))])), &
          source=0.0_dp)
+      allocate (ends(2, size(points, 2)), interface_of(size(points, 2)))
+      cells = 0
       first = 0
-      allocate (ends(0), interface_of(0))
       do i = 1, size(interfaces)
          m = size(interfaces(i)%slave)
          points(:2, first + 1:first + m) = interfaces(i)%position
          do k = 1, m - 1
             if (.not. interfaces(i)%on_one_piece(k, k + 1)) cycle
-            ends = [ends, first + k, first + k + 1]
-            interface_of = [interface_of, i]
+            cells = cells + 1
+            ends(:, cells) = first + [k, k + 1]
+            interface_of(cells) = i
          end do
          first = first + m
       end do
-      call write_grid(file, points, ends, [(2*k, k=0, size(interface_of))], &
-         [(vtk_line, k=1, size(interface_of))])
+      call write_grid(file, points, [ends(:, :cells)], [(2*k, k=0, cells)], &
+         [(vtk_line, k=1, cells)])
       call write_geometry(file, point_group, interfaces, node_number)
-      call write_integers(file, cell_group//interface_sets(1), interface_of, as_integer, &
+      call write_integers(file, cell_group//interface_sets(1), interface_of(:cells), as_integer, &
          'number of the *CONTACT PAIR, from 1')
    end subroutine write_contact_head
 

@@ -280,8 +280,9 @@ contains
       if (i > 0) then
          if (needed(meanings(i)) /= '') then
             ! Its card may be one with an error.
-            if (.not. deck%has_errors()) call deck%warning(data%place(position), ' of *'// &
-               card%name//' is not there without *'//needed(meanings(i))//': it is not printed')
+            if (.not. deck%has_errors()) call deck%warning(data%place(position), key// &
+               ' of *'//card%name//' is not there without *'//needed(meanings(i))//': it is '// &
+               'not printed')
          else if (all(quantities /= meanings(i))) then
             quantities = [quantities, meanings(i)]
          end if

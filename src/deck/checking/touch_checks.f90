@@ -90,20 +90,21 @@ contains
       type(mesh_type), intent(in) :: mesh                     ! sound, not refined
       type(element_sides_type), intent(in) :: sides
       type(touch_type), allocatable, intent(out) :: touches(:)
-      type(touch_type), allocatable :: more(:)
+      type(touch_type), allocatable :: found(:), more(:)
       integer, allocatable :: free(:), nodes(:), others(:)
       !> Nodes in stripes across the longer extent of the mesh, and free sides of each node
       integer, allocatable :: in_stripe(:), of_node(:), stripe_start(:), start(:)
       logical :: is_free(0:size(mesh%node_number))
       real(dp) :: box(4), extent(2), lowest(2)
-      integer :: along, i, j, k, n, partner, s, stripes
+      integer :: along, count_found, i, j, k, n, partner, s, stripes
 
       free = pack([(s, s=1, sides%count)], sides%elements(2, :sides%count) == 0)
       is_free = .false.
       is_free([sides%ends(:, free)]) = .true.
       nodes = pack([(n, n=1, size(is_free) - 1)], is_free(1:))
-      allocate (touches(0))
+      allocate (found(0), touches(0))
       if (size(nodes) == 0) return
+      count_found = 0
       lowest = minval(mesh%coordinates(:, nodes), dim=2)
       extent = maxval(mesh%coordinates(:, nodes), dim=2) - lowest
       along = maxloc(extent, dim=1)
@@ -135,10 +136,13 @@ contains
                   end do
                   more = [(touch_type(n, free(i), others(k), partner), k=1, size(others))]
                end associate
-               touches = [touches, more]
+               if (count_found + size(more) > size(found)) found = [found, found, more]
+               found(count_found + 1:count_found + size(more)) = more
+               count_found = count_found + size(more)
             end do
          end associate
       end do
+      touches = found(:count_found)
    contains
       elemental integer function stripe(x)
          real(dp), intent(in) :: x
