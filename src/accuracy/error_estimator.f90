@@ -367,12 +367,14 @@ contains
          if (q > 0 .and. where == 'MAX') then
             k = maxloc(found%value(q, :), dim=1)
             if (found%node(q, k) > 0) then
-               call copy(record%body_uncertainties(k), q)
                call values_asked_for(check, record, model, interfaces, &
                   simulation%recovery%points%node, values, reason)
-               ! It may be the value of a singular corner.
-               if (maxval(values) > found%value(q, k)) call settle(checks, i, at_corner, &
-                  spread(0.0_dp, 1, 3))
+               checks%value(i) = maxval(values)
+               if (checks%value(i) > found%value(q, k)) then
+                  call settle(checks, i, at_corner, spread(0.0_dp, 1, 3))
+               else
+                  call copy(record%body_uncertainties(k), q)
+               end if
                return
             end if
          end if

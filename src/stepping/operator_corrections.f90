@@ -226,7 +226,8 @@ contains
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
       if (self%law_failed) then
-         call set_error(error, status_no_convergence, 'a material finds no stress for its strain')
+         call set_error(error, status_no_convergence, 'the law of a material finds no stress '// &
+            'for its strain; are its data in the units of the deck?')
          return
       end if
       self%is_settled = self%left_over <= settled
@@ -319,7 +320,7 @@ contains
          state%history, before%history), 2)
    end function largest_growth
 
-   !> Whether bodies yield in the last pass, or find no stress there.
+   !> Whether bodies yield in the last pass, or find no stress there where nothing creeps.
    pure logical function yields(self, model)
       class(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -328,7 +329,8 @@ contains
       yields = any(model%materials%law%strains(1) > 0) .and. allocated(self%history%after)
       if (.not. yields) return
       growth = self%points%largest_growth(model%mesh, self%history%after, self%history%before)
-      yields = self%law_failed .or. any(growth(1, :) > 0.0_dp)
+      yields = any(growth(1, :) > 0.0_dp)
+      if (self%law_failed) yields = all(model%materials%law%strains(2) == 0)
    end function yields
 
    !> Corrections that temperatures and displacements at the end of a stage ask for.

@@ -5,7 +5,9 @@ import re
 import h5py
 import numpy as np
 import pytest
+from blocks import without_unused_surfaces, write
 from deck_runs import INPUT, copy_deck, run
+from physics import material, mesh
 
 RODS, FLANGE = (INPUT / "examples" / f"{name}.inp" for name in ("two_rods", "bolted_flange"))
 STEADY = "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT"
@@ -77,6 +79,17 @@ def test_a_complete_finer_run_estimates_what_follows_a_path(tmp_path, name):
     for quantity, words in told:
         assert is_no_number(quantity, words) or words.startswith(" +- ") or (
             quantity == "peak pressure" and words.startswith(" (no estimate: at a corner)")), quantity
+
+
+@pytest.mark.parametrize("held", ["BODY.LEFT, 1, 2", "BODY.LEFT, 1"], ids=["clamped", "smooth"])
+def test_a_largest_value_at_a_singular_corner_has_no_uncertainty(tmp_path, held):
+    deck = write(tmp_path / "plate.inp", without_unused_surfaces([
+        *mesh("BODY", [0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 0.5, 1.0], "CPE8"), *material("BODY", (1000.0, 0.3)),
+        "*BOUNDARY", held, "BODY.BOTTOM, 2", "*STEP", "*STATIC", "1., 1.", "*DSLOAD", "BODY.RIGHT, P, -1.",
+        "*END STEP", "*VERIFY, KIND=ANALYTIC, SOURCE=none", "MISES, MAX, LAST, 1., 10., ABS"]))
+    assert run("run", deck, "--out", tmp_path).returncode == 0
+    found = re.search(r"found: +\S+(.*)", deck.with_suffix(".lst").read_text())[1]
+    assert found.startswith(" (no estimate: at a corner)" if held.endswith("2") else " +- ")
 
 
 def test_a_number_with_an_uncertainty_has_no_reason(tmp_path):

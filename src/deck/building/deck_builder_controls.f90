@@ -301,10 +301,13 @@ contains
 
          needed = ''
          associate (law => deck%model%materials%law)
-            if (any(quantity == [print_peeq, print_plastic]) .and. .not. any(law%strains(1) > 0)) &
-               needed = 'PLASTIC'
-            if (any(quantity == [print_ceeq, print_creep]) .and. .not. any(law%strains(2) > 0)) &
-               needed = 'CREEP'
+            select case (quantity)
+            case (print_peeq, print_plastic)
+               if (.not. any(law%strains(1) > 0)) needed = 'PLASTIC'
+            case (print_ceeq, print_creep)
+               if (.not. any(law%strains(2) > 0)) needed = 'CREEP'
+            case default   ! of all materials
+            end select
          end associate
       end function needed
    end subroutine take_quantity
