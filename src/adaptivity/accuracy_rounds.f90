@@ -315,10 +315,12 @@ contains
       if (step > 0) excess = over_target(self%findings(d, step))
    end function excess
 
-   !> An uncertainty over what its target allows; huge where it is unknown.
+   !> An uncertainty over what its target allows; huge where it is unknown, 0 without a value.
    pure real(dp) function over_target(finding)
       type(finding_type), intent(in) :: finding
 
+      over_target = 0.0_dp
+      if (.not. finding%is_there) return
       over_target = huge(1.0_dp)
       if (.not. ieee_is_nan(finding%uncertainty)) over_target = finding%uncertainty/finding%allowed
    end function over_target

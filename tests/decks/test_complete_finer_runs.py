@@ -88,5 +88,7 @@ def test_uncertainties_at_every_increment_hold_the_errors(tmp_path, way):
             assert np.isfinite(known[body]["temperature"][:]).all(), body
     assert len(holds) >= 4 * 8 and np.mean(holds) >= 0.95
     listing = found.with_suffix(".lst").read_text()
+    without = listing.count("(no estimate:")
     assert listing.count("found: ") == 6 and listing.count(" +- ") >= 6
-    assert "(no estimate:" not in listing
+    # Stress is largest at the node of the spring, where it has no limit.
+    assert without == listing.count(" (no estimate: at a corner)\n") == (way == "a spring")
