@@ -20,8 +20,6 @@ module body_maxima
    private
    public :: body_maxima_type
 
-   logical, parameter :: is_of_temperature(*) = maxima%unit == 'temperature'
-
    !> Maxima of the bodies of a mesh.
    type :: body_maxima_type
       !> (maxima, bodies) where there is none -huge, of strains 0
@@ -55,8 +53,8 @@ contains
       end if
       allocate (self%counts(size(maxima), size(is_sound)))
       do q = 1, size(maxima)
-         self%counts(q, :) = is_sound
-         if (is_of_temperature(q)) self%counts(q, :) = allocated(record%fields%reaction_heat)
+         self%counts(q, :) = merge(allocated(record%fields%reaction_heat), is_sound, &
+            maxima(q)%unit == 'temperature')
       end do
       call find_places(self, model%mesh, simulation%recovery%points, record%fields)
    end subroutine find
@@ -165,7 +163,7 @@ contains
       is_larger = .false.
       if (.not. any(self%is_singular)) return
       do q = 1, size(maxima)
-         if (is_of_temperature(q)) cycle
+         if (maxima(q)%unit == 'temperature') cycle
          values = point_values(trim(maxima(q)%name), fields, points%node)
          if (size(values) == 0) cycle
          do e = 1, size(mesh%element_kind)
