@@ -6,6 +6,7 @@ module table_uncertainties
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
    use divided_mesh, only: divided_mesh_type
+   use due_output, only: table_is_due
    use element_kinds, only: element_node_count
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -21,7 +22,7 @@ module table_uncertainties
 
 contains
 
-   !> Gives an increment the uncertainties of its fields, sums and contact points.
+   !> Gives an increment the uncertainties of what the tables of its step print.
    subroutine find_table_uncertainties(divided, simulation, model, iteration, record)
       type(divided_mesh_type), intent(in) :: divided           !! solved to the end of the increment
       type(simulation_type), intent(in) :: simulation          !! the run at that end
@@ -31,18 +32,20 @@ contains
       type(contact_points_type), allocatable :: finer(:), points(:)
       integer :: i
 
-      record%field_uncertainties = fields_of(divided, simulation, model%mesh, iteration, &
-         record%fields)
-      associate (step => model%steps(record%step), fine => divided%model%mesh)
+      associate (step => model%steps(record%step), mesh => model%mesh, fine => divided%model%mesh)
          if (allocated(step%node_prints)) then
+            record%field_uncertainties = fields_of(divided, simulation, mesh, iteration, &
+               record%fields)
             allocate (record%total_uncertainties(3, size(step%node_prints)))
             do i = 1, size(step%node_prints)
                record%total_uncertainties(:, i) = totals_of(record%fields, &
-                  step%node_prints(i)%members(model%mesh%node_sets, size(model%mesh%node_body)), &
+                  step%node_prints(i)%members(mesh%node_sets, size(mesh%node_body)), &
                   divided%record%fields, step%node_prints(i)%members(fine%node_sets, &
                   size(fine%node_body)), iteration)
             end do
          end if
+         if (.not. table_is_due(step%contact_print_frequency, step%contact_print_points, record, &
+            model)) return
       end associate
       call simulation%bodies%views(points)
       call divided%interfaces(finer)

@@ -169,11 +169,11 @@ module records
       type(uncertainty_type), allocatable :: check_uncertainties     !! *VERIFY cards, likewise
       !> With ERRORS=FULL of `history_estimated` of increment_quantities; else unallocated
       type(uncertainty_type), allocatable :: history_uncertainties
-      !> With ERRORS=FULL of displacements and temperatures; else unallocated
+      !> With ERRORS=FULL of displacements and temperatures, for *NODE PRINT; else unallocated
       type(field_record_type), allocatable :: field_uncertainties
       !> (3, *NODE PRINT cards) of the sums of RF1, RF2 and RFL, likewise
       real(dp), allocatable :: total_uncertainties(:, :)
-      type(contact_record_type), allocatable :: contact_uncertainties(:)   !! of points, likewise
+      type(contact_record_type), allocatable :: contact_uncertainties(:)   !! for *CONTACT PRINT
       !> Unallocated where the stress is.
       type(error_record_type) :: stress_error = error_record_type()
       !> Unallocated where the heat flux is.

@@ -8,6 +8,7 @@ module energies
    use material_laws, only: law_points_type
    use material_points, only: point_history_type
    use model, only: model_type
+   use point_fields, only: point_fields_type
    use point_rules, only: most => most_points_of_rule
    use records, only: increment_record_type
    use simulation, only: simulation_type
@@ -16,15 +17,6 @@ module energies
    implicit none
    private
    public :: add_friction_work, measure_energies
-
-   !> What the integration points of all elements have in a state.
-   type :: point_fields_type
-      real(dp) :: energies(3) = 0.0_dp         !! stored, dissipated by plasticity and by creep
-      real(dp), allocatable :: volume(:)       !! (points) that each stands for [length^3]
-      real(dp), allocatable :: stress(:, :)    !! (4, points) [stress]
-      real(dp), allocatable :: elastic(:, :)   !! (4, points) strain by the stress
-      real(dp), allocatable :: free(:, :)      !! (4, points) strain by the temperature
-   end type point_fields_type
 
 contains
 
@@ -39,14 +31,14 @@ contains
          slips(run%bodies, next%contact)))
    end subroutine add_friction_work
 
-   !> Adds the work of loads, interferences and temperatures in an increment, and records all
-   !> energies at its end.
+   !> Adds the work of loads, interferences and temperatures in an increment that is to be accepted,
+   !> and records all energies at its end, where the next one begins.
    subroutine measure_energies(run, model, next, record)
       type(simulation_type), intent(inout) :: run            !! at the start of the increment
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(inout) :: next       !! at its end
       type(increment_record_type), intent(inout) :: record
-      type(point_fields_type) :: after, before
+      type(point_fields_type) :: after
       real(dp) :: forces(2, size(next%temperature))
 
       forces = record%fields%external_force
@@ -54,10 +46,13 @@ contains
          run%bodies%points%partners, reshape(run%state%force_load, shape(forces)))
       next%work(2) = next%work(2) + dot_product([forces], next%displacement - &
          run%state%displacement)/2 + work_of_overlaps(run%bodies%points, run%state, next)
-      if (heats(model, run%state, next)) before = fields_of(run, model, run%state)
       after = fields_of(run, model, next)
-      if (allocated(before%stress)) next%work(2) = next%work(2) + work_of_temperatures(before, &
-         after)
+      if (heats(model, run%state, next)) then
+         if (.not. allocated(run%point_fields%stress)) run%point_fields = fields_of(run, model, &
+            run%state)
+         next%work(2) = next%work(2) + work_of_temperatures(run%point_fields, after)
+      end if
+      run%point_fields = after
       record%energies = [after%energies, next%work]
    end subroutine measure_energies
 

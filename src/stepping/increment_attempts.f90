@@ -6,7 +6,7 @@ module increment_attempts
    use constraint_checks, only: check_prescribed
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
-   use energies, only: add_friction_work, measure_energies
+   use energies, only: add_friction_work
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, measure_strains
@@ -84,8 +84,6 @@ contains
                model, stage, attempt%before, attempt%next, attempt%record)
          end if
          if (.not. allocated(error)) call check_strains(run, model, attempt, error)
-         if (run%corrections%has_laws .and. stage%strains .and. .not. allocated(error)) call &
-            measure_energies(run, model, attempt%next, attempt%record)
          if (run%branch%is_followed .and. .not. allocated(error)) then
             if (any(differ(attempt%next%omega, run%branch%point%omega))) call set_error(error, &
                status_no_convergence, 'the increment leads to another branch')

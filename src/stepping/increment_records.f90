@@ -335,6 +335,7 @@ contains
          allocate (record%element(n), record%point(n), record%position(2, n))
          if (state%has_mechanics) allocate (record%stress(4, n))
          if (with_heat) allocate (record%heat_flux(2, n))
+         if (allocated(state%history)) allocate (record%inelastic_strain(10, n))
          last = 0
          do i = 1, size(members)
             first = last + 1
@@ -342,6 +343,9 @@ contains
             record%element(first:last) = members(i)
             record%point(first:last) = [(g, g=1, last - first + 1)]
             record%position(:, first:last) = fields%positions(mesh, members(i))
+            if (.not. allocated(state%history)) cycle
+            call fields%take_strains(mesh, members(i), state%history, strains)
+            record%inelastic_strain(:, first:last) = transpose(strains(:last - first + 1, :))
          end do
          if (state%has_mechanics) then
             if (any(varies(model%materials))) call fields%set_temperature(mesh, &
@@ -353,15 +357,6 @@ contains
                   model%initial_temperature, history, response)
                last = i - 1 + point_count(mesh%element_kind(record%element(i)))
                record%stress(:, i:last) = transpose(response%stress(:last - i + 1, :))
-            end do
-         end if
-         if (allocated(state%history)) then
-            allocate (record%inelastic_strain(10, n))
-            do i = 1, n
-               if (record%point(i) > 1) cycle
-               call fields%take_strains(mesh, record%element(i), state%history, strains)
-               last = i - 1 + point_count(mesh%element_kind(record%element(i)))
-               record%inelastic_strain(:, i:last) = transpose(strains(:last - i + 1, :))
             end do
          end if
          if (with_heat) then

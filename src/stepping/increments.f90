@@ -4,6 +4,7 @@ module increments
    use branch_steps, only: accept_point, find_point, shorten_step
    use cycles, only: close_cycle
    use due_output, only: is_nth
+   use energies, only: measure_energies
    use errors, only: error_type, set_error, status_no_convergence
    use increment_attempts, only: attempt_increment, attempt_type, begin_record
    use kinds, only: dp
@@ -12,7 +13,7 @@ module increments
    use records, only: add_attempts, increment_record_type, note_failure
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
-   use steps, only: adapts_increments, solves_heat
+   use steps, only: adapts_increments, solves_heat, solves_mechanics
    use text, only: append, counted, percent, to_text
    use touch_instants, only: touch_search_type
    implicit none
@@ -79,6 +80,8 @@ contains
       call warn_of_pivot(run, record)
       run%sizes%corrections = run%sizes%corrections + record%corrections
       run%sizes%most_corrections = max(run%sizes%most_corrections, record%corrections)
+      if (run%corrections%has_laws .and. solves_mechanics(model%steps(record%step)%analysis)) &
+         call measure_energies(run, model, attempt%next, record)
       call accept_increment(attempt%next, model, run%state, record)
       call move_alloc(attempt%known, run%known)
       call move_alloc(attempt%undecided, run%undecided)

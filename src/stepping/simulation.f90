@@ -18,6 +18,7 @@ module simulation
    use material_points, only: history_count
    use model, only: model_type
    use operator_corrections, only: corrections_type
+   use point_fields, only: point_fields_type
    use reduced_bodies, only: reduced_bodies_type
    use run_sizes, only: measure_factors, measure_steps, run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
@@ -48,6 +49,8 @@ module simulation
       type(run_seconds_type) :: seconds             !! where the time went
       type(run_size_type) :: sizes                  !! sizes over all steps
       type(solution_state_type), allocatable :: cycle_before   !! at the end of the last cycle
+      !> Of the state, where energies were measured; unallocated arrays where they were not
+      type(point_fields_type) :: point_fields
       character(:), allocatable :: undecided        !! what was last warned of
       real(dp) :: pivot_told = 1.0_dp               !! smallest pivot that was warned of
       character(:), allocatable :: runaway          !! last thermal runaway of an attempt, in words
