@@ -80,8 +80,9 @@ contains
       call warn_of_pivot(run, record)
       run%sizes%corrections = run%sizes%corrections + record%corrections
       run%sizes%most_corrections = max(run%sizes%most_corrections, record%corrections)
-      if (run%corrections%has_laws .and. solves_mechanics(model%steps(record%step)%analysis)) &
+      if (run%corrections%has_laws .and. solves_mechanics(model%steps(record%step)%analysis)) then
          call measure_energies(run, model, attempt%next, record)
+      end if
       call accept_increment(attempt%next, model, run%state, record)
       call move_alloc(attempt%known, run%known)
       call move_alloc(attempt%undecided, run%undecided)
