@@ -15,7 +15,7 @@ module accuracy_rounds
    use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use kinds, only: dp
    use model, only: model_type
-   use no_estimates, only: at_corner, grows, no_reason, of_path, reason_of_run, remains
+   use no_estimates, only: at_corner, grows, no_reason, of_path, of_sliding, reason_of_run, remains
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, uncertainty_type
    use text, only: to_text
@@ -94,7 +94,7 @@ contains
       logical :: has_friction
       integer :: i, s
 
-      needs_full = reason_of_run(model) == of_path
+      needs_full = any(reason_of_run(model) == [of_sliding, of_path])
       has_friction = any(model%interactions(model%contacts%interaction)%friction%coefficient > &
          0.0_dp)
       do s = 1, size(model%steps)

@@ -17,6 +17,7 @@ module connections
    use model, only: model_type
    use mortar_segments, only: hat_geometry_type
    use overlap_laws, only: overlap_law_type
+   use sliding_faces, only: place_points
    use sum_lists, only: sum_list_type
    use temperature_laws, only: face_temperatures_type, law_at, law_jumps
    use transforms, only: partner_type
@@ -68,8 +69,8 @@ module connections
       !> (m) how faces overlap; unallocated where all are hard
       type(overlap_law_type), allocatable :: overlap(:)
       real(dp), allocatable :: reach(:)   !! (m) gap from which on they press [length]
-      !> (m) whether the interface is removed: its contact points are open whatever their gaps, and
-      !> have neither friction nor conductance
+      !> (m) whether the interface is removed, or no master is opposite: its contact points are open
+      !> whatever their gaps, and have no conductance
       logical, allocatable :: removed(:)
       !> (n) heat of friction of points%heated, and the friction that makes it where they slide out
       !> of the plane: in the plane these have none
@@ -81,16 +82,28 @@ module connections
 
 contains
 
-   !> Matches the surfaces of one *CONTACT PAIR, with the thickness of the slave's first element.
-   !> Error: as make_contact_points.
-   subroutine match_surfaces(model, i, points, error)
+   !> Matches the surfaces of one *CONTACT PAIR, with the thickness of the slave's first element; the
+   !> displaced ones where it follows sliding.
+   !> Error: as make_contact_points and place_points.
+   subroutine match_surfaces(model, i, points, error, displacement)
       type(model_type), intent(in) :: model
       integer, intent(in) :: i                            !! index into model%contacts
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
+      real(dp), intent(in), optional :: displacement(:)   !! (2 nodes), without it none [length]
+      real(dp) :: none(2*size(model%mesh%node_number))
 
-      call make_contact_points(model%mesh, model%contacts(i), &
-         thickness_at(model, model%contacts(i)%slave), points, error)
+      associate (contact => model%contacts(i), thickness => thickness_at(model, &
+         model%contacts(i)%slave))
+         if (.not. contact%follows_sliding) then
+            call make_contact_points(model%mesh, contact, thickness, points, error)
+         else if (present(displacement)) then
+            call place_points(model%mesh, contact, thickness, displacement, points, error)
+         else
+            none = 0.0_dp
+            call place_points(model%mesh, contact, thickness, none, points, error)
+         end if
+      end associate
    end subroutine match_surfaces
 
    !> Matches the surfaces of one *TIE.
@@ -279,6 +292,10 @@ contains
                model%contacts(i)%interaction, interaction%friction)
          end associate
       end do
+      if (allocated(points%is_beyond)) then
+         laws%removed = laws%removed .or. points%is_beyond
+         where (points%is_beyond) laws%conductance = conductance_law_type()
+      end if
       allocate (laws%reach(size(points%weight)), source=0.0_dp)
       if (allocated(laws%overlap)) laws%reach = laws%overlap%reach()
       laws%nodal_friction = laws%friction

@@ -60,6 +60,10 @@ module reduced_bodies
       type(sum_list_type) :: rigid !! (motions, 2 nodes) that the supports leave free
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
+      !> (2 nodes) where contact points lie on displaced faces; unallocated where none does [length]
+      real(dp), allocatable :: faces_at(:)
+      !> All of them as they were matched last, where some follow sliding
+      type(contact_points_type), allocatable, private :: matched(:), matched_ties(:)
       ! Key of the numbering: supports, contact points with friction, prescribed temperatures.
       logical, allocatable, private :: prescribed(:)               !! (2 nodes)
       logical, allocatable, private :: has_friction(:)       !! (m)
@@ -69,6 +73,8 @@ module reduced_bodies
       procedure :: view
       procedure :: views
       procedure :: enter_step
+      procedure :: follow_faces
+      procedure :: farthest_slide
       procedure :: number
       procedure :: assemble_steps
       procedure :: assemble
@@ -102,6 +108,11 @@ contains
             call match_tie(model, i, self%ties(i), error)
             if (allocated(error)) return
          end do
+      end if
+      if (any(self%interfaces%follows_sliding)) then
+         allocate (self%faces_at(2*size(model%mesh%node_number)), source=0.0_dp)
+         self%matched = self%interfaces
+         self%matched_ties = self%ties
       end if
       call join_points(self%interfaces, self%ties, model, self%points)
       deallocate (self%ties)
@@ -203,6 +214,51 @@ contains
          call self%number(model, prescribed, held_temperature, mechanics, heat)
       end associate
    end subroutine enter_step
+
+   !> Places the contact points of faces that slide where displacements take these, and numbers the
+   !> unknowns anew.
+   !> Errors: as match_surfaces.
+   subroutine follow_faces(self, model, step, displacement, error)
+      class(reduced_bodies_type), intent(inout) :: self !! in a step, with faces that slide
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: step                            !! its index
+      real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(self%matched)
+         if (.not. model%contacts(i)%follows_sliding) cycle
+         call match_surfaces(model, i, self%matched(i), error, displacement)
+         if (allocated(error)) return
+      end do
+      self%faces_at = displacement
+      self%interfaces = self%matched
+      call join_points(self%interfaces, self%matched_ties, model, self%points)
+      self%laws = laws_of_step(model, self%points, step)
+      if (allocated(self%prescribed)) self%has_friction = self%laws%friction%coefficient > 0.0_dp
+      call self%number(model, self%prescribed, self%held_temperature, allocated(self%prescribed), &
+         allocated(self%held_temperature))
+   end subroutine follow_faces
+
+   !> How far contact points that follow sliding have moved against their masters from where they
+   !> were placed, the farthest one, as a part of the spacing of contact points; 0 without any.
+   pure real(dp) function farthest_slide(self, displacement)
+      class(reduced_bodies_type), intent(in) :: self !! prepared
+      real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
+      real(dp) :: moved(size(self%points%slave))
+      integer :: i
+
+      farthest_slide = 0.0_dp
+      if (.not. allocated(self%faces_at)) return
+      moved = norm2(self%points%relative(displacement - self%faces_at), dim=1)
+      where (self%points%is_beyond) moved = 0.0_dp
+      do i = 1, size(self%interfaces)
+         if (.not. self%interfaces(i)%follows_sliding) cycle
+         associate (first => self%points%interface_start(i), edge => self%interfaces(i)%edge)
+            farthest_slide = max(farthest_slide, maxval(moved(first:first + size(edge) - 1)/edge))
+         end associate
+      end do
+   end function farthest_slide
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
    subroutine number(self, model, prescribed, held_temperature, mechanics, heat)

@@ -16,13 +16,14 @@ module contact_pairs
    use kinds, only: dp
    use mesh, only: extent_of, mesh_type
    use mortar_points, only: other_chains_type, set_mortar_points
+   use node_to_side, only: set_nodes_on_sides
    use node_pairs, only: goes_on, keep_points, set_node_pairs
    use rigid_masters, only: check_facing, follow_reference, opposite_line, sampled_line
    use surface_chains, only: align_chain, chain_faces, facing_chain, surface_chain_type
    use text, only: to_text
    implicit none
    private
-   public :: make_contact_points, make_tie_points, touching
+   public :: find_opposite_points, make_contact_points, make_tie_points, touching
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
    !> Part of the largest coordinate within which faces touch. Coordinates written with 15 digits,
@@ -44,28 +45,14 @@ contains
       real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
-      type(surface_chain_type), allocatable :: masters(:), slaves(:)
+      type(surface_chain_type), allocatable :: slaves(:)
       logical, allocatable :: in_set(:)
       real(dp) :: largest                                     ! coordinate [length]
 
-      associate (slave_surface => mesh%surfaces(definition%slave), &
-         master_surface => mesh%surfaces(definition%master))
-         call chain_faces(mesh, slave_surface, slaves, error)
-         if (allocated(error)) return
-         points%name = definition%name
-         points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
-         points%to_end = [huge(1.0_dp), huge(1.0_dp)]
-         points%at_corner = [.false., .false.]
-         if (allocated(master_surface%drawing)) then
-            call set_rigid_points(mesh, definition, master_surface%drawing, slaves, thickness, &
-               points, error)
-         else
-            call chain_faces(mesh, master_surface, masters, error)
-            if (allocated(error)) return
-            call find_points(mesh, definition, slaves, masters, thickness, points, error)
-         end if
-         if (allocated(error)) return
-      end associate
+      call chain_faces(mesh, mesh%surfaces(definition%slave), slaves, error)
+      if (allocated(error)) return
+      call find_opposite_points(mesh, definition, slaves, thickness, points, error)
+      if (allocated(error)) return
       largest = maxval(abs(mesh%coordinates))
       points%finest_gap = max(points%finest_gap, single*largest)
       where (abs(points%initial_gap) <= touching*largest) points%initial_gap = 0.0_dp
@@ -78,6 +65,35 @@ contains
       end if
       if (definition%has_clearance) points%initial_gap = definition%clearance
    end subroutine make_contact_points
+
+   !> The contact points where lines of the slave lie opposite the master, on a mesh as it is or as
+   !> it is displaced.
+   !> Errors: as make_contact_points.
+   subroutine find_opposite_points(mesh, definition, slaves, thickness, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      type(surface_chain_type), intent(in) :: slaves(:)       !! as from chain_faces
+      real(dp), intent(in) :: thickness                       !! as above
+      type(contact_points_type), intent(out) :: points
+      type(error_type), allocatable, intent(out) :: error
+      type(surface_chain_type), allocatable :: masters(:)
+
+      associate (slave_surface => mesh%surfaces(definition%slave), &
+         master_surface => mesh%surfaces(definition%master))
+         points%name = definition%name
+         points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
+         points%to_end = [huge(1.0_dp), huge(1.0_dp)]
+         points%at_corner = [.false., .false.]
+         if (allocated(master_surface%drawing)) then
+            call set_rigid_points(mesh, definition, master_surface%drawing, slaves, thickness, &
+               points, error)
+         else
+            call chain_faces(mesh, master_surface, masters, error)
+            if (allocated(error)) return
+            call find_points(mesh, definition, slaves, masters, thickness, points, error)
+         end if
+      end associate
+   end subroutine find_opposite_points
 
    !> The contact points of a surface and the line of a rigid body: mortar points, or with
    !> PAIRING=NODES the slave's nodes and the points of the line that their normals meet.
@@ -94,7 +110,7 @@ contains
       type(mesh_type) :: drawn
       type(surface_chain_type) :: master
       real(dp) :: ends(2, 2)
-      integer :: i
+      integer :: covered, i
 
       do i = 1, size(slaves)
          pieces(i) = points
@@ -121,11 +137,12 @@ contains
             pieces(i))
          call follow_reference(drawing, size(mesh%node_number), drawn%coordinates, pieces(i))
       end do
-      call check_covered(drawn, definition, slaves(i - 1), master, sum([(size(pieces(i)%slave), &
-         i=1, size(pieces))]), error)
+      covered = sum([(size(pieces(i)%slave), i=1, size(pieces))])
+      if (definition%follows_sliding .and. covered == 0) return
+      call check_covered(drawn, definition, slaves(size(slaves)), master, covered, error)
       if (allocated(error)) return
       call join_pieces(mesh, definition, slaves, [(i, i=1, size(slaves))], pieces, points, error)
-      if (allocated(error)) return
+      if (allocated(error) .or. definition%follows_sliding) return
       call check_idle(drawn, definition, slaves, [master], reshape([(size(pieces(i)%slave) > 0, &
          i=1, size(pieces))], [size(pieces), 1]), points%idle, error)
    end subroutine set_rigid_points
@@ -140,7 +157,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(contact_points_type) :: pieces(size(slaves)*size(masters))
       type(surface_chain_type) :: master
-      integer :: i, j, k
+      integer :: covered, i, j, k
 
       do i = 1, size(slaves)
          do j = 1, size(masters)
@@ -149,7 +166,7 @@ contains
             if (allocated(error)) return
          end do
       end do
-      if (definition%pairing /= pairing_surfaces) then
+      if (definition%pairing /= pairing_surfaces .and. .not. definition%follows_sliding) then
          call pair_lines(mesh, definition, slaves, masters, thickness, points, error)
          if (allocated(error) .or. allocated(points%slave)) return
       end if
@@ -160,17 +177,23 @@ contains
          call check_faces(mesh, definition, slaves(i), master, error)
          if (allocated(error)) return
          pieces(k) = points
-         call set_mortar_points(mesh, slaves(i), master, others_of(slaves, i, masters, j), &
-            thickness, pieces(k))
+         if (definition%pairing == pairing_nodes) then
+            call set_nodes_on_sides(mesh, definition, slaves(i), master, thickness, pieces(k), error)
+            if (allocated(error)) return
+         else
+            call set_mortar_points(mesh, slaves(i), master, others_of(slaves, i, masters, j), &
+               thickness, pieces(k))
+         end if
          call find_ends(mesh, master, pieces(k))
       end do
+      covered = sum([(size(pieces(k)%slave), k=1, size(pieces))])
+      if (definition%follows_sliding .and. covered == 0) return
       call check_covered(mesh, definition, slaves(1), aligned(mesh, definition, slaves(1), &
-         masters(facing_chain(mesh, slaves(1), masters))), sum([(size(pieces(k)%slave), k=1, &
-         size(pieces))]), error)
+         masters(facing_chain(mesh, slaves(1), masters))), covered, error)
       if (allocated(error)) return
       call join_pieces(mesh, definition, slaves, [(slave_of(k), k=1, size(pieces))], pieces, &
          points, error)
-      if (allocated(error)) return
+      if (allocated(error) .or. definition%follows_sliding) return
       call check_idle(mesh, definition, slaves, masters, transpose(reshape([(size(pieces(k)%slave) &
          > 0, k=1, size(pieces))], [size(masters), size(slaves)])), points%idle, error)
    contains

@@ -30,6 +30,8 @@ module contact_points
       real(dp), allocatable :: normal(:, :)    !! (2, m) common unit normal, outward from the slave
       real(dp), allocatable :: tangent(:, :)   !! (2, m) unit tangent towards growing s
       real(dp), allocatable :: initial_gap(:)  !! (m) h [length]
+      !> (m) whether no master is opposite; unallocated where all have one
+      logical, allocatable :: is_beyond(:)
    contains
       procedure :: part
       procedure :: turns
@@ -80,6 +82,7 @@ module contact_points
       logical :: about_axis = .false.          !! whether the model is axisymmetric
       !> Whether the master is a rigid surface: the master nodes are its reference node
       logical :: is_rigid = .false.
+      logical :: follows_sliding = .false.     !! whether they lie on displaced faces (sliding_faces)
    contains
       procedure :: ends
       procedure :: on_one_piece
@@ -120,6 +123,15 @@ contains
       call row%difference%reserve(size(row%slave), 2*size(row%slave))
       do i = 1, size(rows)
          call row%difference%add_sums(rows(i)%difference)
+      end do
+      if (allocated(row%is_beyond)) deallocate (row%is_beyond)
+      do i = 1, size(rows)
+         if (.not. allocated(rows(i)%is_beyond)) cycle
+         if (.not. allocated(row%is_beyond)) allocate (row%is_beyond(size(row%slave)), &
+            source=.false.)
+         associate (before => sum([(size(rows(k)%slave), k=1, i - 1)]))
+            row%is_beyond(before + 1:before + size(rows(i)%slave)) = rows(i)%is_beyond
+         end associate
       end do
       row%along = sum_list_type()
       row%across = sum_list_type()
@@ -209,6 +221,7 @@ contains
       points%normal = self%normal(:, first:last)
       points%tangent = self%tangent(:, first:last)
       points%initial_gap = self%initial_gap(first:last)
+      if (allocated(self%is_beyond)) points%is_beyond = self%is_beyond(first:last)
    end function part
 
    !> Whether the normal turns along the face of some contact point.

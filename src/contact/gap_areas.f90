@@ -31,6 +31,9 @@ contains
       worst = 0
       do k = 1, size(points%edge) - 1
          if (.not. points%on_one_piece(k, k + 1)) cycle
+         if (allocated(points%is_beyond)) then
+            if (any(points%is_beyond(k:k + 1))) cycle
+         end if
          areas = facing_areas(points, k)
          if (minval(areas) <= 0.0_dp) cycle
          part = maxval(areas)/minval(areas) - 1.0_dp

@@ -73,7 +73,7 @@ contains
       real(dp) :: part(size(points%edge))
 
       warning = ''
-      if (points%pairing /= pairing_nodes .or. points%is_rigid) return
+      if (points%pairing /= pairing_nodes .or. points%is_rigid .or. points%follows_sliding) return
       call find_offsets(mesh, points, part, words)
       if (count(part > small_offset) == 0) return
       warning = 'contact pair '//points%name//': '//words// &

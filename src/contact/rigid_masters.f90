@@ -18,7 +18,7 @@ module rigid_masters
    use text, only: to_text
    implicit none
    private
-   public :: check_facing, follow_reference, opposite_line, sampled_line
+   public :: add_points, check_facing, follow_reference, opposite_line, sampled_line
 
 contains
 
@@ -85,9 +85,9 @@ contains
 
    !> Adds nodes to a mesh.
    pure subroutine add_points(x, mesh, nodes)
-      real(dp), intent(in) :: x(:, :)                  ! (2, n) [length]
+      real(dp), intent(in) :: x(:, :)                  !! (2, n) [length]
       type(mesh_type), intent(inout) :: mesh
-      integer, allocatable, intent(out) :: nodes(:)    ! (n)
+      integer, allocatable, intent(out) :: nodes(:)    !! (n) their indexes
       integer :: i, n
 
       n = size(mesh%node_number)

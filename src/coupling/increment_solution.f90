@@ -10,7 +10,7 @@ module increment_solution
       contact_system_type
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
-   use edge_heat, only: joined_conductance
+   use edge_heat, only: edge_heat_type, joined_conductance
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use fixed_point, only: pass_type
    use friction_heating, only: begin_friction, nodal_friction_heat
@@ -29,7 +29,7 @@ module increment_solution
    use text, only: to_text
    implicit none
    private
-   public :: begin_increment, load_points, solve_points, recover_fields
+   public :: begin_increment, carry_to_faces, load_points, solve_points, recover_fields
 
    integer, parameter :: of_heat = 1, of_mechanics = 2   !! places of known loads
 
@@ -197,6 +197,38 @@ contains
          data%friction%duration = trial%next%increment_size
       end associate
    end subroutine begin_increment
+
+   !> Carries a state over to contact points that were placed anew on faces that slide: what they
+   !> have of its displacements and temperatures where they are now. Slip counts on, and a force
+   !> keeps its direction along the face.
+   pure subroutine carry_to_faces(bodies, state)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(solution_state_type), intent(inout) :: state
+      real(dp), dimension(size(state%omega)) :: jump, normal, tangential
+      logical :: moves(size(state%omega))
+      integer :: i
+
+      do i = 1, size(bodies%interfaces)
+         moves(bodies%points%interface_start(i):bodies%points%interface_start(i + 1) - 1) = &
+            bodies%interfaces(i)%follows_sliding
+      end do
+      tangential = tangential_positions(bodies%points, bodies%held_direction, state%displacement)
+      normal = sum(bodies%points%normal*bodies%points%relative(state%displacement), dim=1)
+      jump = bodies%points%jumps(state%temperature)
+      state%edge = edge_heat_type()
+      associate (contact => state%contact)
+         where (moves)
+            state%jump = jump
+            contact%reference = contact%reference + tangential - contact%tangential
+            contact%slip_origin = contact%slip_origin + tangential - contact%tangential
+            contact%tangential = tangential
+            contact%gap = bodies%points%initial_gap - normal - bodies%laws%reach
+         end where
+         if (allocated(contact%approach)) then
+            where (moves) contact%approach = normal
+         end if
+      end associate
+   end subroutine carry_to_faces
 
    !> Contact points that the step removes are open, those without friction slip freely.
    pure subroutine adapt_contact(bodies, contact)

@@ -32,6 +32,7 @@ module contact_definitions
       integer :: card = 0                     !! card image of the *CONTACT PAIR or *TIE
       integer :: interaction = 0              !! index into model%interactions
       integer :: pairing = pairing_by_faces   !! PAIRING=
+      logical :: follows_sliding = .false.    !! SLIDING=FINITE: points of the displaced faces
       logical :: has_clearance = .false.      !! whether *CLEARANCE is in place of the geometry
       real(dp) :: clearance = 0.0_dp     !! its gap of all contact points, negative overlap [length]
       logical :: adjusts = .false.            !! ADJUST=: some slave nodes start without a gap

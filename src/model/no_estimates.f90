@@ -19,12 +19,13 @@ module no_estimates
    integer, parameter, public :: of_path = 7, of_step = 8
    ! Of the finer mesh.
    integer, parameter, public :: not_on_finer_mesh = 9, no_finer_value = 10
-   integer, parameter, public :: reason_count = 10
+   integer, parameter, public :: of_sliding = 11   !! of contact points that follow sliding: of_path
+   integer, parameter, public :: reason_count = 11
 
    character(*), parameter :: words(reason_count) = [character(32) :: 'branches', 'ERRORS=NO', &
       'slides beyond its contact points', 'not unique', 'at a corner', &
       'peak grows with the mesh', 'path; ERRORS=FULL', 'inside a step; ERRORS=FULL', &
-      'no solution on a finer mesh', 'not there on a finer mesh']
+      'no solution on a finer mesh', 'not there on a finer mesh', 'SLIDING=FINITE; ERRORS=FULL']
 
 contains
 
@@ -48,6 +49,8 @@ contains
       holds = .false.
       holds(of_branches) = any(model%steps%continuation%is_on)
       holds(errors_off) = model%uncertainty == uncertainty_no
+      holds(of_sliding) = model%uncertainty == uncertainty_last .and. &
+         any(model%contacts%follows_sliding)
       holds(of_path) = model%uncertainty == uncertainty_last .and. follows_path
       reason = first_reason(holds)
    end function reason_of_run

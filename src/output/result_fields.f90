@@ -213,9 +213,13 @@ contains
                call at_nodes%add_totals(of_points, face)
             end if
          end associate
-         do k = self%face_start(i), self%face_start(i + 1) - 1
-            values(self%face_point(k)) = face(self%face_row(k))
-         end do
+         ! Nodes of faces that slide have no contact quantities where nothing is opposite.
+         associate (start => interfaces(i)%at_face_nodes%start)
+            do k = self%face_start(i), self%face_start(i + 1) - 1
+               if (start(self%face_row(k) + 1) > start(self%face_row(k))) &
+                  values(self%face_point(k)) = face(self%face_row(k))
+            end do
+         end associate
       end do
    end function face_values
 

@@ -19,7 +19,7 @@ module deck_preparation
    use loads, only: loads_type
    use messages, only: print_error, print_line
    use model, only: model_type, uncertainty_full, uncertainty_last, uncertainty_no
-   use no_estimates, only: of_branches, of_path, reason_of_run
+   use no_estimates, only: of_branches, of_path, of_sliding, reason_of_run
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
    use held_points, only: first_redundant
    use progress, only: progress_type
@@ -144,6 +144,10 @@ contains
          end if
       end if
       select case (reason_of_run(deck%model))
+      case (of_sliding)
+         call append(deck%model%notes, 'no numerical uncertainties: the last increment alone '// &
+            'does not tell those of faces with SLIDING=FINITE; ERRORS=FULL follows the run once '// &
+            'more')
       case (of_path)
          call append(deck%model%notes, 'no numerical uncertainties: where heat is stored, '// &
             'bodies yield or creep, properties follow temperatures or sections have a '// &

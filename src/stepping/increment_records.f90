@@ -206,7 +206,7 @@ contains
          record%movement = contact%tangential(first:last)
          record%slip = record%movement - contact%slip_origin(first:last)
       end associate
-      record%slide = worst_slide(points, closed, record%movement)
+      if (.not. points%follows_sliding) record%slide = worst_slide(points, closed, record%movement)
       if (allocated(bodies%thermal%matrix%value)) then
          allocate (record%slave_temperature(size(closed)), record%master_temperature( &
             size(closed)), source=0.0_dp)

@@ -90,6 +90,7 @@ contains
          attempt%workspace%of_motions()
       call run%control%accept(model, clock, record)
       call close_cycle(run, model, record)
+      if (allocated(run%is_beyond)) call note_ends(run, model, record)
       if (.not. model%steps(run%control%step)%continuation%is_on) return
       call accept_point(run%branch, record%load_factor)
       run%control%branch_ended = run%branch%is_last
@@ -192,6 +193,33 @@ contains
       if (solves_heat(model%steps(record%step)%analysis)) state%is_out_of_balance = &
          record%heat_imbalance_pointwise > sound_imbalance
    end subroutine accept_increment
+
+   !> Notes, once for each interface, that contact points have left their master or reached one.
+   subroutine note_ends(run, model, record)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(increment_record_type), intent(inout) :: record
+      logical :: goes(size(run%is_beyond))
+      integer :: i, k, way
+
+      do way = 1, 2
+         goes = (run%bodies%points%is_beyond .neqv. run%is_beyond) .and. &
+            (run%bodies%points%is_beyond .eqv. way == 1)
+         do i = 1, size(run%bodies%interfaces)
+            associate (first => run%bodies%points%interface_start(i), &
+               last => run%bodies%points%interface_start(i + 1) - 1)
+               k = first - 1 + findloc(goes(first:last), .true., dim=1)
+               if (k < first .or. run%sliding_told(2*i - 2 + way)) cycle
+               run%sliding_told(2*i - 2 + way) = .true.
+               call append(record%notes, 'contact pair '//run%bodies%interfaces(i)%name//': '// &
+                  trim(merge('the first contact points leave the master', &
+                  'the first contact points reach the master', way == 1))//', at slave node '// &
+                  to_text(model%mesh%node_number(run%bodies%points%slave(k))))
+            end associate
+         end do
+      end do
+      run%is_beyond = run%bodies%points%is_beyond
+   end subroutine note_ends
 
    !> Warns of pivots so small that digits are lost which results need, again where it is a tenth.
    subroutine warn_of_pivot(run, record)

@@ -12,7 +12,7 @@ module restarts
    use records, only: increment_record_type
    use simulation, only: simulation_type
    use solution_state, only: exchange_state
-   use state_tables, only: integers, reals, state_table_type, words
+   use state_tables, only: integers, logicals, reals, state_table_type, words
    use steps, only: solves_heat
    implicit none
    private
@@ -70,7 +70,8 @@ contains
             state%sources%film = loads%film_matrix()
          end if
          state%force_load = loads%nodal_forces()
-         if (.not. allocated(state%operators_at)) return
+         if (allocated(state%faces_at)) call simulation%place_faces(model, state%faces_at, error)
+         if (allocated(error) .or. .not. allocated(state%operators_at)) return
          call simulation%bodies%move_operators(model, state%operators_at, state%tangent)
       end associate
       call simulation%reduce(model, error)
@@ -91,6 +92,8 @@ contains
       call exchange_state(table, simulation%state)
       call exchange_cycle(simulation, table)
       call words(table, 'undecided', simulation%undecided)
+      call logicals(table, 'is_beyond', simulation%is_beyond)
+      call logicals(table, 'sliding_told', simulation%sliding_told)
       call words(table, 'runaway', simulation%runaway)
       call reals(table, 'told', told)
       simulation%pivot_told = told(1)

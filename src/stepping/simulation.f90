@@ -52,6 +52,9 @@ module simulation
       !> Of the state, where energies were measured; unallocated arrays where they were not
       type(point_fields_type) :: point_fields
       character(:), allocatable :: undecided        !! what was last warned of
+      !> (m) contact points without a master when last looked at, and (2 interfaces) whether it was
+      !> told that some left theirs, reached one; unallocated where no face slides
+      logical, allocatable :: is_beyond(:), sliding_told(:)
       real(dp) :: pivot_told = 1.0_dp               !! smallest pivot that was warned of
       character(:), allocatable :: runaway          !! last thermal runaway of an attempt, in words
       real(dp) :: runaway_time = 0.0_dp             !! where this attempt would have ended [time]
@@ -62,6 +65,7 @@ module simulation
       procedure :: reduce
       procedure :: reduce_heat
       procedure :: take_back
+      procedure :: place_faces
       procedure :: finished
       procedure :: release
    end type simulation_type
@@ -83,6 +87,10 @@ contains
       call self%recovery%prepare(model, spread(.true., 1, size(model%mesh%element_kind)))
       call self%loads%prepare(model)
       self%state = make_initial_state(model, self%bodies)
+      if (allocated(self%bodies%points%is_beyond)) then
+         self%is_beyond = self%bodies%points%is_beyond
+         allocate (self%sliding_told(2*size(model%contacts)), source=.false.)
+      end if
       call self%corrections%prepare(model, self%state%forces_beyond)
       self%seconds%assemble = (wall_seconds() - since)
       call measure_steps(model, self%bodies%points, self%loads, self%state, self%sizes, error)
@@ -173,6 +181,10 @@ contains
       real(dp), allocatable :: at(:)                      ! (nodes) [temperature]
 
       call self%loads%move_to(self%control%instant_at(model, self%control%step_time), model)
+      if (allocated(self%state%faces_at)) then
+         call self%place_faces(model, self%state%faces_at, error)
+         if (allocated(error)) return
+      end if
       if (.not. allocated(self%bodies%operators_at)) return
       at = model%initial_temperature
       if (allocated(self%state%operators_at)) at = self%state%operators_at
@@ -180,6 +192,20 @@ contains
       call self%bodies%move_operators(model, at, self%state%tangent)
       call self%reduce(model, error)
    end subroutine take_back
+
+   !> Places the contact points of faces that slide, and reduces the bodies to them, where they do
+   !> not lie there.
+   !> Errors: as follow_faces and reduce.
+   subroutine place_faces(self, model, displacement, error)
+      class(simulation_type), intent(inout) :: self       !! the run, started
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: displacement(:)             !! (2 nodes) [length]
+      type(error_type), allocatable, intent(out) :: error
+
+      if (all(abs(displacement - self%bodies%faces_at) <= 0.0_dp)) return
+      call self%bodies%follow_faces(model, self%control%step, displacement, error)
+      if (.not. allocated(error)) call self%reduce(model, error)
+   end subroutine place_faces
 
    !> Whether all steps are solved.
    pure function finished(self, model) result(done)
@@ -252,6 +278,7 @@ contains
          state%temperature = model%initial_temperature
          if (allocated(model%mesh%initial_stress)) state%forces_beyond = assemble_initial_force( &
             model%mesh, model%sections)
+         if (allocated(bodies%faces_at)) state%faces_at = bodies%faces_at
          numbers = history_count(model%mesh, model%sections, model%materials)
          if (numbers > 0) allocate (state%history(numbers), source=0.0_dp)
       end associate

@@ -176,6 +176,7 @@ contains
       pairing = choice(card, 'PAIRING', 'NODES/SURFACES', deck, '')
       if (pairing /= '') contact%pairing = merge(pairing_nodes, pairing_surfaces, &
          pairing == 'NODES')
+      contact%follows_sliding = choice(card, 'SLIDING', 'SMALL/FINITE', deck, 'SMALL') == 'FINITE'
       contact%adjusts = card%has('ADJUST')
       if (contact%adjusts) then   ! a distance, or a node set
          call read_real(card%text('ADJUST'), contact%adjusted, is_number)

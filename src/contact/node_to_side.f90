@@ -1,0 +1,150 @@
+!> Contact points of the slave's nodes and the points of the master's sides that their normals meet:
+!> what node pairs become where faces slide. The master's point has the shape functions of its side;
+!> the master's normal there is interpolated between those of its nodes, and so does not jump from
+!> side to side. A pressure on sides that do not match is uneven by what the nodes see of each other;
+!> mortar points pass it exactly.
+module node_to_side
+   use chain_geometry, only: arc_lengths, side_positions
+   use contact_definitions, only: contact_definition_type
+   use contact_points, only: contact_points_type
+   use errors, only: error_type
+   use kinds, only: dp
+   use mesh, only: mesh_type
+   use mortar_sides, only: face_line_type, opposite_at, outward_normals, project, sides_of, &
+      slave_side_type
+   use node_pairs, only: set_node_pairs
+   use rigid_masters, only: add_points
+   use shape_functions, only: side_shape
+   use sum_lists, only: sum_list_type
+   use surface_chains, only: surface_chain_type
+   implicit none
+   private
+   public :: set_nodes_on_sides
+
+   !> A point of the master's line.
+   type :: foot_type
+      integer, allocatable :: nodes(:)      !! of its side; unallocated where there is none
+      real(dp), allocatable :: shape(:)     !! values of their shape functions
+      real(dp) :: place(2) = 0.0_dp         !! [length]
+      real(dp) :: tangent(2) = 0.0_dp       !! along the line; 0 where there is none
+      real(dp) :: s = 0.0_dp                !! along the line [length]
+   end type foot_type
+
+contains
+
+   !> The contact points of the nodes of a line that have a master opposite.
+   !> Errors: as set_node_pairs.
+   subroutine set_nodes_on_sides(mesh, definition, slave, master, thickness, points, error)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition !! the *CONTACT PAIR
+      type(surface_chain_type), intent(in) :: slave, master   !! open; both run the same way
+      real(dp), intent(in) :: thickness !! thickness of the slave, not used if axisymmetric [length]
+      type(contact_points_type), intent(inout) :: points      !! its name and its axis are set
+      type(error_type), allocatable, intent(out) :: error
+      type(foot_type) :: foot(size(slave%nodes))
+      type(mesh_type) :: drawn
+      type(surface_chain_type) :: feet
+      integer :: k
+      integer, allocatable :: kept(:)
+
+      call find_feet(mesh, slave, master, foot)
+      kept = pack([(k, k=1, size(foot))], [(allocated(foot(k)%nodes), k=1, size(foot))])
+      allocate (points%slave(0))
+      if (size(kept) < 2) return
+      drawn = mesh
+      feet%side_nodes = slave%side_nodes
+      feet%turned = .not. slave%turned
+      feet%tangent = reshape([(foot(k)%tangent, k=1, size(foot))], [2, size(foot)])
+      call add_points(reshape([(foot(k)%place, k=1, size(foot))], [2, size(foot)]), drawn, &
+         feet%nodes)
+      call set_node_pairs(drawn, definition, slave, feet, thickness, points, error)
+      if (allocated(error)) return
+      call take_shapes(mesh, master, foot(kept), points)
+   end subroutine set_nodes_on_sides
+
+   !> The points that the normals of the slave's nodes meet; at nodes that meet none, where they are.
+   pure subroutine find_feet(mesh, slave, master, foot)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: slave, master
+      type(foot_type), intent(inout) :: foot(:)
+      type(face_line_type) :: line
+      type(slave_side_type), allocatable :: side(:)
+      real(dp) :: normal(2), normals(2, size(master%nodes)), s(size(master%nodes)), eta, xi
+      integer :: i, k, opposite, q
+      integer, allocatable :: facing(:)
+
+      line = line_of(mesh, master)
+      side = sides_of(line_of(mesh, slave), line)
+      normals = outward_normals(line)
+      s = arc_lengths(line%x, line%side_nodes, line%closed)
+      do k = 1, size(foot)
+         foot(k)%place = mesh%coordinates(:, slave%nodes(k))
+      end do
+      do i = 1, size(side)
+         do q = 1, slave%side_nodes
+            k = side(i)%nodes(q)
+            if (allocated(foot(k)%nodes)) cycle
+            xi = 2.0_dp*(q - 1)/(slave%side_nodes - 1) - 1.0_dp
+            opposite = opposite_at(side(i), xi)
+            if (opposite == 0) cycle
+            facing = side_positions(opposite, line%side_nodes, size(s))
+            eta = 0.0_dp
+            call project(side(i), xi, line%x(:, facing), eta)
+            eta = min(max(eta, -1.0_dp), 1.0_dp)
+            foot(k)%nodes = master%nodes(facing)
+            foot(k)%shape = side_shape(line%side_nodes, eta)
+            foot(k)%place = matmul(line%x(:, facing), foot(k)%shape)
+            foot(k)%s = dot_product(s(facing), foot(k)%shape)
+            normal = matmul(normals(:, facing), foot(k)%shape)
+            foot(k)%tangent = line%outward*[-normal(2), normal(1)]/norm2(normal)
+         end do
+      end do
+   end subroutine find_feet
+
+   pure function line_of(mesh, chain) result(line)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: chain
+      type(face_line_type) :: line
+
+      line = face_line_type(mesh%coordinates(:, chain%nodes), chain%side_nodes, chain%closed, &
+         merge(-1.0_dp, 1.0_dp, chain%turned))
+   end function line_of
+
+   !> Gives contact points the nodes of the master's sides; its nodes have contact quantities
+   !> between those of the contact points beside them.
+   pure subroutine take_shapes(mesh, master, foot, points)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: master
+      type(foot_type), intent(in) :: foot(:)                  ! of each contact point
+      type(contact_points_type), intent(inout) :: points
+      type(sum_list_type) :: difference, mean
+      real(dp) :: s(size(master%nodes)), share
+      integer :: i, k
+
+      call difference%reserve(size(foot), 4*size(foot))
+      call mean%reserve(size(foot), 3*size(foot))
+      do k = 1, size(foot)
+         call difference%add([points%slave(k), foot(k)%nodes], [1.0_dp, -foot(k)%shape])
+         call mean%add(foot(k)%nodes, foot(k)%shape)
+         points%master(k) = foot(k)%nodes(maxloc(foot(k)%shape, dim=1))
+      end do
+      points%difference = difference
+      points%master_mean = mean
+      s = arc_lengths(mesh%coordinates(:, master%nodes), master%side_nodes, master%closed)
+      points%face_node = [points%slave, master%nodes]
+      call points%at_face_nodes%reserve(size(points%face_node), 2*size(points%face_node))
+      do k = 1, size(foot)
+         call points%at_face_nodes%add([k], [1.0_dp])
+      end do
+      do i = 1, size(s)
+         k = count(foot%s <= s(i))
+         if (k == 0 .or. k == size(foot)) then
+            call points%at_face_nodes%add([integer ::], [real(dp) ::])
+         else
+            share = (s(i) - foot(k)%s)/(foot(k + 1)%s - foot(k)%s)
+            call points%at_face_nodes%add([k, k + 1], [1.0_dp - share, share])
+         end if
+      end do
+   end subroutine take_shapes
+
+end module node_to_side
