@@ -1,5 +1,5 @@
 !> Bodies reduced to the nodes of their faces, piece by piece: the first of two stages where many
-!> interfaces join many bodies. Nodes that no constraint binds and that belong to one piece only are
+!> interfaces join many bodies, or where faces slide. Nodes that no constraint binds and that belong to one piece only are
 !> inside; the others are kept: nodes of faces, supports, ties, equations, and those at which a long
 !> body is cut. With i for the inside of a piece and k for the kept nodes around it, the pieces
 !> leave of K u = f
@@ -8,9 +8,12 @@
 !>
 !> Nothing here knows which slave lies where on which master.
 module body_pieces
+   use controls, only: solver_mumps
    use errors, only: error_type
    use kinds, only: dp
    use ordering, only: profile_order
+   use linear_solver, only: linear_solver_type
+   use mumps_solver, only: mumps_solver_type
    use skyline_solver, only: skyline_solver_type
    use sorting, only: invert_lists
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
@@ -18,21 +21,28 @@ module body_pieces
    private
    public :: body_pieces_type, body_division_type
 
-   integer, parameter :: most_around = 20   !! kept nodes around a piece, about
+   integer, parameter :: most_around = 20   !! kept nodes around a piece of a sparse tail, about
 
    !> Which piece each degree of freedom is inside of.
    type :: body_division_type
       !> (nodes, nodes) joined by elements; without values where bodies are not divided
       type(sparse_matrix_type) :: graph
       integer, allocatable :: piece(:)               !! (dofs) 0 for kept ones; unallocated likewise
+      !> (nodes) nodes of faces that slide, kept whichever contact points bind them; unallocated
+      !> where none does. What is left of such bodies, which are not cut, goes to a solver; else it
+      !> is a sparse tail
+      logical, allocatable :: is_on_face(:)
+      integer :: version = 0                         !! which division, counted
+      logical, allocatable, private :: is_bound(:)   !! (nodes) that it was made for
    contains
+      procedure :: is_tail
       procedure :: divide
    end type body_division_type
 
    !> The inside of a piece, with its factors.
    type :: piece_type
       integer, allocatable :: inside(:), around(:)   !! degrees of freedom
-      type(skyline_solver_type) :: solver            !! those inside leading, those around its tail
+      class(linear_solver_type), allocatable :: solver   !! those inside leading, around its tail
    end type piece_type
 
    !> All pieces of a field.
@@ -42,6 +52,7 @@ module body_pieces
       procedure :: reduce
       procedure :: condense
       procedure :: fill
+      procedure :: release
    end type body_pieces_type
 
 contains
@@ -52,18 +63,34 @@ contains
       logical, intent(in) :: is_bound(:)                !! (nodes) kept, since constraints bind them
       integer, intent(in) :: components                  !! degrees of freedom of a node
       integer, allocatable :: piece(:)
+      logical :: is_kept(size(is_bound))
       integer :: i
 
-      if (allocated(self%piece)) deallocate (self%piece)
       if (.not. allocated(self%graph%value)) return
-      piece = divided_bodies(self%graph, is_bound)
+      is_kept = is_bound
+      if (allocated(self%is_on_face)) is_kept = is_bound .or. self%is_on_face
+      if (allocated(self%is_bound)) then
+         if (all(is_kept .eqv. self%is_bound)) return
+      end if
+      self%is_bound = is_kept
+      self%version = self%version + 1
+      piece = divided_bodies(self%graph, is_kept, merge(size(is_kept), most_around, &
+         allocated(self%is_on_face)))
       self%piece = [(spread(piece(i), 1, components), i=1, size(piece))]
    end subroutine divide
 
+   !> Whether what is left of the bodies is a tail.
+   pure logical function is_tail(self)
+      class(body_division_type), intent(in) :: self
+
+      is_tail = allocated(self%piece) .and. .not. allocated(self%is_on_face)
+   end function is_tail
+
    !> The piece inside of which each node is, 0 for kept ones.
-   pure function divided_bodies(graph, is_bound) result(piece)
+   pure function divided_bodies(graph, is_bound, most_around) result(piece)
       type(sparse_matrix_type), intent(in) :: graph   !! (nodes, nodes) joined by elements
       logical, intent(in) :: is_bound(:)              !! (nodes)
+      integer, intent(in) :: most_around              !! kept nodes around a piece, about
       integer, allocatable :: piece(:)                !! (nodes)
       integer :: around(size(is_bound))               ! the last piece that a kept node is around
       integer, allocatable :: order(:)
@@ -130,10 +157,11 @@ contains
 
    !> Factors the pieces of a matrix, and what they leave of it on the kept degrees of freedom.
    !> Error: the inside of a piece is singular.
-   subroutine reduce(self, matrix, piece, kept, error)
+   subroutine reduce(self, matrix, piece, solver_kind, kept, error)
       class(body_pieces_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: matrix   !! (dofs, dofs) K, both triangles
       integer, intent(in) :: piece(:)                  !! (dofs) as from divided_bodies
+      integer, intent(in) :: solver_kind               !! solver_skyline or solver_mumps
       type(sparse_matrix_type), intent(out) :: kept    !! (dofs, dofs) K', both triangles
       type(error_type), allocatable, intent(out) :: error
       type(triplet_list_type) :: left
@@ -157,7 +185,12 @@ contains
       do i = 1, size(self%piece)
          associate (own => self%piece(i))
             call take_part(matrix, own, place, lower)
-            if (.not. allocated(own%solver%row_start)) then
+            if (.not. allocated(own%solver)) then
+               if (solver_kind == solver_mumps) then
+                  allocate (mumps_solver_type :: own%solver)
+               else
+                  allocate (skyline_solver_type :: own%solver)
+               end if
                if (allocated(rank)) deallocate (rank)
                call own%solver%analyse(lower, size(own%around), rank, error)
                if (allocated(error)) return
@@ -265,5 +298,17 @@ contains
          end associate
       end do
    end subroutine fill
+
+   !> Frees the pieces.
+   subroutine release(self)
+      class(body_pieces_type), intent(inout) :: self
+      integer :: i
+
+      if (.not. allocated(self%piece)) return
+      do i = 1, size(self%piece)
+         if (allocated(self%piece(i)%solver)) call self%piece(i)%solver%release()
+      end do
+      deallocate (self%piece)
+   end subroutine release
 
 end module body_pieces

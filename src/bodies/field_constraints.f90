@@ -119,7 +119,7 @@ contains
                .true.
          end do
          call division%divide(is_bound, rows%components)
-         rows%keeps_all = .true.
+         rows%keeps_all = division%is_tail()
          call eliminate(rows, used .and. division%piece == 0, constraints)
       else
          call eliminate(rows, used, constraints)

@@ -7,10 +7,11 @@
 !> solution of its own.
 !>
 !> Where many interfaces join many bodies, these are reduced piece by piece (body_pieces), and what
-!> is left of them is the tail, a sparse one; else all unknowns but the contact's are eliminated.
+!> is left of them is the tail, a sparse one; else all unknowns but the contact's are eliminated:
+!> where faces slide, first those inside of the bodies, once for all places of the faces.
 module field_problem
    use body_pieces, only: body_division_type, body_pieces_type
-   use controls, only: solver_mumps
+   use controls, only: solver_mumps, solver_skyline
    use errors, only: check_finite, error_type, status_deck
    use kinds, only: dp, long
    use linear_constraints, only: linear_constraints_type
@@ -62,7 +63,12 @@ module field_problem
       !> (leading) the order in which solvers eliminate the unknowns of this numbering, once made
       integer, allocatable :: rank(:)
       class(linear_solver_type), allocatable :: solver        !! pattern and factors
-      type(body_pieces_type) :: pieces                        !! in the place of the solver
+      type(body_pieces_type) :: pieces     !! of divided bodies; with a tail in the solver's place
+      !> (dofs, dofs) what they leave of the matrix, for a solver, and the division it is of
+      type(sparse_matrix_type) :: kept
+      integer :: kept_made = 0                                !! how often that was made
+      integer, private :: division = 0, kept_values = 0
+      type(sparse_matrix_type), private :: kept_added
       type(tail_matrix_type) :: schur                         !! what is left on the tail
       integer :: factored = 0                                 !! how often
       integer :: lost_node = 0   !! where a singular matrix shows, if that is known
@@ -76,10 +82,13 @@ module field_problem
       procedure :: condense_load
       procedure :: recover
       procedure :: extended
+      procedure :: extended_to_kept
       procedure :: unit_responses
       procedure :: welded_response
       procedure :: condense_forces
+      procedure :: condense_kept
       procedure :: release
+      procedure :: release_tail
       procedure :: full_flops
    end type field_reduction_type
 
@@ -105,7 +114,8 @@ contains
       type(field_problem_type), intent(in) :: problem
 
       if (self%numbering == problem%numbering) return
-      call self%release()
+      call self%release_tail()
+      if (self%division /= problem%division%version) call self%release()
       if (allocated(self%rank)) deallocate (self%rank)
       self%numbering = problem%numbering
    end subroutine renumber
@@ -163,12 +173,14 @@ contains
       call check_finite(problem%matrix%value, 'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
       if (allocated(problem%division%piece)) then
-         call reduce_pieces(self, problem, added, error)
-         return
+         call reduce_pieces(self, problem, added, solver_kind, error)
+         if (allocated(error) .or. problem%division%is_tail()) return
+         lower = problem%map%transform(self%kept, problem%map%link_stiffness(problem%matrix))
+      else
+         lower = problem%matrix_of_unknowns(added)
       end if
-      lower = problem%matrix_of_unknowns(added)
       if (.not. allocated(self%solver)) then
-         if (solver_kind == solver_mumps) then
+         if (solver_kind == solver_mumps .and. .not. allocated(problem%division%piece)) then
             allocate (mumps_solver_type :: self%solver)
          else
             allocate (skyline_solver_type :: self%solver)
@@ -195,22 +207,39 @@ contains
       call self%release()
    end subroutine factor
 
-   !> Reduces the bodies piece by piece; what is left is the tail.
+   !> Reduces the bodies piece by piece; what is left is the tail, or kept for a solver, for all
+   !> numberings of these pieces.
    !> Error: as the pieces' reduce.
-   subroutine reduce_pieces(self, problem, added, error)
+   subroutine reduce_pieces(self, problem, added, solver_kind, error)
       class(field_reduction_type), intent(inout) :: self
       type(field_problem_type), intent(in) :: problem
       type(sparse_matrix_type), intent(in) :: added
+      integer, intent(in) :: solver_kind
       type(error_type), allocatable, intent(out) :: error
       type(sparse_matrix_type) :: kept
 
-      if (allocated(added%value)) then
-         call self%pieces%reduce(linear_combination(1.0_dp, problem%matrix, 1.0_dp, added), &
-            problem%division%piece, kept, error)
-      else
-         call self%pieces%reduce(problem%matrix, problem%division%piece, kept, error)
+      if (self%division == problem%division%version .and. self%kept_values == problem%values &
+         .and. allocated(self%kept%value)) then
+         if (same_values(self%kept_added, added)) return
       end if
+      associate (piece => problem%division%piece, kind => merge(solver_skyline, solver_kind, &
+         problem%division%is_tail()))
+         if (allocated(added%value)) then
+            call self%pieces%reduce(linear_combination(1.0_dp, problem%matrix, 1.0_dp, added), &
+               piece, kind, kept, error)
+         else
+            call self%pieces%reduce(problem%matrix, piece, kind, kept, error)
+         end if
+      end associate
       if (allocated(error)) return
+      self%division = problem%division%version
+      if (.not. problem%division%is_tail()) then
+         self%kept = kept
+         self%kept_made = self%kept_made + 1
+         self%kept_values = problem%values
+         self%kept_added = added
+         return
+      end if
       self%schur%sparse = symmetric(problem%map%transform(kept, &
          problem%map%link_stiffness(problem%matrix)))
       if (.not. allocated(self%schur%rank)) call self%schur%set_order()
@@ -280,7 +309,7 @@ contains
       real(dp) :: rest(problem%map%equations, 1), condensed(problem%map%tail, 1)
       real(dp), allocatable :: solution(:, :)
 
-      if (allocated(problem%division%piece)) then
+      if (problem%division%is_tail()) then
          load%condensed = load%rhs(:, 1)
          if (present(welded)) welded = self%recover(problem, load, 0.0_dp*load%condensed)
          return
@@ -306,7 +335,9 @@ contains
          load%condensed = load%condensed + condensed(:, 1)
          call known%keep(rest(:, 1), condensed(:, 1), solution(:, 2))
       end if
-      if (present(welded)) welded = problem%map%expand(solution(:, 1), load%given)
+      if (.not. present(welded)) return
+      welded = problem%map%expand(solution(:, 1), load%given)
+      if (allocated(load%forces)) call self%pieces%fill(welded, load%forces)
    end subroutine condense_load
 
    !> Values of all degrees of freedom under a load.
@@ -318,13 +349,11 @@ contains
       real(dp) :: values(problem%matrix%row_count)           !! (dofs)
       real(dp) :: solution(problem%map%equations, 1)
 
-      if (allocated(problem%division%piece)) then
-         values = problem%map%expand(on_tail, load%given)
-         call self%pieces%fill(values, load%forces)
-         return
-      end if
-      call self%solver%recover(load%rhs, reshape(on_tail, [size(on_tail), 1]), solution)
+      solution(:, 1) = [load%rhs(:problem%map%equations - size(on_tail), 1), on_tail]
+      if (.not. problem%division%is_tail()) call self%solver%recover(load%rhs, reshape(on_tail, &
+         [size(on_tail), 1]), solution)
       values = problem%map%expand(solution(:, 1), load%given)
+      if (allocated(load%forces)) call self%pieces%fill(values, load%forces)
    end function recover
 
    !> Values of all degrees of freedom that follow the tail, without load and with zero prescribed
@@ -334,27 +363,39 @@ contains
       type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: on_tail(:, :)               !! (tail, columns)
       real(dp) :: values(problem%matrix%row_count, size(on_tail, 2))   !! (dofs, columns)
+      integer :: k
+
+      values = self%extended_to_kept(problem, on_tail)
+      if (.not. allocated(problem%division%piece)) return
+      do k = 1, size(on_tail, 2)
+         call self%pieces%fill(values(:, k))
+      end do
+   end function extended
+
+   !> The same of the degrees of freedom that pieces keep, or of all where there are none.
+   function extended_to_kept(self, problem, on_tail) result(values)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
+      real(dp), intent(in) :: on_tail(:, :)               !! (tail, columns)
+      real(dp) :: values(problem%matrix%row_count, size(on_tail, 2))   !! (dofs, columns)
       real(dp) :: none(problem%matrix%row_count)
       real(dp), allocatable :: solution(:, :)
       integer :: k
 
       none = 0.0_dp
-      if (allocated(problem%division%piece)) then
-         do k = 1, size(on_tail, 2)
-            values(:, k) = problem%map%expand(on_tail(:, k), none)
-            call self%pieces%fill(values(:, k))
-         end do
-         return
-      end if
       allocate (solution(problem%map%equations, size(on_tail, 2)))
-      call self%solver%extend(on_tail, solution)
+      if (problem%division%is_tail()) then
+         solution = on_tail
+      else
+         call self%solver%extend(on_tail, solution)
+      end if
       do k = 1, size(on_tail, 2)
          values(:, k) = problem%map%expand(solution(:, k), none)
       end do
-   end function extended
+   end function extended_to_kept
 
-   !> Values of all degrees of freedom for unit values of some tail unknowns, without load and with
-   !> zero prescribed values.
+   !> Values of the degrees of freedom that pieces keep, or of all where there are none, for unit
+   !> values of some tail unknowns, without load and with zero prescribed values.
    function unit_responses(self, problem, first, last) result(values)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem     !! that it is of
@@ -367,7 +408,7 @@ contains
       do k = first, last
          unit(k, k - first + 1) = 1.0_dp
       end do
-      values = self%extended(problem, unit)
+      values = self%extended_to_kept(problem, unit)
    end function unit_responses
 
    !> Values of all degrees of freedom under nodal forces, the tail held, with zero prescribed
@@ -390,34 +431,53 @@ contains
       real(dp), intent(in) :: forces(:, :)                !! (dofs, columns)
       real(dp), intent(out) :: condensed(:, :)            !! (tail, columns)
       real(dp), intent(out), optional :: welded(:, :)     !! (dofs, columns)
-      real(dp) :: rhs(problem%map%equations, size(forces, 2))
-      real(dp), allocatable :: acting(:), solution(:, :)
+      real(dp), allocatable :: acting(:, :)
       integer :: k
 
-      if (allocated(problem%division%piece)) then
-         do k = 1, size(forces, 2)
-            acting = forces(:, k)
-            call self%pieces%condense(acting)
-            condensed(:, k) = problem%map%restrict(acting)
-            if (.not. present(welded)) cycle
-            welded(:, k) = 0.0_dp
-            call self%pieces%fill(welded(:, k), acting)
-         end do
+      if (.not. allocated(problem%division%piece)) then
+         call self%condense_kept(problem, forces, condensed, welded)
          return
       end if
+      acting = forces
+      do k = 1, size(forces, 2)
+         call self%pieces%condense(acting(:, k))
+      end do
+      call self%condense_kept(problem, acting, condensed, welded)
+      if (.not. present(welded)) return
+      do k = 1, size(forces, 2)
+         call self%pieces%fill(welded(:, k), forces(:, k))
+      end do
+   end subroutine condense_forces
+
+   !> The same of forces on the degrees of freedom that pieces keep, or on all where there are none;
+   !> the values are those of the former.
+   subroutine condense_kept(self, problem, forces, condensed, welded)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
+      real(dp), intent(in) :: forces(:, :)                !! (dofs, columns)
+      real(dp), intent(out) :: condensed(:, :)            !! (tail, columns)
+      real(dp), intent(out), optional :: welded(:, :)     !! (dofs, columns)
+      real(dp) :: rhs(problem%map%equations, size(forces, 2))
+      real(dp), allocatable :: solution(:, :)
+      integer :: k
+
       do k = 1, size(forces, 2)
          rhs(:, k) = problem%map%restrict(forces(:, k))
       end do
-      if (.not. present(welded)) then
-         call self%solver%condense(rhs, condensed)
-         return
-      end if
       allocate (solution, mold=rhs)
-      call self%solver%condense(rhs, condensed, solution)
+      if (problem%division%is_tail()) then
+         condensed = rhs
+         solution = 0.0_dp
+      else if (present(welded)) then
+         call self%solver%condense(rhs, condensed, solution)
+      else
+         call self%solver%condense(rhs, condensed)
+      end if
+      if (.not. present(welded)) return
       do k = 1, size(forces, 2)
          welded(:, k) = problem%map%expand(solution(:, k), 0.0_dp*forces(:, k))
       end do
-   end subroutine condense_forces
+   end subroutine condense_kept
 
    !> Operations of a factorisation up to the tail.
    pure integer(long) function full_flops(self)
@@ -436,13 +496,22 @@ contains
    subroutine release(self)
       class(field_reduction_type), intent(inout) :: self
 
+      call self%release_tail()
+      call self%pieces%release()
+      self%division = 0
+      self%kept = sparse_matrix_type()
+   end subroutine release
+
+   !> Frees the factors, but for those of pieces.
+   subroutine release_tail(self)
+      class(field_reduction_type), intent(inout) :: self
+
       self%is_factored = .false.
       self%schur = tail_matrix_type()
-      self%pieces = body_pieces_type()
       if (.not. allocated(self%solver)) return
       call self%solver%release()
       deallocate (self%solver)
-   end subroutine release
+   end subroutine release_tail
 
    !> Takes from a load its parts along known ones, twice for their rounding, and adds these parts'
    !> condensed loads and solutions.

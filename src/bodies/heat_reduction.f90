@@ -11,7 +11,7 @@ module heat_reduction
    use kinds, only: dp
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
-   use sparse_matrix, only: sparse_matrix_type
+   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    use unconstrained_bodies, only: undetermined_beside
    implicit none
    private
@@ -37,6 +37,10 @@ module heat_reduction
       !> Whether loads of jumps are formed as they are asked for, instead of jump_load for all of
       !> them: less work for a single increment.
       logical :: forms_on_demand = .false.
+      !> (2 nodes, nodes) forces on what pieces keep per temperature of what they keep, where these
+      !> go to solvers, and which of both fields it was made of
+      type(sparse_matrix_type), private :: kept_load
+      integer, private :: kept_load_of(2) = 0
       integer, private :: ranked_displacements = 0   !! numbering of those in node_rank
       !> numbering and values of equilibrium in jump_load, 0 without it
       integer, private :: equilibrium(2) = 0
@@ -69,13 +73,13 @@ contains
    end function serves
 
    !> Whether loads of jumps are formed as they are asked for: where the caller says so, and where
-   !> bodies are reduced by pieces.
+   !> what is left of bodies is a sparse tail.
    pure logical function is_on_demand(self, bodies)
       class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
 
-      is_on_demand = self%forms_on_demand .or. allocated(bodies%thermal%division%piece) .or. &
-         allocated(bodies%mechanical%division%piece)
+      is_on_demand = self%forms_on_demand .or. bodies%thermal%division%is_tail() .or. &
+         bodies%mechanical%division%is_tail()
    end function is_on_demand
 
    !> Whether the loads of the jumps are those of the bodies' supports.
@@ -131,9 +135,17 @@ contains
       end if
       if (allocated(of_loads)) call move_alloc(of_loads, error)
       if (allocated(error) .or. .not. bodies%is_coupled .or. self%is_on_demand(bodies)) return
+      call form_kept_load(self, bodies)
       if (.not. has_friction_loads(self, bodies)) call form_friction(self, bodies)
-      if (.not. has_loads(self, bodies)) call loads_by_solves(bodies%thermal, self, &
-         bodies%mechanical, bodies%equilibrium, bodies%thermal_load, self%jump_load)
+      if (.not. has_loads(self, bodies)) then
+         if (allocated(self%kept_load%value)) then
+            call loads_by_solves(bodies%thermal, self, bodies%mechanical, bodies%equilibrium, &
+               self%kept_load, self%jump_load)
+         else
+            call loads_by_solves(bodies%thermal, self, bodies%mechanical, bodies%equilibrium, &
+               bodies%thermal_load, self%jump_load)
+         end if
+      end if
       self%equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
       if (self%is_balanced) return
       do k = 1, size(self%jump_load, 2)
@@ -159,7 +171,7 @@ contains
       if (self%is_on_demand(bodies)) return
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       self%is_balanced = .false.
-      if (model%solver /= solver_mumps) return
+      if (model%solver /= solver_mumps .or. allocated(bodies%mechanical%division%piece)) return
       if (.not. self%is_of(bodies%thermal, film)) then
          call self%release()
          self%values = bodies%thermal%values
@@ -241,6 +253,55 @@ contains
       end do
    end function means_of_tail
 
+   !> Forces on the degrees of freedom that pieces of the bodies keep, of a unit temperature of each
+   !> node that they keep and that is not prescribed: like the matrices that they leave, the same for
+   !> all places of faces that slide.
+   subroutine form_kept_load(self, bodies)
+      class(heat_reduction_type), intent(inout) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(triplet_list_type) :: list
+      real(dp) :: forces(bodies%thermal_load%row_count), unit(bodies%thermal_load%column_count)
+      integer :: i, k
+
+      if (.not. allocated(bodies%thermal%division%piece)) return
+      associate (heat => bodies%thermal, piece => bodies%mechanical%division%piece, &
+         made => [self%kept_made, bodies%equilibrium%kept_made])
+         if (all(self%kept_load_of == made)) return
+         call list%reserve(count(piece == 0)*count(heat%division%piece == 0))
+         do k = 1, size(unit)
+            if (heat%division%piece(k) > 0 .or. .not. heat%map%moves(k)) cycle
+            unit = 0.0_dp
+            unit(k) = 1.0_dp
+            call self%pieces%fill(unit)
+            forces = bodies%thermal_load%multiply(unit)
+            call bodies%equilibrium%pieces%condense(forces)
+            do i = 1, size(forces)
+               if (piece(i) == 0 .and. abs(forces(i)) > 0.0_dp) call list%add(i, k, forces(i))
+            end do
+         end do
+         self%kept_load = list%compress(size(forces), size(unit))
+         self%kept_load_of = made
+      end associate
+   end subroutine form_kept_load
+
+   !> Condensed mechanical loads of temperatures of the nodes that pieces keep, or of all where there
+   !> are none, balanced.
+   function loads_by(thermal_load, bodies, temperature) result(load)
+      type(sparse_matrix_type), intent(in) :: thermal_load   ! of these nodes
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: temperature(:, :)
+      real(dp) :: load(bodies%mechanical%map%tail, size(temperature, 2))
+      real(dp), allocatable :: forces(:, :)
+      integer :: k
+
+      allocate (forces(thermal_load%row_count, size(load, 2)))
+      call thermal_load%multiply_columns(temperature, forces)
+      call bodies%equilibrium%condense_kept(bodies%mechanical, forces, load)
+      do k = 1, size(load, 2)
+         load(:, k) = bodies%equilibrium%contact%motions%balanced(load(:, k))
+      end do
+   end function loads_by
+
    !> Condensed mechanical loads of temperatures, balanced.
    function loads_of_temperatures(bodies, temperature) result(load)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -320,9 +381,13 @@ contains
             unit(k) = 1.0_dp
             call bodies%points%heat_shares%add_shares(unit, heat(:, k - first + 1))
          end do
-         call self%condense_forces(bodies%thermal, heat, self%friction_heat(:, first:last), &
+         call self%condense_kept(bodies%thermal, heat, self%friction_heat(:, first:last), &
             temperature)
-         self%friction_load(:, first:last) = loads_of_temperatures(bodies, temperature)
+         if (allocated(self%kept_load%value)) then
+            self%friction_load(:, first:last) = loads_by(self%kept_load, bodies, temperature)
+         else
+            self%friction_load(:, first:last) = loads_by(bodies%thermal_load, bodies, temperature)
+         end if
          do k = first, last
             self%friction_mean(:, k) = bodies%points%means(temperature(:, k - first + 1))
          end do

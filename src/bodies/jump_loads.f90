@@ -34,7 +34,8 @@ contains
       class(field_reduction_type), intent(in) :: heat            !! and reduced
       type(field_problem_type), intent(in) :: mechanical         !! numbered
       class(field_reduction_type), intent(in) :: equilibrium     !! and reduced
-      type(sparse_matrix_type), intent(in) :: thermal_load !! B, forces per nodal temperature
+      !> B, forces per nodal temperature: of the nodes that pieces of the bodies keep
+      type(sparse_matrix_type), intent(in) :: thermal_load
       real(dp), allocatable, intent(out) :: loads(:, :)    !! (mechanical tail, thermal tail)
       real(dp), allocatable :: forces(:, :)
       integer :: first, last, tail
@@ -46,7 +47,7 @@ contains
          allocate (forces(thermal_load%row_count, last - first + 1))
          call thermal_load%multiply_columns(heat%unit_responses(thermal, first, last), &
             forces)
-         call equilibrium%condense_forces(mechanical, forces, loads(:, first:last))
+         call equilibrium%condense_kept(mechanical, forces, loads(:, first:last))
          deallocate (forces)
       end do
    end subroutine loads_by_solves

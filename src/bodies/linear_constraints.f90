@@ -56,6 +56,7 @@ module linear_constraints
       procedure :: tail_index
       procedure :: is_linked
       procedure :: is_given
+      procedure :: moves
    end type linear_constraints_type
 
 contains
@@ -284,6 +285,15 @@ contains
 
       linked = any(self%link_unknowns%value == unknown)
    end function is_linked
+
+   !> Whether unknowns are part of a degree of freedom.
+   elemental function moves(self, dof)
+      class(linear_constraints_type), intent(in) :: self
+      integer, intent(in) :: dof                    !! a degree of freedom
+      logical :: moves
+
+      moves = self%by_unknowns%start(dof + 1) > self%by_unknowns%start(dof)
+   end function moves
 
    !> Whether a prescribed value is part of a degree of freedom.
    elemental function is_given(self, dof) result(given)
