@@ -23,18 +23,24 @@ module body_pieces
 
    integer, parameter :: most_around = 20   !! kept nodes around a piece of a sparse tail, about
 
+   integer, parameter :: fixed = -1   !! piece of a prescribed degree of freedom
+
    !> Which piece each degree of freedom is inside of.
    type :: body_division_type
       !> (nodes, nodes) joined by elements; without values where bodies are not divided
       type(sparse_matrix_type) :: graph
-      integer, allocatable :: piece(:)               !! (dofs) 0 for kept ones; unallocated likewise
+      !> (dofs) 0 for kept ones; unallocated likewise. Below 0 for prescribed ones, which are no part
+      !> of what is left, where faces slide; else these are kept
+      integer, allocatable :: piece(:)
       !> (nodes) nodes of faces that slide, kept whichever contact points bind them; unallocated
       !> where none does. What is left of such bodies, which are not cut, goes to a solver; else it
       !> is a sparse tail
       logical, allocatable :: is_on_face(:)
       integer :: version = 0                         !! which division, counted
-      logical, allocatable, private :: is_bound(:)   !! (nodes) that it was made for
+      !> (nodes), (dofs) that it was made for
+      logical, allocatable, private :: is_bound(:), is_prescribed(:)
    contains
+      procedure :: cuts_bodies
       procedure :: is_tail
       procedure :: divide
    end type body_division_type
@@ -58,9 +64,10 @@ module body_pieces
 contains
 
    !> Divides the bodies, if they are to be divided.
-   pure subroutine divide(self, is_bound, components)
+   pure subroutine divide(self, is_bound, is_prescribed, components)
       class(body_division_type), intent(inout) :: self   !! its graph in
       logical, intent(in) :: is_bound(:)                !! (nodes) kept, since constraints bind them
+      logical, intent(in) :: is_prescribed(:)           !! (dofs) no part of what is left
       integer, intent(in) :: components                  !! degrees of freedom of a node
       integer, allocatable :: piece(:)
       logical :: is_kept(size(is_bound))
@@ -70,20 +77,30 @@ contains
       is_kept = is_bound
       if (allocated(self%is_on_face)) is_kept = is_bound .or. self%is_on_face
       if (allocated(self%is_bound)) then
-         if (all(is_kept .eqv. self%is_bound)) return
+         if (all(is_kept .eqv. self%is_bound) .and. all(is_prescribed .eqv. self%is_prescribed)) &
+            return
       end if
       self%is_bound = is_kept
+      self%is_prescribed = is_prescribed
       self%version = self%version + 1
-      piece = divided_bodies(self%graph, is_kept, merge(size(is_kept), most_around, &
-         allocated(self%is_on_face)))
+      piece = divided_bodies(self%graph, is_kept, merge(most_around, size(is_kept), &
+         self%cuts_bodies()))
       self%piece = [(spread(piece(i), 1, components), i=1, size(piece))]
+      where (is_prescribed) self%piece = fixed
    end subroutine divide
+
+   !> Whether bodies are cut, into small pieces.
+   pure logical function cuts_bodies(self)
+      class(body_division_type), intent(in) :: self
+
+      cuts_bodies = .not. allocated(self%is_on_face)
+   end function cuts_bodies
 
    !> Whether what is left of the bodies is a tail.
    pure logical function is_tail(self)
       class(body_division_type), intent(in) :: self
 
-      is_tail = allocated(self%piece) .and. .not. allocated(self%is_on_face)
+      is_tail = allocated(self%piece) .and. self%cuts_bodies()
    end function is_tail
 
    !> The piece inside of which each node is, 0 for kept ones.
@@ -171,13 +188,14 @@ contains
       integer :: place(size(piece))   ! of a degree of freedom in the present piece
 
       if (.not. allocated(self%piece)) call find_pieces(self, matrix, piece)
+      place = 0
       n = 0
       do i = 1, size(self%piece)
          n = n + size(self%piece(i)%around)**2
       end do
       call left%reserve(size(matrix%value) + n)
       do i = 1, matrix%row_count
-         if (piece(i) > 0) cycle
+         if (piece(i) /= 0) cycle
          do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
             if (piece(matrix%column(k)) == 0) call left%add(i, matrix%column(k), matrix%value(k))
          end do
@@ -222,7 +240,7 @@ contains
          do j = start(i), start(i + 1) - 1
             do k = matrix%row_start(inside(j)), matrix%row_start(inside(j) + 1) - 1
                associate (other => matrix%column(k))
-                  if (piece(other) > 0 .or. last(other) == i) cycle
+                  if (piece(other) /= 0 .or. last(other) == i) cycle
                   last(other) = i
                   n = n + 1
                   around(n) = other
@@ -249,6 +267,7 @@ contains
          do i = 1, n
             do k = matrix%row_start(own%inside(i)), matrix%row_start(own%inside(i) + 1) - 1
                associate (j => place(matrix%column(k)))
+                  if (j == 0) cycle   ! prescribed
                   if (j <= i .or. j > n) call list%add(max(i, j), min(i, j), matrix%value(k))
                end associate
             end do

@@ -107,18 +107,26 @@ contains
       logical, intent(in) :: used(:)
       type(linear_constraints_type), intent(out) :: constraints
       type(body_division_type), intent(inout), optional :: division
-      logical :: is_bound(rows%dofs/rows%components), is_divided
-      integer :: k
+      logical :: is_bound(rows%dofs/rows%components), is_divided, is_prescribed(rows%dofs)
+      integer :: i, k
 
       is_divided = .false.
       if (present(division)) is_divided = allocated(division%graph%value)
       if (is_divided) then
          is_bound = .not. used(rows%components::rows%components)
-         do k = 1, rows%start(rows%count + 1) - 1
-            if (rows%value(k) <= rows%dofs) is_bound((rows%value(k) - 1)/rows%components + 1) = &
-               .true.
+         is_prescribed = .false.
+         do i = 1, rows%count
+            associate (values => rows%values_of(i))
+               if (rows%origin(i)%kind == of_support .and. .not. division%cuts_bodies()) then
+                  is_prescribed(values(1)) = .true.
+                  cycle
+               end if
+               do k = 1, size(values)
+                  if (values(k) <= rows%dofs) is_bound((values(k) - 1)/rows%components + 1) = .true.
+               end do
+            end associate
          end do
-         call division%divide(is_bound, rows%components)
+         call division%divide(is_bound, is_prescribed, rows%components)
          rows%keeps_all = division%is_tail()
          call eliminate(rows, used .and. division%piece == 0, constraints)
       else

@@ -175,7 +175,7 @@ contains
       if (allocated(problem%division%piece)) then
          call reduce_pieces(self, problem, added, solver_kind, error)
          if (allocated(error) .or. problem%division%is_tail()) return
-         lower = problem%map%transform(self%kept, problem%map%link_stiffness(problem%matrix))
+         lower = problem%map%transform_kept(self%kept, problem%map%link_stiffness(problem%matrix))
       else
          lower = problem%matrix_of_unknowns(added)
       end if
@@ -281,7 +281,7 @@ contains
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
       type(field_load_type) :: load                       !! not condensed
-      real(dp), dimension(size(given)) :: acting, supported
+      real(dp), dimension(size(given)) :: acting, fixed, supported
 
       load%given = given
       supported = problem%map%supported(given)
@@ -293,6 +293,12 @@ contains
       if (allocated(problem%division%piece)) then
          call self%pieces%condense(acting)
          load%forces = forces
+         ! Prescribed values that are no part of what is left act on the pieces as forces do.
+         fixed = merge(given, 0.0_dp, problem%division%piece < 0)
+         if (any(abs(fixed) > 0.0_dp)) then
+            load%forces = load%forces - problem%matrix%multiply(fixed)
+            if (allocated(self%added%value)) load%forces = load%forces - self%added%multiply(fixed)
+         end if
       end if
       load%rhs = reshape(problem%map%load(acting, given, &
          problem%map%link_stiffness(problem%matrix)), [problem%map%equations, 1])

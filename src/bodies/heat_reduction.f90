@@ -269,7 +269,7 @@ contains
          if (all(self%kept_load_of == made)) return
          call list%reserve(count(piece == 0)*count(heat%division%piece == 0))
          do k = 1, size(unit)
-            if (heat%division%piece(k) > 0 .or. .not. heat%map%moves(k)) cycle
+            if (heat%division%piece(k) /= 0 .or. .not. heat%map%moves(k)) cycle
             unit = 0.0_dp
             unit(k) = 1.0_dp
             call self%pieces%fill(unit)

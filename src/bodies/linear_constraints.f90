@@ -17,6 +17,7 @@
 module linear_constraints
    use constraint_rows, only: constraint_rows_type, elimination_type, largest, least_coefficients, &
       negligible, resolve, row_origin_type, write_values
+   use dense, only: product_of, transposed_product
    use kinds, only: dp
    use sparse_matrix, only: between_spaces, congruent, linear_combination, sparse_matrix_type, &
       triplet_list_type
@@ -51,6 +52,7 @@ module linear_constraints
       procedure :: load
       procedure :: link_stiffness
       procedure :: transform
+      procedure :: transform_kept
       procedure :: between
       procedure :: leading_nodes
       procedure :: tail_index
@@ -58,6 +60,8 @@ module linear_constraints
       procedure :: is_given
       procedure :: moves
    end type linear_constraints_type
+
+   integer, parameter :: most_terms = 16   !! of a row of T that is not full
 
 contains
 
@@ -210,6 +214,76 @@ contains
       if (size(self%link_force) > 0) lower = linear_combination(1.0_dp, lower, 1.0_dp, &
          links(self, stiffness))
    end function transform
+
+   !> The same of a matrix that pieces of bodies leave between the nodes of faces, where it is full:
+   !> T is full, too, where mortar points write the slave's values w by all others. With o for the
+   !> rest, the products of T_w are T_w^T (A_ww T_w/2 + A_wo T_o) and its transpose.
+   pure function transform_kept(self, matrix, stiffness) result(lower)
+      class(linear_constraints_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) K', symmetric, both triangles
+      real(dp), intent(in) :: stiffness(:)            !! (links) k
+      type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
+      type(sparse_matrix_type) :: rest
+      type(triplet_list_type) :: list
+      real(dp), allocatable :: half(:, :), of_others(:, :), written_by(:, :), z(:, :)
+      integer, allocatable :: unknown(:), written(:)
+      logical, allocatable :: is_rest(:)
+      integer :: column_of(self%equations), i, j, k, place(matrix%row_count), q
+
+      associate (by => self%by_unknowns)
+         written = pack([(i, i=1, by%count)], by%start(2:by%count + 1) - by%start(:by%count) > &
+            most_terms .and. matrix%row_start(2:) > matrix%row_start(:by%count))
+         if (size(written) == 0) then
+            lower = self%transform(matrix, stiffness)
+            return
+         end if
+         place = 0
+         place(written) = [(i, i=1, size(written))]
+         column_of = 0
+         allocate (is_rest(size(matrix%value)))
+         rest = matrix
+         do i = 1, matrix%row_count
+            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+               j = matrix%column(k)
+               is_rest(k) = place(i) == 0 .and. place(j) == 0
+               if (.not. is_rest(k)) column_of(by%value(by%start(j):by%start(j + 1) - 1)) = 1
+            end do
+            rest%row_start(i + 1) = rest%row_start(i) + count(is_rest(matrix%row_start(i): &
+               matrix%row_start(i + 1) - 1))
+         end do
+         rest%column = pack(matrix%column, is_rest)
+         rest%value = pack(matrix%value, is_rest)
+         unknown = pack([(i, i=1, self%equations)], column_of > 0)
+         column_of(unknown) = [(i, i=1, size(unknown))]
+         allocate (half(size(written), size(written)), of_others(size(written), size(unknown)), &
+            written_by(size(written), size(unknown)), source=0.0_dp)
+         do q = 1, size(written)
+            i = written(q)
+            written_by(q, column_of(by%value(by%start(i):by%start(i + 1) - 1))) = &
+               by%coefficient(by%start(i):by%start(i + 1) - 1)
+            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+               j = matrix%column(k)
+               if (place(j) > 0) then
+                  half(q, place(j)) = 0.5_dp*matrix%value(k)
+                  cycle
+               end if
+               associate (columns => column_of(by%value(by%start(j):by%start(j + 1) - 1)))
+                  of_others(q, columns) = of_others(q, columns) + matrix%value(k)* &
+                     by%coefficient(by%start(j):by%start(j + 1) - 1)
+               end associate
+            end do
+         end do
+      end associate
+      z = transposed_product(written_by, product_of(half, written_by) + of_others)
+      call list%reserve(size(unknown)*(size(unknown) + 1)/2)
+      do i = 1, size(unknown)
+         do j = 1, i
+            call list%add(unknown(i), unknown(j), z(i, j) + z(j, i))
+         end do
+      end do
+      lower = linear_combination(1.0_dp, self%transform(rest, stiffness), 1.0_dp, &
+         list%compress(self%equations, self%equations))
+   end function transform_kept
 
    !> T, its columns in any order.
    pure function terms(self)
