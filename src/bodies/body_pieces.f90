@@ -309,9 +309,13 @@ contains
          associate (own => self%piece(i))
             on_tail = reshape(values(own%around), [size(own%around), 1])
             allocate (rhs(own%solver%order, 1), solution(own%solver%order, 1))
-            rhs = 0.0_dp
-            if (present(forces)) rhs(:size(own%inside), 1) = forces(own%inside)
-            call own%solver%recover(rhs, on_tail, solution)
+            if (present(forces)) then
+               rhs = 0.0_dp
+               rhs(:size(own%inside), 1) = forces(own%inside)
+               call own%solver%recover(rhs, on_tail, solution)
+            else
+               call own%solver%extend(on_tail, solution)
+            end if
             values(own%inside) = solution(:size(own%inside), 1)
             deallocate (rhs, solution)
          end associate

@@ -81,6 +81,7 @@ module field_problem
       procedure :: load_of
       procedure :: condense_load
       procedure :: recover
+      procedure :: recover_kept
       procedure :: extended
       procedure :: extended_to_kept
       procedure :: unit_responses
@@ -353,14 +354,25 @@ contains
       type(field_load_type), intent(in) :: load
       real(dp), intent(in) :: on_tail(:)                  !! (tail) solution on the tail
       real(dp) :: values(problem%matrix%row_count)           !! (dofs)
+
+      values = self%recover_kept(problem, load, on_tail)
+      if (allocated(load%forces)) call self%pieces%fill(values, load%forces)
+   end function recover
+
+   !> The same of the degrees of freedom that pieces keep, or of all where there are none.
+   function recover_kept(self, problem, load, on_tail) result(values)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
+      type(field_load_type), intent(in) :: load
+      real(dp), intent(in) :: on_tail(:)                  !! (tail) solution on the tail
+      real(dp) :: values(problem%matrix%row_count)           !! (dofs)
       real(dp) :: solution(problem%map%equations, 1)
 
       solution(:, 1) = [load%rhs(:problem%map%equations - size(on_tail), 1), on_tail]
       if (.not. problem%division%is_tail()) call self%solver%recover(load%rhs, reshape(on_tail, &
          [size(on_tail), 1]), solution)
       values = problem%map%expand(solution(:, 1), load%given)
-      if (allocated(load%forces)) call self%pieces%fill(values, load%forces)
-   end function recover
+   end function recover_kept
 
    !> Values of all degrees of freedom that follow the tail, without load and with zero prescribed
    !> values.

@@ -54,6 +54,7 @@ module heat_reduction
       procedure :: eliminate
       procedure :: set_node_rank
       procedure :: is_on_demand
+      procedure :: is_divided
       procedure :: loads_of_tail
       procedure :: means_of_tail
       procedure :: conductors
@@ -68,19 +69,37 @@ contains
       type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
 
       serves = self%is_of(bodies%thermal, film) .and. (.not. bodies%is_coupled .or. &
-         self%is_on_demand(bodies) .or. (has_loads(self, bodies) .and. self%is_balanced .and. &
+         (self%is_on_demand(bodies) .and. has_kept_load(self, bodies)) .or. (has_loads(self, bodies) .and. self%is_balanced .and. &
          has_friction_loads(self, bodies)))
    end function serves
 
    !> Whether loads of jumps are formed as they are asked for: where the caller says so, and where
-   !> what is left of bodies is a sparse tail.
+   !> bodies are divided, unless heat of friction asks for the loads of all jumps.
    pure logical function is_on_demand(self, bodies)
       class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
 
-      is_on_demand = self%forms_on_demand .or. bodies%thermal%division%is_tail() .or. &
-         bodies%mechanical%division%is_tail()
+      is_on_demand = self%forms_on_demand .or. self%is_divided(bodies)
    end function is_on_demand
+
+   !> Whether they are so formed of divided bodies.
+   pure logical function is_divided(self, bodies)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+
+      is_divided = self%schur%is_sparse() .or. bodies%mechanical%division%is_tail() .or. &
+         (allocated(bodies%thermal%division%piece) .and. .not. allocated(bodies%points%heated))
+   end function is_divided
+
+   !> Whether forces per temperature of what pieces keep are those of the pieces, if there are any.
+   pure logical function has_kept_load(self, bodies)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+
+      has_kept_load = .not. allocated(bodies%thermal%division%piece) .or. &
+         bodies%thermal%division%is_tail() .or. &
+         all(self%kept_load_of == [self%kept_made, bodies%equilibrium%kept_made])
+   end function has_kept_load
 
    !> Whether the loads of the jumps are those of the bodies' supports.
    pure logical function has_loads(self, bodies)
@@ -134,8 +153,9 @@ contains
          end if
       end if
       if (allocated(of_loads)) call move_alloc(of_loads, error)
-      if (allocated(error) .or. .not. bodies%is_coupled .or. self%is_on_demand(bodies)) return
-      call form_kept_load(self, bodies)
+      if (allocated(error) .or. .not. bodies%is_coupled) return
+      if (.not. has_kept_load(self, bodies)) call form_kept_load(self, bodies)
+      if (self%is_on_demand(bodies)) return
       if (.not. has_friction_loads(self, bodies)) call form_friction(self, bodies)
       if (.not. has_loads(self, bodies)) then
          if (allocated(self%kept_load%value)) then
@@ -228,7 +248,9 @@ contains
       real(dp), intent(in) :: on_tail(:, :)               !! (thermal tail, n) [temperature]
       real(dp) :: load(bodies%mechanical%map%tail, size(on_tail, 2))   !! (mechanical tail, n)
 
-      if (self%is_on_demand(bodies)) then
+      if (self%is_on_demand(bodies) .and. allocated(self%kept_load%value)) then
+         load = loads_by(self%kept_load, bodies, self%extended_to_kept(bodies%thermal, on_tail))
+      else if (self%is_on_demand(bodies)) then
          load = loads_of_temperatures(bodies, self%extended(bodies%thermal, on_tail))
       else
          load = product_of(self%jump_load, on_tail)
@@ -263,10 +285,7 @@ contains
       real(dp) :: forces(bodies%thermal_load%row_count), unit(bodies%thermal_load%column_count)
       integer :: i, k
 
-      if (.not. allocated(bodies%thermal%division%piece)) return
-      associate (heat => bodies%thermal, piece => bodies%mechanical%division%piece, &
-         made => [self%kept_made, bodies%equilibrium%kept_made])
-         if (all(self%kept_load_of == made)) return
+      associate (heat => bodies%thermal, piece => bodies%mechanical%division%piece)
          call list%reserve(count(piece == 0)*count(heat%division%piece == 0))
          do k = 1, size(unit)
             if (heat%division%piece(k) /= 0 .or. .not. heat%map%moves(k)) cycle
@@ -280,7 +299,7 @@ contains
             end do
          end do
          self%kept_load = list%compress(size(forces), size(unit))
-         self%kept_load_of = made
+         self%kept_load_of = [self%kept_made, bodies%equilibrium%kept_made]
       end associate
    end subroutine form_kept_load
 
@@ -295,7 +314,9 @@ contains
       integer :: k
 
       allocate (forces(thermal_load%row_count, size(load, 2)))
-      call thermal_load%multiply_columns(temperature, forces)
+      do k = 1, size(load, 2)
+         forces(:, k) = thermal_load%multiply(temperature(:, k))
+      end do
       call bodies%equilibrium%condense_kept(bodies%mechanical, forces, load)
       do k = 1, size(load, 2)
          load(:, k) = bodies%equilibrium%contact%motions%balanced(load(:, k))

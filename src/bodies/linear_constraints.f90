@@ -275,14 +275,19 @@ contains
          end do
       end associate
       z = transposed_product(written_by, product_of(half, written_by) + of_others)
-      call list%reserve(size(unknown)*(size(unknown) + 1)/2)
+      rest = self%transform(rest, stiffness)
+      call list%reserve(size(unknown)*(size(unknown) + 1)/2 + size(rest%value))
       do i = 1, size(unknown)
          do j = 1, i
             call list%add(unknown(i), unknown(j), z(i, j) + z(j, i))
          end do
       end do
-      lower = linear_combination(1.0_dp, self%transform(rest, stiffness), 1.0_dp, &
-         list%compress(self%equations, self%equations))
+      do i = 1, self%equations
+         do k = rest%row_start(i), rest%row_start(i + 1) - 1
+            call list%add(i, rest%column(k), rest%value(k))
+         end do
+      end do
+      lower = list%compress(self%equations, self%equations)
    end function transform_kept
 
    !> T, its columns in any order.

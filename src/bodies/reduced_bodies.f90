@@ -32,6 +32,7 @@ module reduced_bodies
    private
    public :: reduced_bodies_type
 
+   real(dp), parameter :: same_place = 1.0e-5_dp   !! part of the spacing of contact points
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
 
    !> The reduced bodies.
@@ -74,7 +75,7 @@ module reduced_bodies
       procedure :: views
       procedure :: enter_step
       procedure :: follow_faces
-      procedure :: farthest_slide
+      procedure :: faces_moved
       procedure :: number
       procedure :: assemble_steps
       procedure :: assemble
@@ -257,25 +258,26 @@ contains
          allocated(self%held_temperature))
    end subroutine follow_faces
 
-   !> How far contact points that follow sliding have moved against their masters from where they
-   !> were placed, the farthest one, as a part of the spacing of contact points; 0 without any.
-   pure real(dp) function farthest_slide(self, displacement)
+   !> Whether contact points that follow sliding have moved against their masters from where they
+   !> were placed, by more than a part of their spacing that does not count.
+   pure logical function faces_moved(self, displacement)
       class(reduced_bodies_type), intent(in) :: self !! prepared
       real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
       real(dp) :: moved(size(self%points%slave))
       integer :: i
 
-      farthest_slide = 0.0_dp
+      faces_moved = .false.
       if (.not. allocated(self%faces_at)) return
       moved = norm2(self%points%relative(displacement - self%faces_at), dim=1)
       where (self%points%is_beyond) moved = 0.0_dp
       do i = 1, size(self%interfaces)
          if (.not. self%interfaces(i)%follows_sliding) cycle
          associate (first => self%points%interface_start(i), edge => self%interfaces(i)%edge)
-            farthest_slide = max(farthest_slide, maxval(moved(first:first + size(edge) - 1)/edge))
+            faces_moved = faces_moved .or. any(moved(first:first + size(edge) - 1) > &
+               same_place*edge)
          end associate
       end do
-   end function farthest_slide
+   end function faces_moved
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
    subroutine number(self, model, prescribed, held_temperature, mechanics, heat)

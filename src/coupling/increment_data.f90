@@ -59,6 +59,7 @@ module increment_data
       !> (m) mean temperature of the faces without jumps, where conductance laws vary with it
       real(dp), allocatable :: welded_mean(:)
       type(contact_scales_type) :: scales            !! set where heat and mechanics are coupled
+      logical :: is_corrected = .false.              !! whether its operators are, by its solution
       logical :: follows_branch = .false.            !! whether it is a point of a branch
       type(load_rate_type) :: rate                   !! set for passes on a branch
    end type increment_data_type

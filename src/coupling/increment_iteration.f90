@@ -77,7 +77,7 @@ contains
             workspace%resolves_edge = .false.
             workspace%edge = edge_heat_type()
          end if
-         if (heat%schur%is_sparse() .and. controls%method == method_newton) then
+         if (heat%is_divided(bodies) .and. controls%method == method_newton) then
             ! A derivative costs a solution for each contact point: it is formed where it is needed.
             call use_method(bodies, heat, with_method(controls, method_anderson), trial, error)
             if (.not. allocated(error)) return
@@ -95,7 +95,7 @@ contains
          if (.not. allocated(error)) return
          if (error%status /= status_no_convergence) return
          ! Newton's method needs the loads of all jumps.
-         if (heat%is_on_demand(bodies) .and. .not. heat%schur%is_sparse()) return
+         if (heat%is_on_demand(bodies) .and. .not. heat%is_divided(bodies)) return
          if (controls%method /= method_newton) then
             if (any(workspace%pass%graph%width > 0.0_dp)) then
                call append(workspace%record%notes, &

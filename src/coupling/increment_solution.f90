@@ -438,7 +438,11 @@ contains
             if (contact%tangent(k) > 0) on_tail(contact%tangent(k)) = next%contact%tangential(k)
          end do
          on_tail(contact%link) = next%contact%link
-         next%displacement = bodies%equilibrium%recover(bodies%mechanical, data%force, on_tail)
+         next%displacement = bodies%equilibrium%recover_kept(bodies%mechanical, data%force, on_tail)
+         ! A solution that only places faces that slide needs no more than these.
+         if (allocated(data%force%forces) .and. (data%is_corrected .or. .not. &
+            bodies%faces_moved(next%displacement))) call bodies%equilibrium%pieces%fill( &
+            next%displacement, data%force%forces)
          next%stress_temperature = next%temperature
          call remember_slip(bodies, workspace%contact, before, next)
       end associate

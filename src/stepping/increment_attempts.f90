@@ -34,10 +34,8 @@ module increment_attempts
    !> Growth of plastic strains that no equilibrium has, but with forces that rounding makes
    real(dp), parameter :: of_collapse = 1.0_dp
 
-   !> How often contact points of faces that slide are placed anew in an increment, and the part of
-   !> their spacing within which their place is the same.
-   integer, parameter :: most_placings = 10
-   real(dp), parameter :: same_place = 1.0e-5_dp
+   integer, parameter :: most_placings = 10   !! of contact points that slide, in an increment
+   real(dp), parameter :: over_spacing = 1.0e-5_dp   !! slip over a spacing that is rounding
 
    !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
    type, extends(trial_type) :: attempt_type
@@ -202,7 +200,7 @@ contains
       do placing = 1, most_placings
          call solve_corrected(run, model, attempt, error)
          if (allocated(error) .or. .not. allocated(run%bodies%faces_at)) return
-         if (run%bodies%farthest_slide(attempt%next%displacement) <= same_place) then
+         if (.not. run%bodies%faces_moved(attempt%next%displacement)) then
             attempt%next%faces_at = run%bodies%faces_at
             call check_slip(run, model, attempt, error)
             return
@@ -237,7 +235,7 @@ contains
             associate (over => slip(first:first + size(points%edge) - 1)*(points%side_nodes - 1)* &
                points%node_spacings/points%edge)
                k = maxloc(over, dim=1)
-               if (over(k) <= 1.0_dp + same_place) cycle
+               if (over(k) <= 1.0_dp + over_spacing) cycle
                words = points%name//' slips by '//to_text(slip(first - 1 + k))// &
                   ' in an increment, more than the spacing of nodes, '//to_text(slip(first - 1 + &
                   k)/over(k))//', at slave node '//to_text(model%mesh%node_number( &
@@ -357,6 +355,7 @@ contains
 
       associate (step => model%steps(run%control%step), bodies => run%bodies, data => attempt%data)
          call begin_increment(bodies, step, attempt%before, attempt%trial_type)
+         data%is_corrected = run%corrections%corrects
          ! The last of the corrected solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
             run%corrections%corrects
